@@ -9,9 +9,9 @@
 #include <system_error>
 #include <tuple>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
-#include "filters/base/split_list.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
+#include "base/split_list.h"
 #include "filters/format/front_matter.h"
 #include "filters/format/glsl_words.h"
 #include "filters/kernel_width.h"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
 #include "filters/model.h"
 
 namespace shadowbench::filters {

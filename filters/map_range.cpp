@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::filters {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "filters/base/nearest_name.h"
+#include "base/nearest_name.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filters/base/toml.h"
+#include "base/toml.h"
 #include "filters/filter_spec.h"
 #include "filters/kernel.h"
 

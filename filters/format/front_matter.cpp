@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/base/input_file.h"
-#include "filters/base/toml.h"
+#include "base/input_file.h"
+#include "base/toml.h"
 #include "filters/disk_points.h"
 #include "filters/format/declared_kernel.h"
 #include "filters/format/glsl_words.h"

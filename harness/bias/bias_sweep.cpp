@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "filters/kernel_width.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"

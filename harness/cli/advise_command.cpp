@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/catalogue.h"
 #include "filters/kernel_width.h"
 #include "harness/cli/arguments.h"

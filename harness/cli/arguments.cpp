@@ -4,7 +4,7 @@
 
 #include <tuple>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::cli {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/base/split_list.h"
+#include "base/split_list.h"
 #include "filters/catalogue.h"
 #include "harness/cli/command_line.h"
 #include "harness/options/run_options.h"

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <type_traits>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
 
 namespace shadowbench::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/run/compare_pictures.h"

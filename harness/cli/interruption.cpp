@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "filters/base/temporary_files.h"
+#include "base/temporary_files.h"
 
 namespace shadowbench::cli {
 namespace {

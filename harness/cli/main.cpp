@@ -13,7 +13,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/cli/commands.h"
 
 namespace shadowbench::cli {

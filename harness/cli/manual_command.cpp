@@ -8,7 +8,7 @@
 #include <memory>
 #include <sstream>
 
-#include "filters/base/atomic_file.h"
+#include "base/atomic_file.h"
 #include "filters/catalogue.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"

@@ -15,8 +15,8 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog @ONLY CONTENT "shadowbench
 
 # The program writes its manual pages and completions itself, from the description of its options.
 set(_manual ${PROJECT_BINARY_DIR}/manual)
-file(GLOB _named CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/filters/*.glsl ${PROJECT_SOURCE_DIR}/harness/scenes/*.toml
-     ${PROJECT_SOURCE_DIR}/harness/scenes/teaching/*.toml ${PROJECT_SOURCE_DIR}/harness/experiments/*.toml)
+file(GLOB _named CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/filters/*.glsl ${PROJECT_SOURCE_DIR}/data/scenes/*.toml
+     ${PROJECT_SOURCE_DIR}/data/scenes/teaching/*.toml ${PROJECT_SOURCE_DIR}/data/experiments/*.toml)
 add_custom_command(
   OUTPUT ${_manual}/written
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${_manual}
@@ -33,12 +33,9 @@ add_custom_target(shadowbench_manual ALL DEPENDS ${_manual}/written)
 
 set(_share ${CMAKE_INSTALL_DATADIR}/shadowbench)
 install(TARGETS shadowbench RUNTIME COMPONENT program)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters COMPONENT program FILES_MATCHING PATTERN "*.glsl"
-        PATTERN "base" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters COMPONENT program FILES_MATCHING PATTERN "*.glsl")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/ DESTINATION ${_share}/shaders COMPONENT program PATTERN "*.md" EXCLUDE)
-foreach(_folder IN ITEMS scenes experiments gpus)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/harness/${_folder}/ DESTINATION ${_share}/${_folder} COMPONENT program PATTERN "*.md" EXCLUDE)
-endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/ DESTINATION ${_share}/data COMPONENT program PATTERN "*.md" EXCLUDE)
 install(DIRECTORY ${_manual}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program FILES_MATCHING PATTERN "*.1.gz")
 install(FILES ${_manual}/pages/shadowbench.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME shadowbench
         COMPONENT program)

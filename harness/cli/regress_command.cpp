@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/interruption.h"

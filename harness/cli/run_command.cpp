@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/view/run_view.h"

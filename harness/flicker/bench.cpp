@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::flicker {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
 
-#include "filters/base/error.h"
-#include "filters/base/split_list.h"
+#include "base/error.h"
+#include "base/split_list.h"
 #include "filters/receiver.h"
 
 namespace shadowbench::flicker {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "harness/flicker/bench.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"

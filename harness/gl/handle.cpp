@@ -6,7 +6,7 @@
 #include <cassert>
 #include <stdexcept>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::gl {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::gl {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/handle.h"
 #include "harness/gl/shader_source.h"
 

@@ -12,7 +12,7 @@
 #include <optional>
 #include <set>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::gl {
 namespace {

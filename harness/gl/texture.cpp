@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::gl {
 namespace {

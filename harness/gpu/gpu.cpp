@@ -6,8 +6,8 @@
 #include <bit>
 #include <cmath>
 
-#include "filters/base/nearest_name.h"
-#include "filters/base/toml.h"
+#include "base/nearest_name.h"
+#include "base/toml.h"
 
 namespace shadowbench::gpu {
 namespace {

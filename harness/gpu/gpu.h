@@ -12,7 +12,7 @@ struct Constant {
   std::string source;
 };
 
-/// A GPU as `harness/gpus/<name>.toml` describes it: whose compiler is asked, and what the estimate takes from data
+/// A GPU as `data/gpus/<name>.toml` describes it: whose compiler is asked, and what the estimate takes from data
 /// sheets.
 struct Gpu {
   std::string name;                   ///< stem of its file

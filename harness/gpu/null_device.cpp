@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vulkan/vulkan_raii.hpp>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/fullscreen.h"
 #include "harness/gl/shader_source.h"
 #include "harness/gpu/machine_code.h"

@@ -1,5 +1,5 @@
 // Stands in for null_device.cpp where SHADOWBENCH_WITH_GPU_ESTIMATES is off, or its libraries were not found.
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gpu/null_device.h"
 
 namespace shadowbench::gpu {

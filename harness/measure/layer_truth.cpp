@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "filters/base/content_hash.h"
+#include "base/content_hash.h"
 #include "harness/measure/filter_setup.h"
 
 namespace shadowbench::measure {

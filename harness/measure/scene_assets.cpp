@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/measure/mean_flip.h"
 #include "harness/render/shade_pass.h"
 #include "harness/scene/occluders.h"

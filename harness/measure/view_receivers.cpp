@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "filters/base/content_hash.h"
+#include "base/content_hash.h"
 #include "filters/receiver.h"
 #include "harness/measure/receiver_pixels.h"
 #include "harness/render/image_target.h"

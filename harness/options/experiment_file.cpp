@@ -9,9 +9,9 @@
 #include <cmath>
 #include <set>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
-#include "filters/base/toml.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
+#include "base/toml.h"
 #include "filters/kernel_width.h"
 #include "harness/options/run_options.h"
 

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::options {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/options/options.h"
 
 namespace shadowbench::options {
@@ -23,12 +23,8 @@ std::filesystem::path choose_root() {
 
 Resources find_resources() {
   const std::filesystem::path root = choose_root();
-  const auto find = [&](const char* name) {
-    // Sources have these folders in harness/, an installed program beside the others.
-    const std::filesystem::path folder = root / "harness" / name;
-    return std::filesystem::is_directory(folder) ? folder : root / name;
-  };
-  Resources resources{root / "filters", root / "shaders", find("scenes"), find("experiments"), find("gpus")};
+  const std::filesystem::path data = root / "data";
+  Resources resources{root / "filters", root / "shaders", data / "scenes", data / "experiments", data / "gpus"};
   for (const auto& folder :
        {resources.filters, resources.shaders, resources.scenes, resources.experiments, resources.gpus}) {
     if (std::filesystem::is_directory(folder)) continue;

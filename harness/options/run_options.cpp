@@ -7,8 +7,8 @@
 #include <set>
 #include <type_traits>
 
-#include "filters/base/error.h"
-#include "filters/base/split_list.h"
+#include "base/error.h"
+#include "base/split_list.h"
 #include "filters/store_format.h"
 #include "harness/gl/pixel_format.h"
 

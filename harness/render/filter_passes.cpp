@@ -7,7 +7,7 @@
 #include <numeric>
 #include <regex>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/format/glsl_words.h"
 #include "filters/noise/blue_noise.h"
 #include "harness/render/filter_glsl.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {

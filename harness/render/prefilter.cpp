@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/kernel.h"
 #include "harness/render/filter_glsl.h"
 

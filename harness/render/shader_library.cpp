@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/fullscreen.h"
 
 namespace shadowbench::render {

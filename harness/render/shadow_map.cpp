@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/fullscreen.h"
 #include "harness/gl/pixel_format.h"
 #include "harness/render/gbuffer.h"

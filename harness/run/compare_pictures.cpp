@@ -7,7 +7,7 @@
 #include <limits>
 #include <variant>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/measure/mean_flip.h"
 #include "report/images/picture_io.h"
 #include "report/images/stored_picture.h"

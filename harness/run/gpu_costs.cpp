@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "filters/base/content_hash.h"
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/content_hash.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 #include "harness/gpu/estimate.h"
 #include "harness/run/worker_process.h"
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <system_error>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"

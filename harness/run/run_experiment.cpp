@@ -9,8 +9,8 @@
 #include <optional>
 #include <set>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/all_lights.h"

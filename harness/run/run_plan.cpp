@@ -7,8 +7,8 @@
 #include <numeric>
 #include <set>
 
-#include "filters/base/content_hash.h"
-#include "filters/base/error.h"
+#include "base/content_hash.h"
+#include "base/error.h"
 #include "filters/model.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/options/run_options.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/base/content_hash.h"
+#include "base/content_hash.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/options/options.h"
 #include "harness/scene/scene.h"

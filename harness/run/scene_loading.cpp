@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::run {

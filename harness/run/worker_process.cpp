@@ -18,9 +18,9 @@
 #include <string_view>
 #include <utility>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 #include "harness/options/experiment_file.h"
 #include "harness/run/task_images.h"
 #include "report/images/picture_io.h"

@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/scene_file.h"

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "filters/base/nearest_name.h"
+#include "base/nearest_name.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "filters/base/toml.h"
+#include "base/toml.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "filters/base/toml.h"
+#include "base/toml.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/framing.h"
 #include "harness/scene/scene_file.h"

@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {

@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
 
 namespace shadowbench::stress {
 namespace {

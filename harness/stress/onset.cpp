@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/measure/scene_measurement.h"
 
 namespace shadowbench::stress {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "harness/run/provenance.h"
 #include "harness/stress/onset.h"
 #include "report/files/folder_lock.h"

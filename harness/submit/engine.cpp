@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::submit {
 namespace {

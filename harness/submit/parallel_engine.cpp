@@ -3,9 +3,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 #include "harness/submit/engine.h"
 #include "harness/submit/sign_of_life.h"
 #include "harness/submit/sweep_status.h"

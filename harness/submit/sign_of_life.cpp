@@ -9,9 +9,9 @@
 #include <system_error>
 #include <utility>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 
 namespace shadowbench::submit {
 namespace {

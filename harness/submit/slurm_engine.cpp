@@ -7,8 +7,8 @@
 #include <sstream>
 #include <thread>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "harness/submit/engine.h"
 
 namespace shadowbench::submit {

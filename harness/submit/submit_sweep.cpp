@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/run/run_plan.h"
 #include "harness/submit/sign_of_life.h"
 #include "harness/submit/sweep_plan.h"

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/input_file.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/input_file.h"
 #include "harness/run/run_experiment.h"
 #include "report/records/json_io.h"
 #include "report/records/json_values.h"

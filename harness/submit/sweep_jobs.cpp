@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/run/merge.h"
 #include "harness/run/run_experiment.h"
 #include "harness/submit/sign_of_life.h"

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "filters/base/content_hash.h"
+#include "base/content_hash.h"
 #include "harness/run/run_plan.h"
 
 namespace shadowbench::submit {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <numeric>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
@@ -275,12 +275,12 @@ class Tuner {
                             metric_.kind == TuneMetricKind::kStatistic);
       record_.filters.push_back(filter.record);
     }
-    const page::Page page = pages::make_tune_page(record_);
+    const document::Page page = pages::make_tune_page(record_);
     pages::write_page(options_.run.out, "tune", page);
     write_text_file(options_.run.out / "evaluations.csv",
                     fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
     write_text_file(options_.run.out / "tuned.json", records::make_tuned_json(record_));
-    return page::write_markdown(page);
+    return document::write_markdown(page);
   }
 };
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/map_limits.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "report/records/tuned_record.h"
 
 namespace shadowbench::tune {

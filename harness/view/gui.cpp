@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::view {

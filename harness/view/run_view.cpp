@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/kernel_width.h"
 #include "harness/gl/timer/timer.h"
 #include "harness/view/gui.h"

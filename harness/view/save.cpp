@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <system_error>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "harness/options/experiment_file.h"
 #include "harness/scene/load.h"
 #include "harness/scene/scene_writer.h"

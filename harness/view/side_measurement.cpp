@@ -9,8 +9,8 @@
 #include <functional>
 #include <system_error>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "harness/run/task_images.h"
 #include "harness/view/save.h"
 #include "report/images/picture_io.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/base/temporary_files.h"
+#include "base/temporary_files.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/worker_process.h"
 #include "harness/view/view_state.h"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/format/front_matter.h"
 #include "harness/render/shade_pass.h"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::view {
 

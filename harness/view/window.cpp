@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "report/images/text.h"
 
 // After the loader, see gl_api.h.

@@ -3,7 +3,7 @@
 #include <system_error>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/measure/layer_truth.h"
 #include "harness/scene/occluders.h"
 #include "harness/view/save.h"

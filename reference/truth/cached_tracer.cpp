@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "filters/base/content_hash.h"
+#include "base/content_hash.h"
 #include "reference/truth/embree.h"
 
 namespace shadowbench::truth {

@@ -8,10 +8,10 @@
 #include <iterator>
 #include <system_error>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/content_hash.h"
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/atomic_file.h"
+#include "base/content_hash.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 
 namespace shadowbench::truth {
 namespace {

@@ -10,8 +10,8 @@
 #include <tuple>
 #include <variant>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/trade_measures.h"

@@ -14,8 +14,8 @@
 #include <thread>
 #include <utility>
 
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 
 namespace shadowbench::files {
 namespace {

@@ -15,9 +15,9 @@
 #include <system_error>
 #include <utility>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/input_file.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/input_file.h"
 #include "report/images/stored_picture.h"
 
 namespace shadowbench::images {

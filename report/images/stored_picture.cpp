@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "filters/base/error.h"
-#include "filters/base/input_file.h"
-#include "filters/base/nearest_name.h"
+#include "base/error.h"
+#include "base/input_file.h"
+#include "base/nearest_name.h"
 
 namespace shadowbench::images {
 namespace {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::images {
 namespace {

@@ -11,8 +11,8 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 
 namespace shadowbench::images {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cell_group.h"
-#include "report/page/markdown.h"
+#include "report/document/markdown.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -21,13 +21,13 @@ std::string align(const std::vector<Row>& rows) {
   std::vector<std::size_t> widths;
   for (const Row& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], page::count_shown(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], document::count_shown(row[i]));
   }
   std::string text;
   for (const Row& row : rows) {
     std::string line = " ";
     for (std::size_t i = 0; i < row.size(); ++i)
-      line += fmt::format(" {}{} ", row[i], std::string(widths[i] - page::count_shown(row[i]), ' '));
+      line += fmt::format(" {}{} ", row[i], std::string(widths[i] - document::count_shown(row[i]), ' '));
     line.resize(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
@@ -41,7 +41,7 @@ std::string wrap(const std::string& text) {
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
-    if (!line.empty() && page::count_shown(line) + 1 + page::count_shown(word) > kColumns) {
+    if (!line.empty() && document::count_shown(line) + 1 + document::count_shown(word) > kColumns) {
       result += line + "\n";
       line.assign(1, ' ');
     }

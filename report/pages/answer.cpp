@@ -31,12 +31,12 @@ std::string describe_margin(const analysis::Advice& advice, const analysis::Cand
   return text;
 }
 
-page::Sentences describe_choice(const records::RunRecord& run, const analysis::Advice& advice) {
+document::Sentences describe_choice(const records::RunRecord& run, const analysis::Advice& advice) {
   const analysis::Candidate& best = advice.keeping.front();
   const bool has_limits = !advice.request.demands.empty();
-  page::Sentences answer{fmt::format("{}: {} a frame with a moving light.", best.configuration.label,
-                                     analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl)),
-                         {}};
+  document::Sentences answer{fmt::format("{}: {} a frame with a moving light.", best.configuration.label,
+                                         analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl)),
+                             {}};
   answer.items.push_back(fmt::format("Why: the {} of {}{}{}.", analysis::describe_choice(advice), advice.keeping.size(),
                                      has_limits ? " that keep the limits" : " that can be judged",
                                      describe_margin(advice, best)));
@@ -61,21 +61,22 @@ analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& c
   return request;
 }
 
-page::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                  const analysis::AdviceRequest& request) {
-  page::Section section{"answer", "Which filter?", {}};
+document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                      const analysis::AdviceRequest& request) {
+  document::Section section{"answer", "Which filter?", {}};
   if (!can_advise(cells)) {
-    section.blocks = {page::Paragraph{
+    section.blocks = {document::Paragraph{
         cells.empty() ? "The run holds no cell." : "The run has filters for teaching alone, which are not advised."}};
     return section;
   }
   const analysis::Advice advice = analysis::advise(cells, request);
-  page::Mount mount{"answer", {}};
+  document::Mount mount{"answer", {}};
   if (advice.keeping.empty())
-    mount.blocks.emplace_back(page::Paragraph{fmt::format("Nothing fits: {}.", analysis::describe_failure(advice))});
+    mount.blocks.emplace_back(
+        document::Paragraph{fmt::format("Nothing fits: {}.", analysis::describe_failure(advice))});
   else
     mount.blocks.emplace_back(describe_choice(run, advice));
-  page::Sentences notes{{}, analysis::list_run_notes(advice, run.gl)};
+  document::Sentences notes{{}, analysis::list_run_notes(advice, run.gl)};
   if (!request.demands.empty())
     notes.items.insert(notes.items.begin(),
                        "The limit to begin with is a quarter above the least RMSE that a filter keeps to on every "

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "report/analysis/advice.h"
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
@@ -14,7 +14,7 @@ analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& c
 
 /// Says which filter and map keep those limits at the least cost, why, what the runner-up would buy, and what the
 /// choice fails at. In the browser a script makes the same of limits that the reader moves.
-page::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                  const analysis::AdviceRequest& request);
+document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                      const analysis::AdviceRequest& request);
 
 }  // namespace shadowbench::pages

@@ -38,22 +38,23 @@ std::string explain_amounts() {
 /// What a mode comes to for a filter, at the smallest amount swept that is enough where it takes an amount.
 struct BiasVerdict {
   std::string text;
-  page::Grade grade = page::Grade::kBad;
+  document::Grade grade = document::Grade::kBad;
   bool free = false;  ///< of acne
   double gap = 0.0;
 };
 
 BiasVerdict judge_curve(const records::BiasCurve& curve) {
-  if (curve.points.empty()) return {"absent", page::Grade::kNone};
+  if (curve.points.empty()) return {"absent", document::Grade::kNone};
   const auto enough = find_enough(curve);
   const records::BiasPoint& point = enough ? *find_point(curve, *enough) : curve.points.back();
   if (!point.acne || *point.acne >= kLittleAcne)
-    return {"acne " + format_rate(point.acne), point.acne ? page::Grade::kBad : page::Grade::kNone};
+    return {"acne " + format_rate(point.acne), point.acne ? document::Grade::kBad : document::Grade::kNone};
   BiasVerdict verdict{(enough ? name_factor(*enough) + ", " : "") + "gap " + format_rate(point.contact_gap)};
   verdict.free = true;
   verdict.gap = point.contact_gap.value_or(0.0);
-  if (verdict.gap < kWideGap) verdict.grade = verdict.gap < kNarrowGap ? page::Grade::kGood : page::Grade::kNear;
-  if (!point.contact_gap) verdict.grade = page::Grade::kNone;
+  if (verdict.gap < kWideGap)
+    verdict.grade = verdict.gap < kNarrowGap ? document::Grade::kGood : document::Grade::kNear;
+  if (!point.contact_gap) verdict.grade = document::Grade::kNone;
   return verdict;
 }
 
@@ -69,8 +70,8 @@ struct ModeVerdict {
   }
 };
 
-page::Section make_bias_answer(const records::BiasSweepRecord& sweep) {
-  page::Table table{"Enough bias, and the contact gap it opens", {{"mode"}, {}}};
+document::Section make_bias_answer(const records::BiasSweepRecord& sweep) {
+  document::Table table{"Enough bias, and the contact gap it opens", {{"mode"}, {}}};
   std::vector<ModeVerdict> modes;
   for (const records::BiasModeRecord& mode : sweep.modes) {
     ModeVerdict all{mode.mode, 0, static_cast<int>(mode.curves.size())};
@@ -87,7 +88,9 @@ page::Section make_bias_answer(const records::BiasSweepRecord& sweep) {
       modes, {}, [](const ModeVerdict& mode) { return std::tuple(mode.free, -mode.gap, -mode.filters); });
   if (best != modes.end()) text = fmt::format("Best: {}.", best->describe());
   if (best != worst) text += fmt::format(" Worst: {}.", worst->describe());
-  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table), page::Paragraph{explain_amounts(), true}}};
+  return {"answer",
+          "",
+          {document::Paragraph{std::move(text)}, std::move(table), document::Paragraph{explain_amounts(), true}}};
 }
 
 records::TextTable make_amount_table(const records::BiasModeRecord& mode) {
@@ -116,10 +119,10 @@ std::vector<double> list_factors(const records::BiasModeRecord& mode) {
 
 /// A logarithmic axis with a tick for each factor. It has no place for no bias at all, which is drawn at half the
 /// smallest amount.
-page::ChartAxis make_factor_axis(const std::vector<double>& factors) {
+document::ChartAxis make_factor_axis(const std::vector<double>& factors) {
   const auto positive = std::ranges::upper_bound(factors, 0.0);
   const double least = positive == factors.end() ? 1.0 : *positive;
-  page::ChartAxis axis{true, least, least, {}};
+  document::ChartAxis axis{true, least, least, {}};
   for (const double factor : factors) {
     axis.ticks.emplace_back(factor > 0.0 ? factor : 0.5 * least, name_factor(factor));
     axis.low = std::min(axis.low, axis.ticks.back().first);
@@ -130,31 +133,31 @@ page::ChartAxis make_factor_axis(const std::vector<double>& factors) {
   return axis;
 }
 
-page::ChartAxis make_rate_axis(const records::BiasModeRecord& mode) {
+document::ChartAxis make_rate_axis(const records::BiasModeRecord& mode) {
   std::vector<double> rates = {0.0, 0.01};
   for (const records::BiasCurve& curve : mode.curves)
     for (const records::BiasPoint& point : curve.points)
       for (const auto& rate : {point.acne, point.contact_gap})
         if (rate) rates.push_back(*rate);
-  page::ChartAxis axis = page::choose_axis(rates, {}, page::TickKind::kNumber);
+  document::ChartAxis axis = document::choose_axis(rates, {}, document::TickKind::kNumber);
   for (auto& [rate, label] : axis.ticks) label = fmt::format("{:.6g} %", 100.0 * rate);
   return axis;
 }
 
 /// A filter's acne, solid with marks, or its contact gap, dashed with hollow ones.
-page::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rate, const page::ChartAxis& factors,
-                                   const page::ChartStyle& style) {
+document::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rate, const document::ChartAxis& factors,
+                                       const document::ChartStyle& style) {
   const bool gap = rate == &records::BiasPoint::contact_gap;
-  page::ChartSeries series;
+  document::ChartSeries series;
   series.title = curve.filter + (gap ? ": contact gap" : ": acne");
   series.color = style.color;
   series.mark = style.mark;
   series.filled = !gap;
-  series.line = gap ? page::LineStyle::kDashed : page::LineStyle::kSolid;
+  series.line = gap ? document::LineStyle::kDashed : document::LineStyle::kSolid;
   for (const records::BiasPoint& point : curve.points) {
     if (!point.factor || !(point.*rate)) continue;
     const double x = *point.factor > 0.0 ? *point.factor : factors.ticks.front().first;
-    page::ChartPoint& added = series.points.emplace_back(page::exact_point(x, *(point.*rate)));
+    document::ChartPoint& added = series.points.emplace_back(document::exact_point(x, *(point.*rate)));
     added.details = {series.title, fmt::format("{} of the theoretical amount: {}", name_factor(*point.factor),
                                                format_rate(point.*rate))};
   }
@@ -168,17 +171,17 @@ double weigh_curve(const records::BiasCurve& curve) {
   return enough ? *enough + find_point(curve, *enough)->contact_gap.value_or(0.0) : kNeverEnough;
 }
 
-page::Section make_mode_section(const records::BiasModeRecord& mode, const records::BiasSweepRecord& sweep) {
-  page::Section section{mode.mode, mode.mode, {page::Paragraph{mode.meaning, true}}};
-  if (mode.curves.empty()) section.blocks.emplace_back(page::Paragraph{"No filter of this run can use it."});
+document::Section make_mode_section(const records::BiasModeRecord& mode, const records::BiasSweepRecord& sweep) {
+  document::Section section{mode.mode, mode.mode, {document::Paragraph{mode.meaning, true}}};
+  if (mode.curves.empty()) section.blocks.emplace_back(document::Paragraph{"No filter of this run can use it."});
   if (!mode.key.empty() && !mode.curves.empty()) {
     section.blocks.emplace_back(make_bias_chart(mode, sweep.filters));
     section.blocks.emplace_back(
-        page::Table{"At theory: amount, move towards the light, rates", make_amount_table(mode)});
+        document::Table{"At theory: amount, move towards the light, rates", make_amount_table(mode)});
   }
   if (!mode.left_out.empty())
-    section.blocks.emplace_back(page::Details{"Left out", {page::Sentences{{}, mode.left_out}}});
-  if (!mode.picture.empty()) section.blocks.emplace_back(page::Gallery{{}, {{mode.picture, mode.picture_caption}}});
+    section.blocks.emplace_back(document::Details{"Left out", {document::Sentences{{}, mode.left_out}}});
+  if (!mode.picture.empty()) section.blocks.emplace_back(document::Gallery{{}, {{mode.picture, mode.picture_caption}}});
   return section;
 }
 
@@ -247,8 +250,8 @@ std::string name_factor(double factor) {
   return factor > 0.0 && factor < 1.0 ? fmt::format("1/{:.4g}", 1.0 / factor) : fmt::format("{:.4g}", factor);
 }
 
-page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters) {
-  page::Chart chart;
+document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters) {
+  document::Chart chart;
   chart.id = "bias." + mode.mode;
   chart.title = mode.mode + ": acne and contact gap over the amount";
   chart.x_name = "amount / theoretical amount";
@@ -262,7 +265,7 @@ page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vect
   for (const records::BiasCurve& curve : mode.curves) {
     const auto place = static_cast<std::size_t>(std::ranges::find(filters, curve.filter) - filters.begin());
     for (const auto& [rate, name] : kinds) {
-      page::ChartSeries series = make_rate_series(curve, rate, chart.x, page::style_of(place));
+      document::ChartSeries series = make_rate_series(curve, rate, chart.x, document::style_of(place));
       if (series.points.empty()) continue;
       weights.emplace_back(weigh_curve(curve), series.title);
       chart.series.push_back(std::move(series));
@@ -271,25 +274,26 @@ page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vect
   for (const auto& [rate, name] : kinds)
     if (std::ranges::none_of(weights, [&](const auto& each) { return each.second.ends_with(name); }))
       chart.notes.push_back(fmt::format("{}: absent", name));
-  page::show_most_telling(chart, std::move(weights));
+  document::show_most_telling(chart, std::move(weights));
   if (std::ranges::find(factors, 1.0) == factors.end()) return chart;
-  page::ChartSeries theory;
+  document::ChartSeries theory;
   theory.title = "theory";
-  theory.color = page::kInk;
-  theory.line = page::LineStyle::kTies;
-  for (const double y : {chart.y.low, chart.y.high}) theory.points.push_back(page::exact_point(1.0, y));
+  theory.color = document::kInk;
+  theory.line = document::LineStyle::kTies;
+  for (const double y : {chart.y.low, chart.y.high}) theory.points.push_back(document::exact_point(1.0, y));
   chart.series.push_back(std::move(theory));
   return chart;
 }
 
-page::Page make_bias_page(const records::BiasSweepRecord& sweep) {
-  page::Page page{"Depth bias: acne against contact", {make_bias_answer(sweep)}, {}};
+document::Page make_bias_page(const records::BiasSweepRecord& sweep) {
+  document::Page page{"Depth bias: acne against contact", {make_bias_answer(sweep)}, {}};
   for (const records::BiasModeRecord& mode : sweep.modes) page.sections.push_back(make_mode_section(mode, sweep));
-  page.sections.push_back({"data",
-                           "",
-                           {page::Details{"Settings, terms and data",
-                                          {page::Facts{list_bias_facts(sweep)},
-                                           page::Sentences{{}, define_bias_terms(sweep)}, link_data({"bias.csv"})}}}});
+  page.sections.push_back(
+      {"data",
+       "",
+       {document::Details{"Settings, terms and data",
+                          {document::Facts{list_bias_facts(sweep)}, document::Sentences{{}, define_bias_terms(sweep)},
+                           link_data({"bias.csv"})}}}});
   return page;
 }
 

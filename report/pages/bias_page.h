@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/records/bias_record.h"
 
 namespace shadowbench::pages {
@@ -20,10 +20,10 @@ std::string name_factor(double factor);
 
 /// Draws a mode's rates over the amount: acne solid, contact gap dashed, theory as a vertical line. What is absent is
 /// left out, and said where a whole kind is. A filter's place in `filters` gives it its colour and its mark.
-page::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters);
+document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters);
 
 /// Makes the page of `shadowbench bias`.
-page::Page make_bias_page(const records::BiasSweepRecord& sweep);
+document::Page make_bias_page(const records::BiasSweepRecord& sweep);
 
 /// Makes bias.csv (RFC 4180): one row per mode, filter and amount; what is absent is empty.
 std::string make_bias_csv(const records::BiasSweepRecord& sweep);

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/base/atomic_file.h"
+#include "base/atomic_file.h"
+#include "report/document/blocks.h"
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"
-#include "report/page/blocks.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -43,21 +43,22 @@ void write_comparison_page(const std::filesystem::path& dir, const ComparedPictu
   if (!pictures.mask.empty()) truth_planes.emplace_back("mask", pictures.mask);
   json cell = write_side(dir, "first", pictures.image_rgb, planes);
   cell["configuration"] = cell["place"] = 0;
-  page::Page page{"Two pictures compared", {}, {}};
+  document::Page page{"Two pictures compared", {}, {}};
   page.data = {{"places", {{{"title", "both"}}}},
                {"hatched", "left out by the mask, or not finite"},
                {"white", find_white(pictures)},
                {"configurations", {{{"label", pictures.image}}}},
                {"truths", {write_side(dir, "second", pictures.truth_rgb, truth_planes)}},
                {"cells", {std::move(cell)}}};
-  page.sections = {{"numbers",
-                    "",
-                    {page::Paragraph{fmt::format("The first picture is {}. What stands for the truth is {}. Visibility "
-                                                 "is the mean over the channels of the values as stored.",
-                                                 pictures.image, pictures.truth)},
-                     page::Facts{pictures.numbers}}},
-                   {"viewer", "Look closer", {page::Mount{"viewer", {}}}}};
-  write_text_file(dir / "index.html", page::write_html(page));
+  page.sections = {
+      {"numbers",
+       "",
+       {document::Paragraph{fmt::format("The first picture is {}. What stands for the truth is {}. Visibility "
+                                        "is the mean over the channels of the values as stored.",
+                                        pictures.image, pictures.truth)},
+        document::Facts{pictures.numbers}}},
+      {"viewer", "Look closer", {document::Mount{"viewer", {}}}}};
+  write_text_file(dir / "index.html", document::write_html(page));
 }
 
 }  // namespace shadowbench::pages

@@ -38,34 +38,35 @@ double find_limit(const records::FlickerMotion& motion) {
   return motion.truth.change > 0.0 ? motion.truth.change : kPictureStep;
 }
 
-page::Grade grade_flicker(double flicker, const records::FlickerMotion& motion) {
-  if (flicker >= find_limit(motion)) return page::Grade::kBad;
+document::Grade grade_flicker(double flicker, const records::FlickerMotion& motion) {
+  if (flicker >= find_limit(motion)) return document::Grade::kBad;
   const bool far = flicker < find_least(motion) || flicker < kFar * find_limit(motion);
-  return far ? page::Grade::kGood : page::Grade::kNear;
+  return far ? document::Grade::kGood : document::Grade::kNear;
 }
 
 constexpr std::size_t kStepsPerMark = 8;
 
 /// A line over the steps. Only some points have a mark, so that lines of one colour are told apart.
-page::ChartSeries make_change_line(const std::string& title, const std::vector<double>& changes) {
-  page::ChartSeries series;
+document::ChartSeries make_change_line(const std::string& title, const std::vector<double>& changes) {
+  document::ChartSeries series;
   series.title = title;
-  series.line = page::LineStyle::kSolid;
+  series.line = document::LineStyle::kSolid;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    page::ChartPoint& point = series.points.emplace_back(page::exact_point(static_cast<double>(i + 1), changes[i]));
+    document::ChartPoint& point =
+        series.points.emplace_back(document::exact_point(static_cast<double>(i + 1), changes[i]));
     point.details = {title, fmt::format("step {}: {:.4g}", i + 1, changes[i])};
   }
   return series;
 }
 
 /// Adds a filter's marks, which the key shows, and its line.
-void add_filter(page::Chart& chart, const records::FlickerFilter& filter, std::size_t place) {
-  const page::ChartStyle style = page::style_of(place);
-  page::ChartSeries line = make_change_line(filter.filter, filter.step_change);
+void add_filter(document::Chart& chart, const records::FlickerFilter& filter, std::size_t place) {
+  const document::ChartStyle style = document::style_of(place);
+  document::ChartSeries line = make_change_line(filter.filter, filter.step_change);
   line.color = style.color;
-  page::ChartSeries marks = line;
+  document::ChartSeries marks = line;
   line.title.clear();
-  marks.line = page::LineStyle::kNone;
+  marks.line = document::LineStyle::kNone;
   marks.mark = style.mark;
   marks.filled = false;
   marks.points.clear();
@@ -76,13 +77,13 @@ void add_filter(page::Chart& chart, const records::FlickerFilter& filter, std::s
 }
 
 /// A scale from 0 for everything that moves in this motion.
-page::ChartAxis choose_change_axis(const records::FlickerMotion& motion) {
+document::ChartAxis choose_change_axis(const records::FlickerMotion& motion) {
   std::vector<double> values = {0.0};
   values.insert(values.end(), motion.truth.step_change.begin(), motion.truth.step_change.end());
   for (const records::FlickerVariant& variant : motion.variants)
     for (const records::FlickerFilter& filter : variant.filters)
       values.insert(values.end(), filter.step_change.begin(), filter.step_change.end());
-  return page::choose_axis(values, {}, page::TickKind::kNumber);
+  return document::choose_axis(values, {}, document::TickKind::kNumber);
 }
 
 std::vector<std::pair<std::string, std::string>> list_flicker_facts(const records::FlickerRecord& record) {
@@ -95,16 +96,16 @@ std::vector<std::pair<std::string, std::string>> list_flicker_facts(const record
   return facts;
 }
 
-page::Section make_motion_section(const records::FlickerMotion& motion, int frames) {
-  page::Section section{motion.id, fmt::format("{}: {}", motion.id, motion.title), {}};
+document::Section make_motion_section(const records::FlickerMotion& motion, int frames) {
+  document::Section section{motion.id, fmt::format("{}: {}", motion.id, motion.title), {}};
   for (const records::FlickerVariant& variant : motion.variants)
     section.blocks.emplace_back(make_flicker_chart(motion, variant));
-  section.blocks.emplace_back(
-      page::Gallery{{}, {{motion.picture, "flicker by pixel, without snapping and with it; grey: less than 0.001"}}});
-  section.blocks.emplace_back(page::Details{
+  section.blocks.emplace_back(document::Gallery{
+      {}, {{motion.picture, "flicker by pixel, without snapping and with it; grey: less than 0.001"}}});
+  section.blocks.emplace_back(document::Details{
       "All numbers, and how the motion was made",
-      {page::Table{"Change and flicker: root mean squares of visibility per step", make_flicker_table(motion)},
-       page::Sentences{{}, explain_motion(motion, frames)}}});
+      {document::Table{"Change and flicker: root mean squares of visibility per step", make_flicker_table(motion)},
+       document::Sentences{{}, explain_motion(motion, frames)}}});
   return section;
 }
 
@@ -178,13 +179,14 @@ records::TextTable make_flicker_table(const records::FlickerMotion& motion) {
   return table;
 }
 
-page::Chart make_flicker_chart(const records::FlickerMotion& motion, const records::FlickerVariant& variant) {
-  page::Chart chart;
+document::Chart make_flicker_chart(const records::FlickerMotion& motion, const records::FlickerVariant& variant) {
+  document::Chart chart;
   chart.id = fmt::format("flicker.{}{}", motion.id, variant.snap ? ".snapped" : "");
   chart.title = fmt::format("{}, {} snapping", motion.title, variant.snap ? "with" : "without");
   chart.x_name = "step";
   chart.y_name = "change of visibility, root mean square";
-  chart.x = page::choose_axis({0.0, static_cast<double>(motion.truth.step_change.size())}, {}, page::TickKind::kNumber);
+  chart.x = document::choose_axis({0.0, static_cast<double>(motion.truth.step_change.size())}, {},
+                                  document::TickKind::kNumber);
   chart.y = choose_change_axis(motion);
   std::vector<std::pair<double, std::string>> weights = {{kAlways, "truth"}};
   for (std::size_t i = 0; i < variant.filters.size(); ++i) {
@@ -192,12 +194,12 @@ page::Chart make_flicker_chart(const records::FlickerMotion& motion, const recor
     const std::string& name = variant.filters[i].filter;
     weights.emplace_back(name == "none" ? kAlways : variant.filters[i].flicker, name);
   }
-  page::ChartSeries truth = make_change_line("truth", motion.truth.step_change);
-  truth.color = page::kInk;
-  truth.line = page::LineStyle::kDashed;
+  document::ChartSeries truth = make_change_line("truth", motion.truth.step_change);
+  truth.color = document::kInk;
+  truth.line = document::LineStyle::kDashed;
   chart.series.push_back(std::move(truth));
   chart.notes.push_back("one scale without snapping and with it");
-  page::show_most_telling(chart, std::move(weights));
+  document::show_most_telling(chart, std::move(weights));
   return chart;
 }
 
@@ -213,8 +215,8 @@ std::string summarize_flicker(const records::FlickerMotion& motion) {
                      most->flicker > least->flicker ? "; least " + name(least) : "");
 }
 
-page::Section make_flicker_answer(const records::FlickerRecord& record) {
-  page::Table table{"Flicker, without snapping and with it", {{"motion"}, {}}};
+document::Section make_flicker_answer(const records::FlickerRecord& record) {
+  document::Table table{"Flicker, without snapping and with it", {{"motion"}, {}}};
   std::vector<std::string> sentences;
   for (const records::FlickerMotion& motion : record.motions) {
     sentences.push_back(summarize_flicker(motion));
@@ -225,20 +227,20 @@ page::Section make_flicker_answer(const records::FlickerRecord& record) {
   }
   return {"answer",
           "",
-          {page::Paragraph{fmt::format("{}", fmt::join(sentences, " "))}, std::move(table),
-           page::Paragraph{kFlickerNote, true}}};
+          {document::Paragraph{fmt::format("{}", fmt::join(sentences, " "))}, std::move(table),
+           document::Paragraph{kFlickerNote, true}}};
 }
 
-page::Page make_flicker_page(const records::FlickerRecord& record) {
-  page::Page page{"Flicker: filters in motion against the truth in motion", {make_flicker_answer(record)}, {}};
+document::Page make_flicker_page(const records::FlickerRecord& record) {
+  document::Page page{"Flicker: filters in motion against the truth in motion", {make_flicker_answer(record)}, {}};
   for (const records::FlickerMotion& motion : record.motions)
     page.sections.push_back(make_motion_section(motion, record.frames));
   page.sections.push_back(
       {"data",
        "",
-       {page::Details{"Settings, terms and data",
-                      {page::Facts{list_flicker_facts(record)}, page::Sentences{{}, define_flicker(record)},
-                       link_data({"flicker.json", "flicker.csv"})}}}});
+       {document::Details{"Settings, terms and data",
+                          {document::Facts{list_flicker_facts(record)}, document::Sentences{{}, define_flicker(record)},
+                           link_data({"flicker.json", "flicker.csv"})}}}});
   return page;
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/records/flicker_record.h"
 
 namespace shadowbench::pages {
@@ -22,9 +22,9 @@ records::TextTable make_flicker_table(const records::FlickerMotion& motion);
 
 /// Draws the mean change of visibility over the steps: a line per filter and a dashed one for the truth. The charts of
 /// a motion share their scales.
-page::Chart make_flicker_chart(const records::FlickerMotion& motion, const records::FlickerVariant& variant);
+document::Chart make_flicker_chart(const records::FlickerMotion& motion, const records::FlickerVariant& variant);
 
 /// Makes the page of `shadowbench flicker`.
-page::Page make_flicker_page(const records::FlickerRecord& record);
+document::Page make_flicker_page(const records::FlickerRecord& record);
 
 }  // namespace shadowbench::pages

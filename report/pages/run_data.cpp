@@ -13,8 +13,8 @@
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
+#include "report/document/chart.h"
 #include "report/files/file_name.h"
-#include "report/page/chart.h"
 #include "report/records/absence.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
@@ -212,8 +212,8 @@ json describe_cost(const analysis::Configuration& configuration, const analysis:
 json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters,
                         const std::vector<analysis::Place>& places, const analysis::CostKind& frame) {
   const records::CellRecord& cell = *configuration.cells.front();
-  const page::ChartStyle style =
-      page::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
+  const document::ChartStyle style =
+      document::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
   return {{"label", configuration.name},
           {"full", configuration.label},
           {"filter", cell.filter},

@@ -55,8 +55,8 @@ OptionalPath find_path(const analysis::CellGroup& group, ImageMember member) {
 }
 
 /// One picture of every cell that has its numbers' breaks drawn.
-page::Gallery make_stability_gallery(const analysis::CellGroup& group) {
-  page::Gallery gallery{"Where numbers break: overflow, negative variance, 16 bits, and bounds", {}, true};
+document::Gallery make_stability_gallery(const analysis::CellGroup& group) {
+  document::Gallery gallery{"Where numbers break: overflow, negative variance, 16 bits, and bounds", {}, true};
   for (const records::CellRecord& cell : group.cells)
     if (cell.images.stability)
       gallery.pictures.push_back({*cell.images.stability,
@@ -64,15 +64,15 @@ page::Gallery make_stability_gallery(const analysis::CellGroup& group) {
   return gallery;
 }
 
-page::Gallery make_lights_gallery(const analysis::CellGroup& group) {
-  page::Gallery gallery{"All lights of the scene at once", {}};
+document::Gallery make_lights_gallery(const analysis::CellGroup& group) {
+  document::Gallery gallery{"All lights of the scene at once", {}};
   if (const auto path = find_path(group, &records::ImagesRecord::all_lights))
     gallery.pictures.push_back({*path, "the truth and each filter, with what a frame costs whose lights all move"});
   return gallery;
 }
 
-page::Gallery make_map_gallery(const analysis::CellGroup& group) {
-  page::Gallery gallery{"The shadow map: its depths, and where its texels fall", {}};
+document::Gallery make_map_gallery(const analysis::CellGroup& group) {
+  document::Gallery gallery{"The shadow map: its depths, and where its texels fall", {}};
   const std::pair<ImageMember, const char*> pictures[] = {
       {&records::ImagesRecord::depth_map, "depth map, as the light sees the scene, with its histogram"},
       {&records::ImagesRecord::texel_density, "how many map texels fall on each pixel"},
@@ -87,12 +87,12 @@ std::string css_color(const std::array<float, 3>& color) {
   return fmt::format("#{:02x}{:02x}{:02x}", code(color[0]), code(color[1]), code(color[2]));
 }
 
-page::Bars::Row make_bar_row(const analysis::CellGroup& group, const records::CellRecord& cell) {
+document::Bars::Row make_bar_row(const analysis::CellGroup& group, const records::CellRecord& cell) {
   const std::string head =
       fmt::format("{}: RMSE {}", analysis::label_cell(group, cell), records::format_number(*cell.error.rmse));
   const auto bar = images::make_attribution_bar(cell);
   if (!bar) return {fmt::format("{} · no attribution: {}", head, records::explain_no_attribution(cell)), {}};
-  page::Bars::Row row{
+  document::Bars::Row row{
       fmt::format("{} · {}", head, records::describe_shares(*records::list_shares(cell))), {}, bar->net()};
   for (const images::BarSegment& segment : images::stack_segments(*bar))
     row.segments.push_back({segment.begin, segment.end, css_color(records::list_error_parts()[segment.part].color)});
@@ -100,13 +100,13 @@ page::Bars::Row make_bar_row(const analysis::CellGroup& group, const records::Ce
 }
 
 /// Where the error comes from; nothing where no cell of the group has an attribution.
-std::optional<page::Bars> make_bars(const analysis::CellGroup& group) {
+std::optional<document::Bars> make_bars(const analysis::CellGroup& group) {
   std::vector<images::AttributionBar> drawn;
   for (const records::CellRecord& cell : group.cells)
     if (const auto bar = images::make_attribution_bar(cell)) drawn.push_back(*bar);
   if (drawn.empty()) return std::nullopt;
   const images::BarScale scale = images::choose_bar_scale(drawn);
-  page::Bars bars;
+  document::Bars bars;
   bars.title = fmt::format(
       "Where the error comes from: each part's share times RMSE. Parts left of the grey line offset the others. The "
       "black tick is the RMSE, the full width {}.",
@@ -126,40 +126,41 @@ std::string describe_times(const records::RunRecord& run, const std::vector<anal
 }
 
 /// Tables and bars of one scene.
-void add_numbers(std::vector<page::Block>& blocks, const records::RunRecord& run, const analysis::CellGroup& group,
+void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord& run, const analysis::CellGroup& group,
                  const std::vector<analysis::MachineCount>& machines) {
-  blocks.emplace_back(page::Paragraph{records::describe_settings(group.cells.front()), true});
+  blocks.emplace_back(document::Paragraph{records::describe_settings(group.cells.front()), true});
   blocks.emplace_back(
-      page::Table{"What it costs: " + describe_times(run, machines), make_cost_table(group, run.gl, machines)});
+      document::Table{"What it costs: " + describe_times(run, machines), make_cost_table(group, run.gl, machines)});
   blocks.emplace_back(
-      page::Table{"How wrong it is, and why: errors of visibility in [0,1]", make_accuracy_table(group)});
+      document::Table{"How wrong it is, and why: errors of visibility in [0,1]", make_accuracy_table(group)});
   if (const auto stability = analysis::describe_stability(group); !stability.empty())
-    blocks.emplace_back(page::Sentences{{}, stability});
+    blocks.emplace_back(document::Sentences{{}, stability});
   if (auto bars = make_bars(group)) blocks.emplace_back(std::move(*bars));
 }
 
-void add_pictures(std::vector<page::Block>& blocks, const analysis::CellGroup& group) {
+void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGroup& group) {
   if (const auto grid = find_path(group, &records::ImagesRecord::grid))
-    blocks.emplace_back(page::Gallery{{}, {{*grid, "all filters on " + group.scene + ", full size behind the link"}}});
-  for (page::Gallery& gallery :
+    blocks.emplace_back(
+        document::Gallery{{}, {{*grid, "all filters on " + group.scene + ", full size behind the link"}}});
+  for (document::Gallery& gallery :
        std::array{make_lights_gallery(group), make_stability_gallery(group), make_map_gallery(group)})
     if (!gallery.pictures.empty()) blocks.emplace_back(std::move(gallery));
   if (const auto exr = find_path(group, &records::ImagesRecord::exr))
-    blocks.emplace_back(page::Links{"The float images of all filters:", {{*exr, *exr}}});
+    blocks.emplace_back(document::Links{"The float images of all filters:", {{*exr, *exr}}});
 }
 
 /// What there is of each scene and map, folded away; of a large run its pictures alone.
-void add_groups(std::vector<page::Block>& blocks, const records::RunRecord& run,
+void add_groups(std::vector<document::Block>& blocks, const records::RunRecord& run,
                 const std::vector<records::CellRecord>& cells) {
   const bool is_large = cells.size() > kMostCellsInDetail;
   if (is_large)
-    blocks.emplace_back(page::Paragraph{fmt::format(
+    blocks.emplace_back(document::Paragraph{fmt::format(
         "The run has {} cells: of more than {}, tables and bars of each scene are left out. timings.csv and "
         "accuracy.csv have all numbers.",
         cells.size(), kMostCellsInDetail)});
   const std::vector<analysis::MachineCount> machines = analysis::count_machines(cells);
   for (const analysis::CellGroup& group : analysis::group_cells(cells)) {
-    page::Details details{head_group(run, cells, group.cells.front()), {}};
+    document::Details details{head_group(run, cells, group.cells.front()), {}};
     if (!is_large) add_numbers(details.blocks, run, group, machines);
     add_pictures(details.blocks, group);
     if (!details.blocks.empty()) blocks.emplace_back(std::move(details));
@@ -167,7 +168,7 @@ void add_groups(std::vector<page::Block>& blocks, const records::RunRecord& run,
 }
 
 /// RMSE of scenes by filters: what the script's table begins with.
-page::Section make_table_section(const std::vector<records::CellRecord>& cells) {
+document::Section make_table_section(const std::vector<records::CellRecord>& cells) {
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   records::TextTable table;
@@ -182,70 +183,72 @@ page::Section make_table_section(const std::vector<records::CellRecord>& cells) 
       row[2 + static_cast<std::size_t>(place)] = records::format_number(cell->error.rmse);
     }
   }
-  return {"table", "All numbers", {page::Mount{"numbers", {page::Table{"RMSE to the area truth", std::move(table)}}}}};
+  return {"table",
+          "All numbers",
+          {document::Mount{"numbers", {document::Table{"RMSE to the area truth", std::move(table)}}}}};
 }
 
 /// Facts and estimates for each GPU that the run names; nothing where it names none.
-std::optional<page::Section> make_gpu_section(const records::RunRecord& run,
-                                              const std::vector<records::CellRecord>& cells) {
+std::optional<document::Section> make_gpu_section(const records::RunRecord& run,
+                                                  const std::vector<records::CellRecord>& cells) {
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<std::string> gpus = analysis::list_gpus(all);
   if (gpus.empty()) return std::nullopt;
   const std::vector<analysis::Configuration> configurations = analysis::list_configurations(all);
-  page::Section section{"gpus", "Costs on GPUs that are not here", {}};
-  page::Sentences sentences;
-  page::Details tables{"Estimates and facts of every filter", {}};
+  document::Section section{"gpus", "Costs on GPUs that are not here", {}};
+  document::Sentences sentences;
+  document::Details tables{"Estimates and facts of every filter", {}};
   for (const std::string& gpu : gpus) {
     const auto costs = analysis::list_gpu_costs(configurations, gpu);
     for (std::string& each : analysis::describe_gpu(gpu, costs, run.gl)) sentences.items.push_back(std::move(each));
     if (records::TextTable table = analysis::make_gpu_table(costs); !table.rows.empty())
-      tables.blocks.emplace_back(page::Table{
+      tables.blocks.emplace_back(document::Table{
           gpu + ": estimates for a million receivers and one map, and facts of the lookup", std::move(table)});
   }
   if (!sentences.items.empty()) section.blocks.emplace_back(std::move(sentences));
-  section.blocks.emplace_back(page::Paragraph{kGpuNote, true});
+  section.blocks.emplace_back(document::Paragraph{kGpuNote, true});
   if (!tables.blocks.empty()) section.blocks.emplace_back(std::move(tables));
   return section;
 }
 
-page::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
-  page::Section section{"evidence", "Behind the numbers", {}};
+document::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+  document::Section section{"evidence", "Behind the numbers", {}};
   add_groups(section.blocks, run, cells);
   if (const auto absences = analysis::count_absences(cells); !absences.empty()) {
-    page::Sentences reasons;
+    document::Sentences reasons;
     for (const auto& [reason, count] : absences)
       reasons.items.push_back(fmt::format("{} ({} of {} cells)", reason, count, cells.size()));
-    section.blocks.emplace_back(page::Details{"What is not there, and why", {reasons}});
+    section.blocks.emplace_back(document::Details{"What is not there, and why", {reasons}});
   }
   section.blocks.emplace_back(explain_columns("timings.csv", records::list_csv_columns(records::CsvTable::kTimings)));
   section.blocks.emplace_back(explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy)));
   section.blocks.emplace_back(
-      page::Details{"Machine, OpenGL, command and seed",
-                    {page::Facts{analysis::list_run_facts(run, analysis::count_machines(cells))}}});
-  section.blocks.emplace_back(page::Links{"Data:",
-                                          {{"summary.md", "summary.md"},
-                                           {"timings.csv", "timings.csv"},
-                                           {"accuracy.csv", "accuracy.csv"},
-                                           {"results.json", "results.json"},
-                                           {"results.schema.json", "its schema"}}});
+      document::Details{"Machine, OpenGL, command and seed",
+                        {document::Facts{analysis::list_run_facts(run, analysis::count_machines(cells))}}});
+  section.blocks.emplace_back(document::Links{"Data:",
+                                              {{"summary.md", "summary.md"},
+                                               {"timings.csv", "timings.csv"},
+                                               {"accuracy.csv", "accuracy.csv"},
+                                               {"results.json", "results.json"},
+                                               {"results.schema.json", "its schema"}}});
   return section;
 }
 
 }  // namespace
 
-page::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& measured,
-                         const std::optional<Trade>& trade) {
+document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& measured,
+                             const std::optional<Trade>& trade) {
   const auto withheld = analysis::withhold_mixed_times(measured);
   const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
   const analysis::AdviceRequest request = choose_request(cells);
-  page::Page page{"Shadow filters compared", {make_answer_section(run, cells, request)}, {}};
-  const auto add = [&](page::Section section) { page.sections.push_back(std::move(section)); };
+  document::Page page{"Shadow filters compared", {make_answer_section(run, cells, request)}, {}};
+  const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
   if (const auto surprises = analysis::list_surprises(cells); !surprises.empty())
-    add({"surprises", "What surprises", {page::Sentences{{}, surprises}}});
-  if (!run.warnings.empty()) add({"warnings", "Warnings", {page::Sentences{{}, run.warnings}}, true});
+    add({"surprises", "What surprises", {document::Sentences{{}, surprises}}});
+  if (!run.warnings.empty()) add({"warnings", "Warnings", {document::Sentences{{}, run.warnings}}, true});
   if (!cells.empty()) {
     add(make_table_section(cells));
-    add({"viewer", "Look closer", {page::Mount{"viewer", {}}}});
+    add({"viewer", "Look closer", {document::Mount{"viewer", {}}}});
     page.data = make_run_data(run, cells, request);
   }
   if (trade) add(make_trade_section(run, cells, *trade));

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/pages/trade_section.h"
 #include "report/records/records.h"
 
@@ -13,7 +13,7 @@ namespace shadowbench::pages {
 /// trade; folded away the tables and bars of each scene, what is absent and why, the columns of the CSV files, and the
 /// machine. Where several kinds of machine measured the cells, milliseconds stand in the tables of each scene alone,
 /// and everything else has ratios to `none`; see withhold_mixed_times().
-page::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                         const std::optional<Trade>& trade);
+document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                             const std::optional<Trade>& trade);
 
 }  // namespace shadowbench::pages

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "report/page/markdown.h"
+#include "report/document/markdown.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
 
@@ -67,9 +67,9 @@ struct Standing {
   double least = 1.0, most = 0.0;  ///< of what measure_reach() measures
   bool breaks = false;
 
-  page::Grade grade() const {
-    if (breaks || least < kEarly) return page::Grade::kBad;
-    return least < 1.0 ? page::Grade::kNear : page::Grade::kGood;
+  document::Grade grade() const {
+    if (breaks || least < kEarly) return document::Grade::kBad;
+    return least < 1.0 ? document::Grade::kNear : document::Grade::kGood;
   }
   std::string describe() const {
     return fmt::format("{:.0f}{} %", 100.0 * least, most > least ? fmt::format(" .. {:.0f}", 100.0 * most) : "");
@@ -108,8 +108,8 @@ std::string summarize_reach(const StressRecord& record, const std::vector<std::s
                          : "");
 }
 
-page::Section make_stress_answer(const StressRecord& record) {
-  page::Table table{"How much of each axis' range holds", {{"axis"}, {}}};
+document::Section make_stress_answer(const StressRecord& record) {
+  document::Table table{"How much of each axis' range holds", {{"axis"}, {}}};
   for (const StressAxis& axis : record.axes) {
     const auto standings = find_standings(axis);
     for (const StressCase& item : axis.cases) {
@@ -123,46 +123,49 @@ page::Section make_stress_answer(const StressRecord& record) {
   std::erase(filters, kNoFilter);
   std::ptrdiff_t failed = 0, all = 0;
   for (const auto& row : table.grades) {
-    failed += std::ranges::count(row, page::Grade::kBad);
-    all += std::ssize(row) - std::ranges::count(row, page::Grade::kNone);
+    failed += std::ranges::count(row, document::Grade::kBad);
+    all += std::ssize(row) - std::ranges::count(row, document::Grade::kNone);
   }
   const std::string answer =
       fmt::format("{}{} of {} cells fail; limits that are not where theory puts them, and that nothing explains: {}.",
                   summarize_reach(record, filters), failed, all, records::count_disagreements(record));
-  return {"answer", "", {page::Paragraph{answer}, std::move(table), page::Paragraph{kStressNote, true}}};
+  return {"answer", "", {document::Paragraph{answer}, std::move(table), document::Paragraph{kStressNote, true}}};
 }
 
 bool is_shown(const StressAxis& axis, const std::optional<double>& measured) {
   return measured && (!axis.measured_log || *measured >= kLeastShown);
 }
 
-page::ChartAxis choose_value_axis(const StressAxis& axis) {
-  if (axis.log) return page::choose_log_axis({axis.range.low, axis.range.high}, {});
-  const page::ChartAxis chosen = page::choose_axis({axis.range.low, axis.range.high}, {}, page::TickKind::kNumber);
+document::ChartAxis choose_value_axis(const StressAxis& axis) {
+  if (axis.log) return document::choose_log_axis({axis.range.low, axis.range.high}, {});
+  const document::ChartAxis chosen =
+      document::choose_axis({axis.range.low, axis.range.high}, {}, document::TickKind::kNumber);
   // choose_axis() prefers a logarithm for what is positive
-  return chosen.log ? page::choose_axis({0.0, axis.range.high}, {}, page::TickKind::kNumber) : chosen;
+  return chosen.log ? document::choose_axis({0.0, axis.range.high}, {}, document::TickKind::kNumber) : chosen;
 }
 
-page::ChartAxis choose_measured_axis(const StressAxis& axis) {
+document::ChartAxis choose_measured_axis(const StressAxis& axis) {
   std::vector<double> values = {axis.bound};
   for (const StressCase& item : axis.cases) {
     for (const records::StressSample& sample : item.samples)
       if (is_shown(axis, sample.measured)) values.push_back(*sample.measured);
   }
-  return axis.measured_log ? page::choose_log_axis(values, {}) : page::choose_axis(values, {}, page::TickKind::kNumber);
+  return axis.measured_log ? document::choose_log_axis(values, {})
+                           : document::choose_axis(values, {}, document::TickKind::kNumber);
 }
 
-void add_case(page::Chart& chart, const StressAxis& axis, const StressCase& item, const page::ChartStyle& style) {
+void add_case(document::Chart& chart, const StressAxis& axis, const StressCase& item,
+              const document::ChartStyle& style) {
   const bool model = item.level == "model";  // a dashed line beside the GL's, whose points would hide it
-  page::ChartSeries broken{.title = {}, .color = style.color, .mark = style.mark, .points = {}}, line = broken;
+  document::ChartSeries broken{.title = {}, .color = style.color, .mark = style.mark, .points = {}}, line = broken;
   line.title = label_of(item);
-  line.mark = model ? page::Mark::kNone : style.mark;
+  line.mark = model ? document::Mark::kNone : style.mark;
   line.filled = false;
-  line.line = model ? page::LineStyle::kDashed : page::LineStyle::kSolid;
+  line.line = model ? document::LineStyle::kDashed : document::LineStyle::kSolid;
   for (const records::StressSample& sample : item.samples) {
     const bool shown = is_shown(axis, sample.measured);
     if (!shown && sample.verdict != StressVerdict::kBroken) continue;
-    page::ChartPoint point = page::exact_point(sample.value, shown ? *sample.measured : chart.y.high);
+    document::ChartPoint point = document::exact_point(sample.value, shown ? *sample.measured : chart.y.high);
     point.details = {line.title, fmt::format("{} {:.4g}: {}", axis.quantity, sample.value, name_of(sample.verdict)),
                      fmt::format("{}: {}", axis.measured, format_value(sample.measured, "nothing finite"))};
     if (!sample.why.empty()) point.details.push_back(sample.why);
@@ -174,7 +177,7 @@ void add_case(page::Chart& chart, const StressAxis& axis, const StressCase& item
 }
 
 /// Adds a vertical line for each theoretical limit within the chart; equal limits are one line.
-void add_theory(page::Chart& chart, const StressAxis& axis) {
+void add_theory(document::Chart& chart, const StressAxis& axis) {
   std::map<std::string, double> onsets;  // by what the label says
   bool says_none = false;
   for (const auto& [item, limit] : list_limits(axis)) {
@@ -182,38 +185,39 @@ void add_theory(page::Chart& chart, const StressAxis& axis) {
     if (limit->onset && *limit->onset >= chart.x.low && *limit->onset <= chart.x.high)
       onsets.emplace(fmt::format("{:.4g}", *limit->onset), *limit->onset);
   }
-  page::ChartSeries lines{
-      .title = "theoretical limits", .color = page::kInk, .line = page::LineStyle::kTies, .points = {}};
+  document::ChartSeries lines{
+      .title = "theoretical limits", .color = document::kInk, .line = document::LineStyle::kTies, .points = {}};
   for (const auto& [label, onset] : onsets)
-    for (const double end : {chart.y.low, chart.y.high}) lines.points.push_back(page::exact_point(onset, end));
+    for (const double end : {chart.y.low, chart.y.high}) lines.points.push_back(document::exact_point(onset, end));
   if (!onsets.empty()) chart.series.push_back(std::move(lines));
   if (says_none) chart.notes.push_back("some cases have no theoretical limit");
 }
 
-void add_sentences(page::Details& details, const char* lead, std::vector<std::string> sentences) {
-  if (!sentences.empty()) details.blocks.emplace_back(page::Sentences{lead, std::move(sentences)});
+void add_sentences(document::Details& details, const char* lead, std::vector<std::string> sentences) {
+  if (!sentences.empty()) details.blocks.emplace_back(document::Sentences{lead, std::move(sentences)});
 }
 
-page::Section make_axis_section(const StressAxis& axis) {
-  page::Section section{axis.id, fmt::format("{}: {}", axis.id, axis.title), {}};
-  if (std::optional<page::Chart> chart = make_stress_chart(axis)) section.blocks.emplace_back(std::move(*chart));
+document::Section make_axis_section(const StressAxis& axis) {
+  document::Section section{axis.id, fmt::format("{}: {}", axis.id, axis.title), {}};
+  if (std::optional<document::Chart> chart = make_stress_chart(axis)) section.blocks.emplace_back(std::move(*chart));
   const std::string about =
       fmt::format("Over the {}, {:g} .. {:g}. Measured: {}; degraded where it is over {:g}. Broken: {}.",
                   with_unit(axis.quantity, axis.unit), axis.range.low, axis.range.high,
                   with_unit(axis.measured, axis.measured_unit), axis.bound, axis.broken_when);
-  page::Details details{
+  document::Details details{
       "Every variant, and why",
-      {page::Paragraph{about, true}, page::Table{"What is safe, and where it ends", make_case_table(axis)}}};
+      {document::Paragraph{about, true}, document::Table{"What is safe, and where it ends", make_case_table(axis)}}};
   std::vector<std::string> notes;
   for (const StressCase& item : axis.cases)
     for (const std::string& note : item.notes) notes.push_back(fmt::format("{}: {}.", label_of(item), note));
   add_sentences(details, "Not what theory says, and why:", describe_stress_limits(axis, StressAgreement::kExplained));
   add_sentences(details, "Also seen:", std::move(notes));
   for (const records::StressExhibit& exhibit : axis.exhibits) {
-    details.blocks.insert(details.blocks.end(), {page::Heading{exhibit.title}, page::Sentences{{}, exhibit.sentences}});
-    if (exhibit.table) details.blocks.emplace_back(page::Table{exhibit.title, *exhibit.table});
+    details.blocks.insert(details.blocks.end(),
+                          {document::Heading{exhibit.title}, document::Sentences{{}, exhibit.sentences}});
+    if (exhibit.table) details.blocks.emplace_back(document::Table{exhibit.title, *exhibit.table});
     for (const records::StressExhibit::Picture& picture : exhibit.pictures)
-      details.blocks.emplace_back(page::Gallery{{}, {{picture.file, picture.caption}}});
+      details.blocks.emplace_back(document::Gallery{{}, {{picture.file, picture.caption}}});
   }
   section.blocks.emplace_back(std::move(details));
   return section;
@@ -283,8 +287,8 @@ std::vector<std::string> describe_stress_limits(const StressAxis& axis, StressAg
   return sentences;
 }
 
-std::optional<page::Chart> make_stress_chart(const StressAxis& axis) {
-  page::Chart chart;
+std::optional<document::Chart> make_stress_chart(const StressAxis& axis) {
+  document::Chart chart;
   chart.id = "stress." + axis.id;
   chart.title = axis.title;
   chart.x_name = with_unit(axis.quantity, axis.unit);
@@ -299,22 +303,22 @@ std::optional<page::Chart> make_stress_chart(const StressAxis& axis) {
     const double hidden_by = item.level == "model" ? 1.0 : 0.0;  // its GL's curve, which it follows
     weights.emplace_back(reference ? 1.0 : -measure_reach(axis, item) - hidden_by, label_of(item));
     const auto style = styles.emplace(item.filter + ": " + item.variant, styles.size()).first;
-    add_case(chart, axis, item, page::style_of(style->second));
+    add_case(chart, axis, item, document::style_of(style->second));
   }
   chart.series.push_back(
       {.title = fmt::format("bound, {:g}", axis.bound),
        .color = "#8a8f98",
-       .line = page::LineStyle::kDashed,
-       .points = {page::exact_point(chart.x.low, axis.bound), page::exact_point(chart.x.high, axis.bound)}});
+       .line = document::LineStyle::kDashed,
+       .points = {document::exact_point(chart.x.low, axis.bound), document::exact_point(chart.x.high, axis.bound)}});
   add_theory(chart, axis);
   chart.notes.push_back("filled: broken, at the upper edge where nothing finite was measured");
   if (weights.empty()) return std::nullopt;
-  page::show_most_telling(chart, std::move(weights));
+  document::show_most_telling(chart, std::move(weights));
   return chart;
 }
 
 std::string make_limit_text(const StressRecord& record) {
-  std::string text = page::write_markdown_table(make_limit_table(record));
+  std::string text = document::write_markdown_table(make_limit_table(record));
   const std::vector<std::string> unseen = describe_out_of_sight(record);
   if (unseen.empty()) return text;
   text += fmt::format("{}\n\n", kUnseen);
@@ -322,21 +326,22 @@ std::string make_limit_text(const StressRecord& record) {
   return text + "\n";
 }
 
-page::Page make_stress_page(const StressRecord& record) {
-  page::Page page{"Where filters break", {make_stress_answer(record)}, {}};
+document::Page make_stress_page(const StressRecord& record) {
+  document::Page page{"Where filters break", {make_stress_answer(record)}, {}};
   std::vector<std::string> warnings;
   for (const StressAxis& axis : record.axes)
     for (const std::string& sentence : describe_stress_limits(axis, StressAgreement::kDisagrees))
       warnings.push_back(axis.id + ": " + sentence);
   if (!warnings.empty())
-    page.sections.push_back({"warnings", "Warnings", {page::Sentences{{}, std::move(warnings)}}, true});
+    page.sections.push_back({"warnings", "Warnings", {document::Sentences{{}, std::move(warnings)}}, true});
   for (const StressAxis& axis : record.axes) page.sections.push_back(make_axis_section(axis));
-  page::Details limits{"Measured against theoretical limits",
-                       {page::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)}}};
+  document::Details limits{
+      "Measured against theoretical limits",
+      {document::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)}}};
   add_sentences(limits, kUnseen, describe_out_of_sight(record));
-  page::Details settings{"Settings and data",
-                         {page::Facts{list_provenance(record)}, page::Sentences{"Filters:", record.filters},
-                          link_data({"stress.json", "stress.csv"})}};
+  document::Details settings{"Settings and data",
+                             {document::Facts{list_provenance(record)}, document::Sentences{"Filters:", record.filters},
+                              link_data({"stress.json", "stress.csv"})}};
   page.sections.push_back({"data", "", {std::move(limits), std::move(settings)}});
   return page;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/records/stress_record.h"
 
 namespace shadowbench::pages {
@@ -29,9 +29,9 @@ std::string make_limit_text(const records::StressRecord& record);
 /// model's dashed; broken points filled, at the upper edge where nothing finite was measured; the bound dashed,
 /// and the theoretical limits dotted. Zeros are left out where the scale is logarithmic. Nothing where
 /// nothing was observed.
-std::optional<page::Chart> make_stress_chart(const records::StressAxis& axis);
+std::optional<document::Chart> make_stress_chart(const records::StressAxis& axis);
 
 /// Makes the page of `shadowbench stress`.
-page::Page make_stress_page(const records::StressRecord& record);
+document::Page make_stress_page(const records::StressRecord& record);
 
 }  // namespace shadowbench::pages

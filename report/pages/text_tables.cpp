@@ -134,8 +134,8 @@ records::TextTable make_accuracy_table(const analysis::CellGroup& group) {
   return table;
 }
 
-page::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns) {
-  page::Facts facts;
+document::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns) {
+  document::Facts facts;
   for (const records::CsvColumn& column : columns) facts.items.push_back({column.name, column.meaning});
   return {"Columns of " + file, {facts}};
 }

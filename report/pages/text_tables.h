@@ -5,7 +5,7 @@
 
 #include "report/analysis/cell_group.h"
 #include "report/analysis/machines/machine_kinds.h"
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/records/csv_tables.h"
 #include "report/records/text_table.h"
 
@@ -20,6 +20,6 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
 records::TextTable make_accuracy_table(const analysis::CellGroup& group);
 
 /// What the columns of a CSV file mean, for readers who unfold it.
-page::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns);
+document::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns);
 
 }  // namespace shadowbench::pages

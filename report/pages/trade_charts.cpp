@@ -14,10 +14,10 @@ namespace {
 
 using Configuration = analysis::TradeConfiguration;
 using analysis::LightMotion;
-using page::ChartSeries;
+using document::ChartSeries;
 
 /// An axis over all configurations of a scope that have the measure.
-page::ChartAxis choose_measure_axis(const analysis::TradeScope& scope, const auto& values_of, bool bytes) {
+document::ChartAxis choose_measure_axis(const analysis::TradeScope& scope, const auto& values_of, bool bytes) {
   std::vector<double> values, ends;
   for (const Configuration& configuration : scope.configurations) {
     const analysis::Measured& measured = values_of(configuration);
@@ -25,16 +25,16 @@ page::ChartAxis choose_measure_axis(const analysis::TradeScope& scope, const aut
     values.push_back(measured.estimate->value);
     ends.insert(ends.end(), {measured.estimate->low, measured.estimate->high});
   }
-  return page::choose_axis(values, ends, bytes ? page::TickKind::kBytes : page::TickKind::kNumber);
+  return document::choose_axis(values, ends, bytes ? document::TickKind::kBytes : document::TickKind::kNumber);
 }
 
-page::ChartStyle style_among(const std::vector<std::string>& filters, const std::string& filter) {
-  return page::style_of(static_cast<std::size_t>(std::ranges::find(filters, filter) - filters.begin()));
+document::ChartStyle style_among(const std::vector<std::string>& filters, const std::string& filter) {
+  return document::style_of(static_cast<std::size_t>(std::ranges::find(filters, filter) - filters.begin()));
 }
 
 analysis::Estimate exactly(double value) { return {value, value, value}; }
 
-ChartSeries start_series(std::string title, const page::ChartStyle& style) {
+ChartSeries start_series(std::string title, const document::ChartStyle& style) {
   ChartSeries series;
   series.title = std::move(title);
   series.color = style.color;
@@ -43,7 +43,7 @@ ChartSeries start_series(std::string title, const page::ChartStyle& style) {
   return series;
 }
 
-ChartSeries start_line(std::string title, const char* color, page::LineStyle line) {
+ChartSeries start_line(std::string title, const char* color, document::LineStyle line) {
   ChartSeries series;
   series.title = std::move(title);
   series.color = color;
@@ -64,17 +64,17 @@ class FrontChart {
              const std::vector<records::CellRecord>& cells, const records::GlRecord& gl)
       : scope_(scope), front_(front), cells_(cells), gl_(gl) {}
 
-  page::Chart make(const std::vector<std::string>& filters) const {
+  document::Chart make(const std::vector<std::string>& filters) const {
     const auto cost_of = [this](const Configuration& each) -> const auto& { return each.costs[front_.cost]; };
     const auto error_of = [this](const Configuration& each) -> const auto& { return each.errors[front_.error]; };
-    page::Chart chart{fmt::format("{}.{}.{}", scope_.id, error_.id, cost_.id),
-                      scope_.title,
-                      analysis::name_axis(cost_, gl_),
-                      analysis::name_axis(error_, gl_),
-                      choose_measure_axis(scope_, cost_of, cost_.is_bytes),
-                      choose_measure_axis(scope_, error_of, false),
-                      {},
-                      {}};
+    document::Chart chart{fmt::format("{}.{}.{}", scope_.id, error_.id, cost_.id),
+                          scope_.title,
+                          analysis::name_axis(cost_, gl_),
+                          analysis::name_axis(error_, gl_),
+                          choose_measure_axis(scope_, cost_of, cost_.is_bytes),
+                          choose_measure_axis(scope_, error_of, false),
+                          {},
+                          {}};
     add_fronts(chart);
     for (const std::string& filter : filters) add_filter(chart.series, filter, style_among(filters, filter));
     return chart;
@@ -86,7 +86,7 @@ class FrontChart {
   }
 
   /// A line through each front that has more than a point.
-  void add_fronts(page::Chart& chart) const {
+  void add_fronts(document::Chart& chart) const {
     for (auto first = front_.members.begin(); first != front_.members.end();) {
       const auto group = front_.points[*first].group;
       const auto last = std::find_if(first, front_.members.end(),
@@ -100,14 +100,14 @@ class FrontChart {
     const Configuration& configuration = configuration_of(members.front());
     const std::string name(analysis::name_class(configuration.width_class));
     const std::string map = cost_.is_ratio ? fmt::format(", map {}", configuration.map_size) : std::string();
-    ChartSeries line = start_line(fmt::format("front, {}{}", name, map), page::kInk, page::LineStyle::kSteps);
+    ChartSeries line = start_line(fmt::format("front, {}{}", name, map), document::kInk, document::LineStyle::kSteps);
     for (const std::size_t member : members) line.points.push_back(make_corner(member, configuration));
     return line;
   }
 
   /// A point of a line, of a configuration's class of width.
-  page::ChartPoint make_corner(std::size_t point, const Configuration& configuration) const {
-    page::ChartPoint made{front_.points[point].cost, front_.points[point].error};
+  document::ChartPoint make_corner(std::size_t point, const Configuration& configuration) const {
+    document::ChartPoint made{front_.points[point].cost, front_.points[point].error};
     made.group = analysis::name_class(configuration.width_class);
     return made;
   }
@@ -122,10 +122,10 @@ class FrontChart {
                : "beaten by " + leader;
   }
 
-  page::ChartPoint make_point(std::size_t point) const {
+  document::ChartPoint make_point(std::size_t point) const {
     const Configuration& configuration = configuration_of(point);
     const analysis::FrontPoint& values = front_.points[point];
-    page::ChartPoint made = make_corner(point, configuration);
+    document::ChartPoint made = make_corner(point, configuration);
     made.label = configuration.label;
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
@@ -142,9 +142,10 @@ class FrontChart {
 
   /// A filter's cells: on a front; tied, with dotted lines to what they are tied with, or compared with nothing;
   /// beaten.
-  void add_filter(std::vector<ChartSeries>& series, const std::string& filter, const page::ChartStyle& style) const {
+  void add_filter(std::vector<ChartSeries>& series, const std::string& filter,
+                  const document::ChartStyle& style) const {
     ChartSeries members = start_series(filter, style), tied = start_series({}, style), beaten = start_series({}, style);
-    ChartSeries ties = start_line({}, style.color, page::LineStyle::kTies);
+    ChartSeries ties = start_line({}, style.color, document::LineStyle::kTies);
     tied.filled = beaten.filled = false;
     beaten.faint = true;
     for (std::size_t i = 0; i < front_.points.size(); ++i) {
@@ -166,8 +167,8 @@ class FrontChart {
   }
 
   /// The line through a filter's cells from narrow to wide: its curve over the width.
-  ChartSeries make_curve(const analysis::WidthSeries& each, const page::ChartStyle& style) const {
-    ChartSeries curve = start_line({}, style.color, page::LineStyle::kSolid);
+  ChartSeries make_curve(const analysis::WidthSeries& each, const document::ChartStyle& style) const {
+    ChartSeries curve = start_line({}, style.color, document::LineStyle::kSolid);
     curve.faint = true;
     for (const std::size_t i : each.configurations) {
       const auto point = std::ranges::find(front_.configurations, i) - front_.configurations.begin();
@@ -189,15 +190,15 @@ class FrontChart {
 };
 
 /// A logarithmic axis for what series have on the y axis.
-page::ChartAxis choose_y_axis(const std::vector<ChartSeries>& series) {
+document::ChartAxis choose_y_axis(const std::vector<ChartSeries>& series) {
   std::vector<double> values, ends;
   for (const ChartSeries& each : series) {
-    for (const page::ChartPoint& point : each.points) {
+    for (const document::ChartPoint& point : each.points) {
       values.push_back(point.y.value);
       ends.insert(ends.end(), {point.y.low, point.y.high});
     }
   }
-  return page::choose_log_axis(values, ends);
+  return document::choose_log_axis(values, ends);
 }
 
 /// Time or ratio over the kernel's width or over lights, of one state of the light.
@@ -206,8 +207,8 @@ class CurveChart {
   CurveChart(const analysis::CostChart& chart, LightMotion light, const records::GlRecord& gl)
       : chart_(chart), light_(light), gl_(gl) {}
 
-  page::Chart make(const std::vector<std::string>& filters) const {
-    page::Chart made;
+  document::Chart make(const std::vector<std::string>& filters) const {
+    document::Chart made;
     const char* state = light_ == LightMotion::kStatic ? "still" : "moving";
     made.id = fmt::format("{}.map{}.{}.{}", chart_.scope_id, chart_.map_size, is_lights_ ? "lights" : "width", state);
     made.title = chart_.title;
@@ -224,9 +225,9 @@ class CurveChart {
   }
 
  private:
-  page::ChartAxis make_x_axis() const {
-    if (!is_lights_) return page::choose_axis(places_, {}, page::TickKind::kNumber);
-    page::ChartAxis axis{true, places_.front() / 1.12, places_.back() * 1.12, {}};
+  document::ChartAxis make_x_axis() const {
+    if (!is_lights_) return document::choose_axis(places_, {}, document::TickKind::kNumber);
+    document::ChartAxis axis{true, places_.front() / 1.12, places_.back() * 1.12, {}};
     for (const double count : places_) axis.ticks.push_back({count, fmt::format("{}", count)});
     return axis;
   }
@@ -240,9 +241,9 @@ class CurveChart {
                       : say_value(cost_, cost, gl_);
   }
 
-  ChartSeries make_series(const analysis::CostCurve& curve, const page::ChartStyle& style) const {
+  ChartSeries make_series(const analysis::CostCurve& curve, const document::ChartStyle& style) const {
     ChartSeries series = start_series(curve.label, style);
-    series.line = is_lights_ || curve.prefiltered ? page::LineStyle::kSolid : page::LineStyle::kDashed;
+    series.line = is_lights_ || curve.prefiltered ? document::LineStyle::kSolid : document::LineStyle::kDashed;
     for (const analysis::CurvePoint& p : curve.points)
       series.points.push_back(
           {exactly(p.at), p.cost[light_], {}, {curve.label, say_place(p.at), say_cost(p.cost[light_])}});
@@ -251,8 +252,8 @@ class CurveChart {
 
   ChartSeries make_crossings() const {
     ChartSeries series;
-    series.color = page::kInk;
-    series.mark = page::Mark::kCross;
+    series.color = document::kInk;
+    series.mark = document::Mark::kCross;
     for (const analysis::CurveComparison& each : analysis::compare_curves(chart_))
       for (const auto& [width, cost] : each.crossings[light_])
         series.points.push_back(
@@ -265,9 +266,9 @@ class CurveChart {
   }
 
   /// What grows in proportion, from the corner of the chart on.
-  ChartSeries make_proportion(const page::ChartAxis& y) const {
+  ChartSeries make_proportion(const document::ChartAxis& y) const {
     const double from = places_.front(), to = std::min(places_.back(), from * y.high / y.low);
-    ChartSeries line = start_line("in proportion", "#9aa0a8", page::LineStyle::kSolid);
+    ChartSeries line = start_line("in proportion", "#9aa0a8", document::LineStyle::kSolid);
     line.points = {{exactly(from), exactly(y.low)}, {exactly(to), exactly(y.low * to / from)}};
     return line;
   }
@@ -282,8 +283,8 @@ class CurveChart {
 };
 
 /// The maps of a filter: RMSE over what a frame costs in which the map is drawn, a curve for each fit.
-page::Chart make_map_chart(const analysis::MapFamily& family, const records::GlRecord& gl) {
-  page::Chart made;
+document::Chart make_map_chart(const analysis::MapFamily& family, const records::GlRecord& gl) {
+  document::Chart made;
   made.title = fmt::format("{} on {}", family.name, family.place);
   made.id = "maps." + files::make_file_stem(made.title);
   made.x_name = fmt::format("time of map, prefilter and lookup, ms: {}", records::describe_clock(gl));
@@ -295,23 +296,23 @@ page::Chart make_map_chart(const analysis::MapFamily& family, const records::GlR
     ends.insert(ends.end(), {cost.low, cost.high});
     auto series = std::ranges::find(made.series, map.fit, &ChartSeries::title);
     if (series == made.series.end()) {
-      made.series.push_back(start_series(map.fit, page::style_of(made.series.size())));
+      made.series.push_back(start_series(map.fit, document::style_of(made.series.size())));
       series = std::prev(made.series.end());
-      series->line = page::LineStyle::kSolid;
+      series->line = document::LineStyle::kSolid;
     }
     series->points.push_back({cost, map.rmse, fmt::format("{}", map.size)});
   }
-  made.x = page::choose_axis(costs, ends, page::TickKind::kNumber);
+  made.x = document::choose_axis(costs, ends, document::TickKind::kNumber);
   made.y = choose_y_axis(made.series);
   return made;
 }
 
 }  // namespace
 
-page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
-                                    const std::vector<records::CellRecord>& cells, const records::GlRecord& gl) {
+document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
+                                        const std::vector<records::CellRecord>& cells, const records::GlRecord& gl) {
   const std::vector<std::string> filters = analysis::list_filters(cells);
-  page::ChartChoice choice{"front", {{"scene", {}}, {"error", {}}, {"cost", {}}}, {}};
+  document::ChartChoice choice{"front", {{"scene", {}}, {"error", {}}, {"cost", {}}}, {}};
   for (const analysis::Measure& error : analysis::list_error_measures())
     choice.selectors[1].options.push_back(error.name);
   for (const analysis::Measure& cost : analysis::list_cost_measures(cells))
@@ -328,9 +329,9 @@ page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& sco
   return choice;
 }
 
-page::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
-                                    const std::vector<std::string>& filters, const records::GlRecord& gl) {
-  page::ChartChoice choice{id, {{"where", {}}, {"light", {"still: lookup", "moving: map, prefilter, lookup"}}}, {}};
+document::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
+                                        const std::vector<std::string>& filters, const records::GlRecord& gl) {
+  document::ChartChoice choice{id, {{"where", {}}, {"light", {"still: lookup", "moving: map, prefilter, lookup"}}}, {}};
   for (const analysis::CostChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
     for (const LightMotion light : analysis::kBothLights)
@@ -339,8 +340,8 @@ page::ChartChoice make_curve_choice(const std::string& id, const std::vector<ana
   return choice;
 }
 
-page::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const records::GlRecord& gl) {
-  page::ChartChoice choice{"maps", {{"filter", {}}}, {}};
+document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const records::GlRecord& gl) {
+  document::ChartChoice choice{"maps", {{"filter", {}}}, {}};
   for (const analysis::MapFamily& family : families) {
     choice.charts.push_back(make_map_chart(family, gl));
     choice.selectors[0].options.push_back(choice.charts.back().title);

@@ -6,7 +6,7 @@
 #include "report/analysis/cost_curves.h"
 #include "report/analysis/maps/map_family.h"
 #include "report/analysis/trade.h"
-#include "report/page/chart.h"
+#include "report/document/chart.h"
 
 namespace shadowbench::pages {
 
@@ -17,15 +17,15 @@ inline constexpr std::size_t kMostCellsInDetail = 2000;
 /// Draws the fronts of every scope, error and cost. Members are filled and joined; tied cells are hollow, dominated
 /// ones hollow and faint. Those, and curves over the width, are left out of a run of more than kMostCellsInDetail
 /// cells.
-page::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
-                                    const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
+document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
+                                        const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
 
 /// Draws what a frame costs over the kernel's width, crossings marked, or over lights, for every chart and state of the
 /// light; over lights both axes are logarithmic, and in proportion is the slope of the grey line.
-page::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
-                                    const std::vector<std::string>& filters, const records::GlRecord& gl);
+document::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
+                                        const std::vector<std::string>& filters, const records::GlRecord& gl);
 
 /// Draws RMSE over the cost of a frame for the maps of every family, a curve for each fit.
-page::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const records::GlRecord& gl);
+document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const records::GlRecord& gl);
 
 }  // namespace shadowbench::pages

@@ -14,7 +14,7 @@
 namespace shadowbench::pages {
 namespace {
 
-using Blocks = std::vector<page::Block>;
+using Blocks = std::vector<document::Block>;
 
 constexpr const char* kFrontsNote =
     "Lower left is better. Filled and joined: no other filter of the same class of width beats it. Hollow: a tie. "
@@ -69,26 +69,27 @@ std::vector<std::string> explain_fronts(const std::vector<analysis::Measure>& co
 
 void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                 const Trade& trade) {
-  blocks.emplace_back(page::Paragraph{kFrontsNote, true});
+  blocks.emplace_back(document::Paragraph{kFrontsNote, true});
   if (cells.size() > kMostCellsInDetail)
-    blocks.emplace_back(page::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
+    blocks.emplace_back(document::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
   blocks.emplace_back(make_front_choice(trade.scopes, cells, run.gl));
-  blocks.emplace_back(page::Details{"How to read the fronts",
-                                    {page::Sentences{{}, explain_fronts(trade.scopes.front().costs)},
-                                     page::Links{"All fronts, cell by cell:", {{"fronts.csv", "fronts.csv"}}}}});
+  blocks.emplace_back(
+      document::Details{"How to read the fronts",
+                        {document::Sentences{{}, explain_fronts(trade.scopes.front().costs)},
+                         document::Links{"All fronts, cell by cell:", {{"fronts.csv", "fronts.csv"}}}}});
   blocks.emplace_back(explain_columns("fronts.csv", list_front_columns()));
 }
 
 /// A heading, a sentence, charts, a table that is folded away, and how it is read.
-void add_finding(Blocks& blocks, const char* heading, const std::string& sentence, page::ChartChoice charts,
-                 std::vector<page::Table> tables, const char* note) {
-  blocks.emplace_back(page::Heading{heading});
-  if (!sentence.empty()) blocks.emplace_back(page::Paragraph{sentence});
+void add_finding(Blocks& blocks, const char* heading, const std::string& sentence, document::ChartChoice charts,
+                 std::vector<document::Table> tables, const char* note) {
+  blocks.emplace_back(document::Heading{heading});
+  if (!sentence.empty()) blocks.emplace_back(document::Paragraph{sentence});
   if (!charts.charts.empty()) blocks.emplace_back(std::move(charts));
-  page::Details details{"Table, and how to read it", {}};
-  for (page::Table& table : tables)
+  document::Details details{"Table, and how to read it", {}};
+  for (document::Table& table : tables)
     if (!table.table.rows.empty()) details.blocks.emplace_back(std::move(table));
-  details.blocks.emplace_back(page::Paragraph{note, true});
+  details.blocks.emplace_back(document::Paragraph{note, true});
   blocks.emplace_back(std::move(details));
 }
 
@@ -104,8 +105,9 @@ void add_widths(Blocks& blocks, const records::RunRecord& run, const std::vector
 void add_growth(Blocks& blocks, const std::vector<records::CellRecord>& cells) {
   records::TextTable table = analysis::make_growth_table(cells);
   if (table.header.size() < 2) return;
-  blocks.emplace_back(page::Heading{"How times grow"});
-  blocks.emplace_back(page::Table{"Time grows as the size to the power of: 1 is in proportion, 0 not at all", table});
+  blocks.emplace_back(document::Heading{"How times grow"});
+  blocks.emplace_back(
+      document::Table{"Time grows as the size to the power of: 1 is in proportion, 0 not at all", table});
 }
 
 void add_lights(Blocks& blocks, const records::RunRecord& run, const std::vector<std::string>& filters,
@@ -146,9 +148,9 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& measured
   return trade;
 }
 
-page::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                 const Trade& trade) {
-  page::Section section{"trade", "The trade: what less error costs", {}};
+document::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                     const Trade& trade) {
+  document::Section section{"trade", "The trade: what less error costs", {}};
   const std::vector<std::string> filters = analysis::list_filters(cells);
   if (trade.has_fronts) {
     add_fronts(section.blocks, run, cells, trade);

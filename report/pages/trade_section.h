@@ -6,7 +6,7 @@
 #include "report/analysis/cost_curves.h"
 #include "report/analysis/maps/map_family.h"
 #include "report/analysis/trade.h"
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 
 namespace shadowbench::pages {
 
@@ -26,7 +26,7 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells);
 /// Makes the section that shows the trade: fronts, crossovers, growth with sizes and with lights, and maps. `cells` are
 /// those that may be compared. Of each finding but the fronts it has a table, a chart where there is something to draw,
 /// and at most a sentence.
-page::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                 const Trade& trade);
+document::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                     const Trade& trade);
 
 }  // namespace shadowbench::pages

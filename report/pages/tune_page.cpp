@@ -21,8 +21,8 @@ std::string format_gain(const records::TunedScore& score) {
                                 : std::string(records::kNothing);
 }
 
-page::Table make_param_table(const records::TunedFilterRecord& filter, const std::string& metric) {
-  page::Table block{"Parameters and scores", {}};
+document::Table make_param_table(const records::TunedFilterRecord& filter, const std::string& metric) {
+  document::Table block{"Parameters and scores", {}};
   records::TextTable& table = block.table;
   table.header = {filter.id};
   std::vector<std::string> defaults = {"default"}, found = {"found"};
@@ -53,8 +53,8 @@ std::string format_intervals(const records::TunedParamRecord& param) {
   return fmt::format("{}", fmt::join(texts, ", and "));
 }
 
-page::Table make_range_table(const records::TunedFilterRecord& filter, double tolerance) {
-  page::Table block{"How wide the good range of each parameter is, the others at theirs", {}};
+document::Table make_range_table(const records::TunedFilterRecord& filter, double tolerance) {
+  document::Table block{"How wide the good range of each parameter is, the others at theirs", {}};
   records::TextTable& table = block.table;
   table.header = {"parameter", "searched", "scale", fmt::format("within {:g} % of the best", 100.0 * tolerance),
                   "share of the scale"};
@@ -92,19 +92,19 @@ std::vector<SceneScore> average_scenes(const records::TunedFilterRecord& filter,
   return scores;
 }
 
-page::Section make_filter_section(const records::TunedFilterRecord& filter, const records::TunedRecord& record) {
+document::Section make_filter_section(const records::TunedFilterRecord& filter, const records::TunedRecord& record) {
   return {filter.id,
           filter.label,
-          {page::Paragraph{describe_verdict(filter, record.metric)}, make_param_table(filter, record.metric),
+          {document::Paragraph{describe_verdict(filter, record.metric)}, make_param_table(filter, record.metric),
            make_range_table(filter, record.tolerance),
-           page::Paragraph{fmt::format("{} settings were drawn: {} by the search, the others for the good ranges.",
-                                       filter.evaluations, filter.search_evaluations),
-                           true}}};
+           document::Paragraph{fmt::format("{} settings were drawn: {} by the search, the others for the good ranges.",
+                                           filter.evaluations, filter.search_evaluations),
+                               true}}};
 }
 
-page::Grade grade_gain(const records::TunedScore& score, double truth_se) {
-  if (score.gain() < 0.0) return page::Grade::kBad;
-  return score.gain() > truth_se ? page::Grade::kGood : page::Grade::kNear;
+document::Grade grade_gain(const records::TunedScore& score, double truth_se) {
+  if (score.gain() < 0.0) return document::Grade::kBad;
+  return score.gain() > truth_se ? document::Grade::kGood : document::Grade::kNear;
 }
 
 /// Names what was found for a filter: "vsm radius 7, min_variance 1e-05: rmse 0.12 to 0.08 (+33.3 %)".
@@ -117,8 +117,8 @@ std::string describe_found(const records::TunedFilterRecord& filter, const std::
                      format_gain(filter.unseen));
 }
 
-page::Section make_tune_answer(const records::TunedRecord& record) {
-  page::Table table{fmt::format("Gain in {} on unseen views", record.metric), {{"scene"}, {}}};
+document::Section make_tune_answer(const records::TunedRecord& record) {
+  document::Table table{fmt::format("Gain in {} on unseen views", record.metric), {{"scene"}, {}}};
   std::vector<std::string> kept, others;
   for (const records::TunedFilterRecord& filter : record.filters) {
     for (const SceneScore& score : average_scenes(filter, record))
@@ -132,7 +132,7 @@ page::Section make_tune_answer(const records::TunedRecord& record) {
   std::string text = kept.empty() ? "Nothing found is better than the defaults on unseen views."
                                   : fmt::format("Better on unseen views: {}.", fmt::join(kept, "; "));
   if (!kept.empty() && !others.empty()) text += fmt::format(" The default stays for {}.", fmt::join(others, ", "));
-  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table), page::Paragraph{kTuneNote, true}}};
+  return {"answer", "", {document::Paragraph{std::move(text)}, std::move(table), document::Paragraph{kTuneNote, true}}};
 }
 
 std::vector<std::pair<std::string, std::string>> list_tune_facts(const records::TunedRecord& record) {
@@ -170,12 +170,12 @@ std::string describe_verdict(const records::TunedFilterRecord& filter, const std
                          : "");
 }
 
-page::Page make_tune_page(const records::TunedRecord& record) {
-  page::Page page{fmt::format("Parameters tuned for {}", record.metric), {make_tune_answer(record)}, {}};
+document::Page make_tune_page(const records::TunedRecord& record) {
+  document::Page page{fmt::format("Parameters tuned for {}", record.metric), {make_tune_answer(record)}, {}};
   for (const records::TunedFilterRecord& filter : record.filters)
     page.sections.push_back(make_filter_section(filter, record));
-  page::Details details{"Settings and data", {page::Facts{list_tune_facts(record)}}};
-  if (!record.notes.empty()) details.blocks.emplace_back(page::Sentences{"Left out:", record.notes});
+  document::Details details{"Settings and data", {document::Facts{list_tune_facts(record)}}};
+  if (!record.notes.empty()) details.blocks.emplace_back(document::Sentences{"Left out:", record.notes});
   details.blocks.emplace_back(link_data({"tuned.json", "evaluations.csv"}));
   page.sections.push_back({"data", "", {std::move(details)}});
   return page;

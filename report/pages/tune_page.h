@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/records/tuned_record.h"
 
 namespace shadowbench::pages {
@@ -12,6 +12,6 @@ std::string describe_verdict(const records::TunedFilterRecord& filter, const std
 
 /// Makes the page of `shadowbench tune`: what was tuned on what, and for every filter its parameters, scores, verdict
 /// and good ranges.
-page::Page make_tune_page(const records::TunedRecord& record);
+document::Page make_tune_page(const records::TunedRecord& record);
 
 }  // namespace shadowbench::pages

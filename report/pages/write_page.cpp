@@ -9,7 +9,7 @@
 #include <iterator>
 #include <optional>
 
-#include "filters/base/atomic_file.h"
+#include "base/atomic_file.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -31,8 +31,8 @@ std::optional<std::filesystem::path> find_sibling(const std::filesystem::path& d
   return found == places.end() ? std::nullopt : std::optional(*found);
 }
 
-std::vector<page::Link> list_siblings(const std::filesystem::path& dir, const PageFile& own) {
-  std::vector<page::Link> siblings;
+std::vector<document::Link> list_siblings(const std::filesystem::path& dir, const PageFile& own) {
+  std::vector<document::Link> siblings;
   for (const PageFile& other : list_pages()) {
     if (other.command == own.command) continue;
     if (const auto path = find_sibling(dir, own, other))
@@ -46,7 +46,7 @@ void link_back(const std::filesystem::path& path) {
   const auto own = std::ranges::find(list_pages(), path.filename().string(), &PageFile::html);
   std::ifstream stream(path, std::ios::binary);
   const std::string html{std::istreambuf_iterator<char>(stream), {}};
-  const std::string linked = page::replace_siblings(html, list_siblings(path.parent_path(), *own));
+  const std::string linked = document::replace_siblings(html, list_siblings(path.parent_path(), *own));
   if (stream && linked != html) write_text_file(path, linked);
 }
 
@@ -63,13 +63,13 @@ const std::vector<PageFile>& list_pages() {
   return pages;
 }
 
-void write_page(const std::filesystem::path& dir, std::string_view command, page::Page page) {
+void write_page(const std::filesystem::path& dir, std::string_view command, document::Page page) {
   const auto own = std::ranges::find(list_pages(), command, &PageFile::command);
   assert(own != list_pages().end());
   page.siblings = list_siblings(dir, *own);
-  write_text_file(dir / own->markdown, page::write_markdown(page));
-  write_text_file(dir / own->html, page::write_html(page));
-  for (const page::Link& sibling : page.siblings) link_back((dir / sibling.path).lexically_normal());
+  write_text_file(dir / own->markdown, document::write_markdown(page));
+  write_text_file(dir / own->html, document::write_html(page));
+  for (const document::Link& sibling : page.siblings) link_back((dir / sibling.path).lexically_normal());
 }
 
 std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record) {
@@ -80,8 +80,8 @@ std::vector<std::pair<std::string, std::string>> list_provenance(const records::
           {"took", fmt::format("{:.1f} s", record.seconds)}};
 }
 
-page::Links link_data(const std::vector<std::string>& files) {
-  page::Links links{"Data:", {}};
+document::Links link_data(const std::vector<std::string>& files) {
+  document::Links links{"Data:", {}};
   for (const std::string& file : files) links.items.push_back({file, file});
   return links;
 }

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
@@ -23,12 +23,12 @@ const std::vector<PageFile>& list_pages();
 
 /// Writes a command's page into a folder as HTML and as Markdown, linked with the program's other pages that are there
 /// already, and these with it. Throws Error(kOutput).
-void write_page(const std::filesystem::path& dir, std::string_view command, page::Page page);
+void write_page(const std::filesystem::path& dir, std::string_view command, document::Page page);
 
 /// Says what made a record: OpenGL, machine, program, command and time.
 std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record);
 
 /// Links to data files that lie beside the page.
-page::Links link_data(const std::vector<std::string>& files);
+document::Links link_data(const std::vector<std::string>& files);
 
 }  // namespace shadowbench::pages

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "filters/base/atomic_file.h"
+#include "base/atomic_file.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"

@@ -10,9 +10,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/input_file.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/input_file.h"
 #include "report/records/cell_key.h"
 #include "report/records/json_values.h"
 

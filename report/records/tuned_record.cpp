@@ -5,8 +5,8 @@
 #include <cassert>
 #include <fstream>
 
-#include "filters/base/error.h"
-#include "filters/base/input_file.h"
+#include "base/error.h"
+#include "base/input_file.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {

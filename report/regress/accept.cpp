@@ -9,9 +9,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/input_file.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/input_file.h"
 
 namespace shadowbench::regress {
 namespace {

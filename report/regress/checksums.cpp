@@ -8,9 +8,9 @@
 #include <memory>
 #include <sstream>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/input_file.h"
-#include "filters/base/temporary_files.h"
+#include "base/atomic_file.h"
+#include "base/input_file.h"
+#include "base/temporary_files.h"
 
 namespace shadowbench::regress {
 namespace {

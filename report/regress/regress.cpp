@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/input_file.h"
-#include "filters/base/nearest_name.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/input_file.h"
+#include "base/nearest_name.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"

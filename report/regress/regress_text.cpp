@@ -115,13 +115,14 @@ std::string describe_worst(const RegressReport& report) {
   return fmt::format("{} is {}: {}", name_cell(worst), name_of(worst.outcome), worst.findings.front().text);
 }
 
-page::Section make_cell_section(const Comparison& comparison, std::size_t place) {
-  page::Section section{fmt::format("cell-{}", place),
-                        fmt::format("{}: {}", name_of(comparison.outcome), name_cell(comparison)),
-                        {page::Sentences{comparison.accepted ? "Accepted." : "", describe_differences(comparison)}}};
+document::Section make_cell_section(const Comparison& comparison, std::size_t place) {
+  document::Section section{
+      fmt::format("cell-{}", place),
+      fmt::format("{}: {}", name_of(comparison.outcome), name_cell(comparison)),
+      {document::Sentences{comparison.accepted ? "Accepted." : "", describe_differences(comparison)}}};
   if (comparison.picture)
-    section.blocks.emplace_back(
-        page::Gallery{{}, {{*comparison.picture, "Expected, actual, and their difference: " + name_cell(comparison)}}});
+    section.blocks.emplace_back(document::Gallery{
+        {}, {{*comparison.picture, "Expected, actual, and their difference: " + name_cell(comparison)}}});
   return section;
 }
 
@@ -135,17 +136,17 @@ std::string describe_excess(const Comparison& comparison) {
   return most > 0.0 ? fmt::format(", {:.3g} x its limit", most) : "";
 }
 
-page::Section make_answer(const RegressReport& report) {
+document::Section make_answer(const RegressReport& report) {
   std::string text = describe_counts(report) + ".";
   if (report.failed() > 0) text += " Worst: " + describe_worst(report) + ".";
   if (!report.damaged.empty()) text += " Damaged in the baseline: " + describe_damage(report.damaged) + ".";
-  page::Table table{"The worst cell of each scene and filter", {{"scene"}, {}}};
+  document::Table table{"The worst cell of each scene and filter", {{"scene"}, {}}};
   for (const Comparison& each : report.comparisons)  // the worst first
     table.judge(each.scene, each.filter, name_of(each.outcome) + (each.accepted ? ", accepted" : describe_excess(each)),
-                each.failed()    ? page::Grade::kBad
-                : each.differs() ? page::Grade::kNear
-                                 : page::Grade::kGood);
-  return {"answer", "", {page::Paragraph{std::move(text)}, std::move(table)}};
+                each.failed()    ? document::Grade::kBad
+                : each.differs() ? document::Grade::kNear
+                                 : document::Grade::kGood);
+  return {"answer", "", {document::Paragraph{std::move(text)}, std::move(table)}};
 }
 
 /// Replaces what XML cannot hold and file names can: control characters, and bytes that are not UTF-8.
@@ -229,22 +230,24 @@ std::string describe_failure(const RegressReport& report) {
   return fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
 }
 
-page::Page make_regress_page(const RegressReport& report) {
-  page::Page page{"Comparison with the baseline", {make_answer(report)}, {}};
+document::Page make_regress_page(const RegressReport& report) {
+  document::Page page{"Comparison with the baseline", {make_answer(report)}, {}};
   if (const std::string ending = describe_ending(report); !ending.empty())
-    page.sections.push_back({"accept", "", {page::Paragraph{ending}}, report.failed() > 0});
+    page.sections.push_back({"accept", "", {document::Paragraph{ending}}, report.failed() > 0});
   std::size_t place = 0;
   for (const Comparison& comparison : report.comparisons)
     if (comparison.differs() && ++place <= kMostListed) page.sections.push_back(make_cell_section(comparison, place));
   if (place > kMostListed)
     page.sections.push_back(
-        {"rest", "", {page::Paragraph{fmt::format("{} more cells differ: see regress.json.", place - kMostListed)}}});
+        {"rest",
+         "",
+         {document::Paragraph{fmt::format("{} more cells differ: see regress.json.", place - kMostListed)}}});
   page.sections.push_back({"data",
                            "",
-                           {page::Details{"Settings and data",
-                                          {page::Facts{{{"run", report.options.run.string()},
-                                                        {"baseline", report.options.baseline.string()}}},
-                                           pages::link_data({"regress.json"})}}}});
+                           {document::Details{"Settings and data",
+                                              {document::Facts{{{"run", report.options.run.string()},
+                                                                {"baseline", report.options.baseline.string()}}},
+                                               pages::link_data({"regress.json"})}}}});
   return page;
 }
 

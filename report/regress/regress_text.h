@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/regress/regress.h"
 
 namespace shadowbench::regress {
@@ -26,7 +26,7 @@ std::string make_regress_json(const RegressReport& report);
 std::string describe_failure(const RegressReport& report);
 
 /// Makes the page of `shadowbench regress`: what differs, the worst first, with its pictures, and how to accept it.
-page::Page make_regress_page(const RegressReport& report);
+document::Page make_regress_page(const RegressReport& report);
 
 /// Writes a comparison as JUnit XML, which build servers show: a suite per scene, a case per cell.
 /// Source: the subset of the format that the readers of Jenkins and GitLab share.

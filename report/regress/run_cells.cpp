@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"
 

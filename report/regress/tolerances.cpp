@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "filters/base/toml.h"
+#include "base/toml.h"
 #include "report/regress/compared_metrics.h"
 
 namespace shadowbench::regress {

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/kernel_width.h"
 #include "filters/model.h"
 

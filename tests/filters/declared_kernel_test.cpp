@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/catalogue.h"
 #include "filters/format/front_matter.h"
 #include "filters/kernel_width.h"

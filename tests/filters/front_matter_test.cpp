@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::fuzz {
 

@@ -37,7 +37,7 @@ def install(build, folder):
 def check_files(prefix):
     expect([file.name for file in (prefix / "bin").iterdir()] == ["shadowbench"], "bin/ holds more than the program")
     folders = sorted(folder.name for folder in (prefix / "share/shadowbench").iterdir())
-    expect(folders == ["experiments", "filters", "gpus", "scenes", "shaders"], f"share/shadowbench/ holds {folders}")
+    expect(folders == ["data", "filters", "shaders"], f"share/shadowbench/ holds {folders}")
     suffixes = {file.suffix for file in (prefix / "share/shadowbench").rglob("*") if file.is_file()}
     expect(suffixes == {".frag", ".geom", ".glsl", ".toml", ".vert"}, f"share/shadowbench/ holds files {suffixes}")
     help_text = call(prefix / "bin/shadowbench", "--help")
@@ -52,7 +52,7 @@ def check_files(prefix):
 
 def check_use(prefix, folder):
     """Only the prefix has this scene, and no longer has another: what the program finds, it finds there."""
-    scenes = prefix / "share/shadowbench/scenes"
+    scenes = prefix / "share/shadowbench/data/scenes"
     (scenes / "ball.toml").unlink()
     text = (scenes / "cubes.toml").read_text(encoding="utf-8")
     (scenes / "moved.toml").write_text(re.sub(r'title = ".*"', 'title = "Of the moved prefix"', text), encoding="utf-8")

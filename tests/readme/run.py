@@ -53,7 +53,7 @@ KEPT_BY_EXPERIMENT_FILES = {"--filters"}
 FIXTURES = {"model.gltf": "tests/fuzz/corpus/gltf/tree.gltf"}
 
 # Folders of this tree that commands may name; every README gets copies of its own.
-COPIES = ["harness/scenes", "harness/experiments", "filters", "tests/golden"]
+COPIES = ["data/scenes", "data/experiments", "filters", "tests/golden"]
 
 # Programs of others, and what this test cannot have: packages, a network, a screen, other build folders.
 NOT_RUN = {"apt-get", "cd", "clang-format", "curl", "dpkg", "gh", "git", "man", "sudo", "source", "xdg-open"}

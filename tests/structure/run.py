@@ -3,7 +3,7 @@
 
 An include runs from a room to one that stands before it in ROOMS, never back up. A room is one CMake target and one namespace,
 with the folders inside it that are no rooms. Every folder of sources has a README and holds at most 40 files (the filters' own
-do not count). No source has more than 500 lines, none outside of REPLAYS names a filter, and none includes a library that
+do not count). No source has more than 400 lines (a test 500), none outside of REPLAYS names a filter, and none includes a library that
 belongs to another folder.
 """
 import argparse
@@ -13,8 +13,8 @@ import sys
 
 # From the ground up. What stands inside a room's folder and is not named here belongs to the room.
 ROOMS = [
-    "filters/base", "filters", "reference/metrics", "reference/truth", "report/files", "report/records", "report/images",
-    "report/analysis", "report/page", "report/pages", "report/regress", "harness/gl", "harness/scene", "harness/gpu", "harness/render",
+    "base", "filters", "reference/metrics", "reference/truth", "report/files", "report/records", "report/images",
+    "report/analysis", "report/document", "report/pages", "report/regress", "harness/gl", "harness/scene", "harness/gpu", "harness/render",
     "harness/options", "harness/measure", "harness/run", "harness/submit", "harness/bias", "harness/tune", "harness/stress", "harness/flicker", "harness/view",
     "harness/cli"]
 # What a room may not use, although it stands before it.
@@ -23,13 +23,13 @@ FORBIDDEN = {
     "harness/scene": ["reference/metrics", "report/", "harness/gl"],
     "harness/gpu": ["reference/"], "harness/tune": ["harness/bias"],
     "harness/stress": ["harness/bias", "harness/tune"], "harness/flicker": ["harness/bias", "harness/tune", "harness/stress"]}
-NAMESPACES = {"filters/base": "shadowbench"}
+NAMESPACES = {"base": "shadowbench"}
 # Libraries (as includes have them) and the folder that alone knows them.
 KNOWN_IN = {r"OpenImageIO/(?!hash\.h)": "report/images/", r"ft2build": "report/images/"}
 REPLAYS = "harness/stress/axes/"  # mistakes that were made with certain filters
 REFERENCE = "none"  # what every filter is compared with
 MOST_FILES = 40
-MOST_LINES = 500
+MOST_LINES = 400  # 500 in a test
 SOURCES = {".cpp", ".h"}
 COUNTED_LINES = SOURCES | {".glsl", ".frag", ".vert", ".js", ".css", ".py"}
 
@@ -53,7 +53,7 @@ def check_names(root, name, text, faults):
 def check_source(root, path, faults):
     name = path.relative_to(root).as_posix()
     text = path.read_text(encoding="utf-8")
-    if path.suffix in COUNTED_LINES and text.count("\n") > MOST_LINES:
+    if path.suffix in COUNTED_LINES and text.count("\n") > MOST_LINES + 100 * name.startswith("tests/"):
         faults.append(f"{name}: {text.count(chr(10))} lines; {MOST_LINES} are the most")
     room = room_of(name)
     if path.suffix not in SOURCES:

@@ -131,7 +131,7 @@ def test_saved_filter_is_live(program, folder):
 
 def test_built_in_filter_of_a_tree_is_live_too(program, folder):
     tree = folder / "tree"
-    for name in ("filters", "shaders", "harness/scenes", "harness/experiments", "harness/gpus"):
+    for name in ("filters", "shaders", "data/scenes", "data/experiments", "data/gpus"):
         shutil.copytree(Path(__file__).resolve().parents[2] / name, tree / name)
     file = tree / "filters" / "none.glsl"
     window = Window(program, folder, ["cubes", *FIXED, "--left", "none", "--right", "tent3x3"], {"SHADOWBENCH_ROOT": str(tree)})

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/context/context_backends.h"
 #include "harness/gl/handle.h"
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/context/context_backends.h"
 
 // Without this EGL's headers bring in Xlib's macros.

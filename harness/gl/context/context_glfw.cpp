@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/context/context_backends.h"
 #include "harness/gl/gl_api.h"
 

@@ -1,6 +1,6 @@
 #include <chrono>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/context/context_backends.h"
 #include "harness/gl/gl_api.h"
 

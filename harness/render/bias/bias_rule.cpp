@@ -8,9 +8,9 @@
 #include <functional>
 #include <map>
 
-#include "filters/base/error.h"
-#include "filters/base/nearest_name.h"
-#include "filters/base/split_list.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
+#include "base/split_list.h"
 
 namespace shadowbench::render {
 namespace {

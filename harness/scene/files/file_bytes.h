@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "filters/base/input_file.h"
+#include "base/input_file.h"
 
 namespace shadowbench::scene {
 

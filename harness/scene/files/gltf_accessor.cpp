@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/files/gltf_parse.h"
 
 namespace shadowbench::scene {

@@ -9,7 +9,7 @@
 #include <new>
 #include <type_traits>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/files/gltf_accessor.h"
 #include "harness/scene/files/gltf_parse.h"
 

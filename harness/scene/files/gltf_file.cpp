@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/files/gltf_accessor.h"
 #include "harness/scene/files/gltf_parse.h"
 #include "harness/scene/files/mesh_file.h"

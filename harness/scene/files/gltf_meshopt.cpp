@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/files/gltf_accessor.h"
 #include "harness/scene/files/gltf_parse.h"
 

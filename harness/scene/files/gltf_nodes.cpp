@@ -5,7 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/files/gltf_parse.h"
 
 namespace shadowbench::scene {

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/files/file_bytes.h"
 
 namespace shadowbench::scene {

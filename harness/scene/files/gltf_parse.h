@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::scene {
 

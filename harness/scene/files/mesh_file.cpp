@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::scene {
 namespace {

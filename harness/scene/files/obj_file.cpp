@@ -13,8 +13,8 @@
 #include <sstream>
 #include <utility>
 
-#include "filters/base/error.h"
-#include "filters/base/split_list.h"
+#include "base/error.h"
+#include "base/split_list.h"
 #include "harness/scene/files/file_bytes.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"

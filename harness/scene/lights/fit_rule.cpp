@@ -7,8 +7,8 @@
 #include <array>
 #include <charconv>
 
-#include "filters/base/error.h"
-#include "filters/base/split_list.h"
+#include "base/error.h"
+#include "base/split_list.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
 
-#include "filters/base/content_hash.h"
-#include "filters/base/error.h"
+#include "base/content_hash.h"
+#include "base/error.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {

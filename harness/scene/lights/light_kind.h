@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "filters/base/toml.h"
+#include "base/toml.h"
 #include "reference/truth/area_light.h"
 
 namespace shadowbench::scene {

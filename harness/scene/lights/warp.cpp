@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/stress/case_tools.h"
 #include "harness/stress/stored_depths.h"
 #include "report/records/text_table.h"

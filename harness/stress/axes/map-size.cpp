@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/stress/filter_stage.h"
 #include "harness/stress/synthetic_scene.h"
 #include "report/records/text_table.h"

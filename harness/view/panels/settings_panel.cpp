@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gl/pixel_format.h"
 #include "harness/render/bias/bias_theory.h"
 #include "harness/view/controls.h"

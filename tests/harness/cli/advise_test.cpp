@@ -41,7 +41,7 @@ class Advise : public ProgramTest {
   /// Points the program at filters of our own, of which `soft` claims something.
   std::string with_claims() const {
     const std::filesystem::path root = folder() / "root";
-    for (const char* name : {"filters", "shaders", "harness/scenes", "harness/experiments", "harness/gpus"})
+    for (const char* name : {"filters", "shaders", "data/scenes", "data/experiments", "data/gpus"})
       std::filesystem::create_directories(root / name);
     const std::string body =
         "kind = \"other\"\nradius_texels = 0\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";

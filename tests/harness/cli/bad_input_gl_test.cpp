@@ -98,7 +98,7 @@ TEST_F(BadInput, OnlyDegenerateTriangles) {
   expect_refusal("run --out out --scene flat.obj", 3, {"flat.obj"});
 }
 TEST_F(BadInput, LightWithoutDirection) {
-  const std::string cubes = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/harness/scenes/cubes.toml");
+  const std::string cubes = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes/cubes.toml");
   std::string text = cubes;
   text.replace(text.find("azimuth_deg = 72"), 16, "direction = [0, 0, 0]");
   text.replace(text.find("elevation_deg = 38"), 18, "");

@@ -22,7 +22,7 @@ class CookieRun : public ProgramTest {
  protected:
   /// The scene `lamp` with more lines in its [light].
   void write_lamp(const std::string& lines) const {
-    std::string text = read_text(SHADOWBENCH_SOURCE_DIR "/harness/scenes/teaching/lamp.toml");
+    std::string text = read_text(SHADOWBENCH_SOURCE_DIR "/data/scenes/teaching/lamp.toml");
     text.insert(text.find("type = \"spot\""), lines);
     write("lamp.toml", text);
   }

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "filters/base/temporary_files.h"
+#include "base/temporary_files.h"
 #include "tests/harness/cli/faults.h"
 
 namespace shadowbench::test {

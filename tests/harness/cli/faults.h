@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
 #include "tests/harness/cli/program.h"

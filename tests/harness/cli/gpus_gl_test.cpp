@@ -105,7 +105,7 @@ TEST_F(Gpus, WideTexelsTakeLonger_AndReadsOfModelsAreMemory) {
   const auto part = [&](const char* filter, const char* gpu, const char* name) {
     return cells.at(filter)["gpu"][gpu]["parts_us"][name].get<double>();
   };
-  // One fetch each, of 32, 64 and 128 bits; harness/gpus has the rates.
+  // One fetch each, of 32, 64 and 128 bits; data/gpus has the rates.
   EXPECT_DOUBLE_EQ(part("vsm", "navi21", "sampling"), part("none", "navi21", "sampling"));
   EXPECT_DOUBLE_EQ(part("evsm4", "navi21", "sampling"), 2.0 * part("none", "navi21", "sampling"));
   EXPECT_DOUBLE_EQ(part("vsm", "vega10", "sampling"), 2.0 * part("none", "vega10", "sampling"));

@@ -102,7 +102,7 @@ TEST_F(LayersRun, AllLightsAtOnce_AreDrawnWhereAllAreMeasured) {
 }
 
 TEST_F(LayersRun, ALampInsideACaster_IsWarnedOf) {
-  std::string scene = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/harness/scenes/teaching/lantern.toml");
+  std::string scene = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes/teaching/lantern.toml");
   const std::string place = "position = [0.1, 1.3, 0.05]";
   ASSERT_NE(scene.find(place), std::string::npos);
   scene.replace(scene.find(place), place.size(), "position = [-1.5, 0.35, 1.2]");

@@ -438,7 +438,7 @@ TEST_F(Command, BehindTestOff_SaysThatItChangesNothing_ButUnderSpots) {
 }
 
 TEST_F(Command, BorderPage_IsDrawnWhereAskedFor_AndLeavesTheNextViewAsItWas) {
-  std::string text = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/harness/scenes/teaching/edge.toml");
+  std::string text = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes/teaching/edge.toml");
   text.replace(text.find("[camera]"), 8, "[[camera]]");
   write("views.toml", text + "[[camera]]\nname = \"second\"\nposition = [0, 12, 0.1]\ntarget = [0, 0, 0]\n");
   const std::string arguments =

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::flicker {
@@ -18,7 +18,7 @@ constexpr int kFrames = 8;
 
 scene::Scene load_cubes() {
   scene::LoadOptions load;
-  load.scenes_folder = std::string(SHADOWBENCH_SOURCE_DIR) + "/harness/scenes";
+  load.scenes_folder = std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes";
   return scene::load("cubes", load);
 }
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench {
 

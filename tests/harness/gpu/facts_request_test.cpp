@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 
 namespace shadowbench::gpu {
 namespace {

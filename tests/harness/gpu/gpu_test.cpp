@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::gpu {
 namespace {

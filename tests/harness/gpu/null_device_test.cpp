@@ -13,7 +13,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/gpu/gpu.h"
 
 namespace shadowbench::gpu {
@@ -132,7 +132,7 @@ TEST_P(NullDevices, RefuseWhatVulkanHasNot_WithTheLine) {
 
 std::vector<std::string> list_families() {
   std::vector<std::string> families;
-  for (const Gpu& gpu : load_gpus(SHADOWBENCH_SOURCE_DIR "/harness/gpus"))
+  for (const Gpu& gpu : load_gpus(SHADOWBENCH_SOURCE_DIR "/data/gpus"))
     families.insert(families.end(), gpu.families.begin(), gpu.families.end());
   return families;
 }

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::options {
 namespace {
@@ -123,7 +123,7 @@ TEST_F(ExperimentFile, Missing_IsSaid) {
 }
 
 TEST_F(ExperimentFile, AreFoundByName_OrPath) {
-  const std::filesystem::path shipped = SHADOWBENCH_SOURCE_DIR "/harness/experiments";
+  const std::filesystem::path shipped = SHADOWBENCH_SOURCE_DIR "/data/experiments";
   EXPECT_EQ(find_experiment(shipped, "quick"), shipped / "quick.toml");
   EXPECT_EQ(find_experiment(shipped, "my/own.toml"), "my/own.toml");
   EXPECT_THAT(error_of([&] { find_experiment(shipped, "quik"); }).what(), HasSubstr("did you mean 'quick'"));

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/options/run_options.h"
 
 namespace shadowbench::options {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <map>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/options/experiment_file.h"
 
 namespace shadowbench::options {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/format/front_matter.h"
 
 namespace shadowbench::render {

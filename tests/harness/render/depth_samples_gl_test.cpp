@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/format/front_matter.h"
 #include "tests/harness/render/bench_fixture.h"
 

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/format/front_matter.h"
 #include "tests/harness/render/bench_fixture.h"
 

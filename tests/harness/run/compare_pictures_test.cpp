@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/measure/mean_flip.h"
 #include "report/images/picture_io.h"
 #include "report/records/record_fields.h"

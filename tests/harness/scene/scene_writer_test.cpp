@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr const char* kSceneFolder = SHADOWBENCH_SOURCE_DIR "/harness/scenes";
+constexpr const char* kSceneFolder = SHADOWBENCH_SOURCE_DIR "/data/scenes";
 
 std::vector<fs::path> list_all_scenes() {
   std::vector<fs::path> files;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "filters/model.h"
 #include "harness/options/options.h"
 #include "harness/stress/case_tools.h"

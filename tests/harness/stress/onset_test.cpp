@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::stress {
 namespace {

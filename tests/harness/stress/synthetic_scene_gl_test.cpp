@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/stress/edge_scene.h"
 #include "tests/harness/stress/stress_fixture.h"
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 #include "harness/submit/sign_of_life.h"
 #include "report/records/json_io.h"
 

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/options/options.h"
 
 namespace shadowbench::tune {

@@ -12,7 +12,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::view {
 namespace {

@@ -1,10 +1,9 @@
-#include "harness/view/workbench.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "filters/base/temporary_files.h"
+#include "base/temporary_files.h"
+#include "harness/view/workbench.h"
 
 namespace shadowbench::view {
 namespace {

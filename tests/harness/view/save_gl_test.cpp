@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/run/scene_loading.h"
 #include "harness/run/task_images.h"
 #include "harness/view/save.h"

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/view/side_measurement.h"
 #include "report/records/error_parts.h"
 #include "tests/harness/view/view_fixture.h"

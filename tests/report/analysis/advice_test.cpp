@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "report/analysis/advice_words.h"
 #include "report/records/absence.h"
 #include "tests/report/records/synthetic.h"

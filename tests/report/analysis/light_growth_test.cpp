@@ -146,9 +146,9 @@ TEST(LightGrowth, OfOneCount_IsNotSaid) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   for (records::CellRecord& cell : cells) cell.lights->resize(1);
   EXPECT_EQ(summarize_lights(make_lit_charts(cells), make_run().gl), "");
-  const page::Section section = pages::make_trade_section(make_run(), cells, *pages::make_trade(cells));
-  for (const page::Block& block : section.blocks) {
-    const auto* choice = std::get_if<page::ChartChoice>(&block);
+  const document::Section section = pages::make_trade_section(make_run(), cells, *pages::make_trade(cells));
+  for (const document::Block& block : section.blocks) {
+    const auto* choice = std::get_if<document::ChartChoice>(&block);
     EXPECT_FALSE(choice && choice->id == "lights");
   }
   EXPECT_EQ(make_light_table(make_lit_charts(cells)).rows[0][4], records::kNothing);
@@ -267,8 +267,8 @@ TEST(LightSection, NeedsNoFront) {
 
 TEST(LightSection, IsNotThere_WhereNothingWasTimed) {
   const auto cells = make_crossing_cells("cubes");
-  const page::Page page{"", {pages::make_trade_section(make_run(), cells, *pages::make_trade(cells))}, {}};
-  EXPECT_THAT(page::write_markdown(page), Not(HasSubstr("with its lights")));
+  const document::Page page{"", {pages::make_trade_section(make_run(), cells, *pages::make_trade(cells))}, {}};
+  EXPECT_THAT(document::write_markdown(page), Not(HasSubstr("with its lights")));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cost_curves.h"
 #include "report/analysis/maps/map_family.h"

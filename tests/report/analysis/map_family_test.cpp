@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 #include "report/pages/trade_section.h"
 #include "tests/report/records/synthetic.h"
 
@@ -238,7 +238,7 @@ TEST(MapFamily, DriftOfTheMachine_WidensTimes) {
 
 std::string write_trade(const std::vector<CellRecord>& cells) {
   const auto trade = pages::make_trade(cells);
-  return trade ? page::write_markdown({"", {pages::make_trade_section(make_run(), cells, *trade)}, {}}) : "";
+  return trade ? document::write_markdown({"", {pages::make_trade_section(make_run(), cells, *trade)}, {}}) : "";
 }
 
 TEST(MapSection, NeedsMapsOfSeveralFits) {

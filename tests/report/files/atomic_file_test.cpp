@@ -1,11 +1,11 @@
-#include "filters/base/atomic_file.h"
+#include "base/atomic_file.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
 #include <csignal>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::files {

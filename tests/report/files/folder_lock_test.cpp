@@ -5,9 +5,9 @@
 
 #include <optional>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
-#include "filters/base/temporary_files.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/temporary_files.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::files {

@@ -9,8 +9,8 @@
 #include <functional>
 #include <limits>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "report/page/blocks.h"
+#include "report/document/blocks.h"
 
-namespace shadowbench::page {
+namespace shadowbench::document {
 
 /// What a page says first.
 inline std::string answer_of(const Page& page) { return std::get<Paragraph>(page.sections.at(0).blocks.at(0)).text; }
@@ -31,4 +31,4 @@ inline std::vector<std::string> list_shown(const Chart& chart) {
   return titles;
 }
 
-}  // namespace shadowbench::page
+}  // namespace shadowbench::document

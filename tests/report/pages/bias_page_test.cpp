@@ -46,14 +46,14 @@ void make_gap_absent(records::BiasSweepRecord& sweep) {
     for (records::BiasPoint& point : curve.points) point.contact_gap.reset();
 }
 
-const page::ChartSeries* find_series(const page::Chart& chart, const std::string& title) {
-  const auto found = std::ranges::find(chart.series, title, &page::ChartSeries::title);
+const document::ChartSeries* find_series(const document::Chart& chart, const std::string& title) {
+  const auto found = std::ranges::find(chart.series, title, &document::ChartSeries::title);
   return found == chart.series.end() ? nullptr : &*found;
 }
 
 TEST(BiasChart, Factors_AreEquallyFarApart_NoBiasIncluded) {
   const records::BiasSweepRecord sweep = make_sweep();
-  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  const document::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
   ASSERT_TRUE(chart.x.log);
   ASSERT_EQ(chart.x.ticks.size(), kFactors.size());
   EXPECT_EQ(chart.x.ticks[0].second, "0");
@@ -64,13 +64,13 @@ TEST(BiasChart, Factors_AreEquallyFarApart_NoBiasIncluded) {
 
 TEST(BiasChart, AcneIsSolid_ContactGapDashed_TheoryAVerticalLine) {
   const records::BiasSweepRecord sweep = make_sweep();
-  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
-  const page::ChartSeries* acne = find_series(chart, "pcf2x2: acne");
-  const page::ChartSeries* gap = find_series(chart, "pcf2x2: contact gap");
-  const page::ChartSeries* theory = find_series(chart, "theory");
+  const document::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  const document::ChartSeries* acne = find_series(chart, "pcf2x2: acne");
+  const document::ChartSeries* gap = find_series(chart, "pcf2x2: contact gap");
+  const document::ChartSeries* theory = find_series(chart, "theory");
   ASSERT_TRUE(acne && gap && theory);
-  EXPECT_EQ(acne->line, page::LineStyle::kSolid);
-  EXPECT_EQ(gap->line, page::LineStyle::kDashed);
+  EXPECT_EQ(acne->line, document::LineStyle::kSolid);
+  EXPECT_EQ(gap->line, document::LineStyle::kDashed);
   EXPECT_EQ(acne->color, gap->color);
   EXPECT_NE(acne->color, find_series(chart, "none: acne")->color);
   ASSERT_EQ(acne->points.size(), kFactors.size());
@@ -78,18 +78,18 @@ TEST(BiasChart, AcneIsSolid_ContactGapDashed_TheoryAVerticalLine) {
   EXPECT_EQ(acne->points[1].y.value, 0.25);
   EXPECT_EQ(gap->points.back().y.value, 0.5);
   ASSERT_EQ(theory->points.size(), 2u);
-  for (const page::ChartPoint& point : theory->points) EXPECT_EQ(point.x.value, 1.0);
+  for (const document::ChartPoint& point : theory->points) EXPECT_EQ(point.x.value, 1.0);
 }
 
 TEST(BiasChart, EverythingLiesWithinTheAxes) {
   records::BiasSweepRecord sweep = make_sweep();
   sweep.modes[0].curves[0].points[0].acne = 1.0;
-  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
-  const auto within = [](const page::ChartAxis& axis) {
+  const document::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  const auto within = [](const document::ChartAxis& axis) {
     return ::testing::AllOf(::testing::Ge(axis.low), ::testing::Le(axis.high));
   };
-  for (const page::ChartSeries& series : chart.series) {
-    for (const page::ChartPoint& point : series.points) {
+  for (const document::ChartSeries& series : chart.series) {
+    for (const document::ChartPoint& point : series.points) {
       EXPECT_THAT(point.x.value, within(chart.x)) << series.title;
       EXPECT_THAT(point.y.value, within(chart.y)) << series.title;
     }
@@ -106,7 +106,7 @@ TEST(BiasChart, AbsentRates_HaveNoLine_AndAreSaid) {
   records::BiasSweepRecord sweep = make_sweep();
   EXPECT_THAT(make_bias_chart(sweep.modes[0], sweep.filters).notes, ElementsAre());
   make_gap_absent(sweep);
-  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  const document::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
   EXPECT_THAT(chart.notes, ElementsAre("contact gap: absent"));
   EXPECT_FALSE(find_series(chart, "none: contact gap"));
   EXPECT_TRUE(find_series(chart, "none: acne"));
@@ -117,7 +117,7 @@ TEST(BiasChart, FiltersThatAreLeftOut_HaveNoSeries_AndTheOthersKeepTheirColours)
   records::BiasSweepRecord sweep = make_sweep();
   const std::string color = find_series(make_bias_chart(sweep.modes[0], sweep.filters), "pcf2x2: acne")->color;
   sweep.modes[0].curves.erase(sweep.modes[0].curves.begin());
-  const page::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
+  const document::Chart chart = make_bias_chart(sweep.modes[0], sweep.filters);
   EXPECT_FALSE(find_series(chart, "none: acne"));
   EXPECT_EQ(find_series(chart, "pcf2x2: acne")->color, color);
 }
@@ -134,25 +134,25 @@ TEST(BiasPage, BeginsWithTheAnswer_WhichModeFreesOfAcne_AndWhatItCostsInContact)
   sweep.modes[0].curves.push_back(make_curve("esm", 100.0));
   sweep.modes[0].curves.push_back(make_curve("wide", 2.0));
   for (records::BiasPoint& point : sweep.modes[0].curves[2].points) point.contact_gap = 0.0;
-  const page::Page page = make_bias_page(sweep);
-  EXPECT_EQ(page::answer_of(page),
+  const document::Page page = make_bias_page(sweep);
+  EXPECT_EQ(document::answer_of(page),
             "Best: constant takes acne from 4 of 5 filters, and lights 50 % of the contacts at most. Worst: midpoint "
             "takes acne from 0 of 1 filters.");
-  const auto verdict = [&](const char* filter) { return page::verdict_of(page, "constant", filter); };
-  using page::Grade;
+  const auto verdict = [&](const char* filter) { return document::verdict_of(page, "constant", filter); };
+  using document::Grade;
   EXPECT_EQ(verdict("none"), std::pair(std::string("1, gap 1 %"), Grade::kNear));
   EXPECT_EQ(verdict("pcf2x2"), std::pair(std::string("1/2, gap 1 %"), Grade::kNear));
   EXPECT_EQ(verdict("vsm"), std::pair(std::string("0, gap 0 %"), Grade::kGood));
   EXPECT_EQ(verdict("esm"), std::pair(std::string("\u2717 acne 25 %"), Grade::kBad));
   EXPECT_EQ(verdict("wide"), std::pair(std::string("\u2717 2, gap 50 %"), Grade::kBad));
-  EXPECT_EQ(page::verdict_of(page, "midpoint", "none").first, "\u2717 acne 12.5 %");
+  EXPECT_EQ(document::verdict_of(page, "midpoint", "none").first, "\u2717 acne 12.5 %");
 }
 
 TEST(BiasChart, AtMostSixCurves_AreShown_OfNoneAndTheFiltersThatNeedMost) {
   records::BiasSweepRecord sweep = make_sweep();
   for (const auto& [name, enough] : {std::pair("a", 2.0), std::pair("b", 4.0), std::pair("c", 100.0)})
     sweep.modes[0].curves.push_back(make_curve(name, enough));
-  EXPECT_THAT(page::list_shown(make_bias_chart(sweep.modes[0], sweep.filters)),
+  EXPECT_THAT(document::list_shown(make_bias_chart(sweep.modes[0], sweep.filters)),
               ElementsAre("none: acne", "none: contact gap", "b: acne", "b: contact gap", "c: acne", "c: contact gap",
                           "theory"));
 }
@@ -161,7 +161,7 @@ TEST(BiasPage, AbsentRates_AreSaid_NeverNumbers) {
   records::BiasSweepRecord sweep = make_sweep();
   make_gap_absent(sweep);
   sweep.contact_receivers = 7;
-  const std::string html = page::write_html(make_bias_page(sweep));
+  const std::string html = document::write_html(make_bias_page(sweep));
   EXPECT_THAT(html, HasSubstr("gap absent"));
   EXPECT_THAT(html, HasSubstr("Absent: a rate needs 100."));
   EXPECT_THAT(html, Not(HasSubstr("nan")));
@@ -174,13 +174,13 @@ TEST(BiasPage, Texts_AreEscaped) {
   sweep.filters[0] = sweep.modes[0].curves[0].filter = "<b>'x'";
   sweep.modes[0].meaning = sweep.modes[0].picture_caption = "a < b";
   sweep.modes[0].left_out = {"<s>"};
-  const std::string html = page::write_html(make_bias_page(sweep));
+  const std::string html = document::write_html(make_bias_page(sweep));
   for (const char* raw : {"<i>", "<u>", "<b>'", "<s>", "a < b"}) EXPECT_THAT(html, Not(HasSubstr(raw)));
   EXPECT_THAT(html, HasSubstr("&lt;b&gt;&#39;x&#39;"));
 }
 
 TEST(BiasPage, LoadsNothingButItsPictures) {
-  const std::string html = page::write_html(make_bias_page(make_sweep()));
+  const std::string html = document::write_html(make_bias_page(make_sweep()));
   EXPECT_THAT(html, HasSubstr("src=\"bias.constant.png\""));
   for (const char* loaded : {"src=\"http", "href=\"http", "url(http", "<link rel=\"stylesheet"})
     EXPECT_THAT(html, Not(HasSubstr(loaded)));

@@ -47,11 +47,13 @@ records::FlickerRecord make_record(const records::FlickerMotion& motion) {
 }
 
 TEST(FlickerPage, BeginsWithWhoFlickersMostAndLeast_AgainstTheTruth_AndWhatSnappingBuys) {
-  const page::Page page = make_flicker_page(make_record(make_motion(0.03, 0.02, 0.004, 0.004)));
-  EXPECT_EQ(page::answer_of(page), "The light turns: most flickers a, 3.00 x (2.00 x with snapping); least b, 0.40 x.");
-  EXPECT_EQ(page::verdict_of(page, "light", "a"), std::pair(std::string("\u2717 3.00 x"), page::Grade::kBad));
-  EXPECT_EQ(page::verdict_of(page, "light, snapped", "a"), std::pair(std::string("\u2717 2.00 x"), page::Grade::kBad));
-  EXPECT_EQ(page::verdict_of(page, "light", "b"), std::pair(std::string("0.40 x"), page::Grade::kGood));
+  const document::Page page = make_flicker_page(make_record(make_motion(0.03, 0.02, 0.004, 0.004)));
+  EXPECT_EQ(document::answer_of(page),
+            "The light turns: most flickers a, 3.00 x (2.00 x with snapping); least b, 0.40 x.");
+  EXPECT_EQ(document::verdict_of(page, "light", "a"), std::pair(std::string("\u2717 3.00 x"), document::Grade::kBad));
+  EXPECT_EQ(document::verdict_of(page, "light, snapped", "a"),
+            std::pair(std::string("\u2717 2.00 x"), document::Grade::kBad));
+  EXPECT_EQ(document::verdict_of(page, "light", "b"), std::pair(std::string("0.40 x"), document::Grade::kGood));
   EXPECT_THAT(summarize_flicker(make_motion(0.005, 0.005)), HasSubstr("most flickers b, 1.00 x; least a, 0.50 x."));
 }
 
@@ -59,10 +61,11 @@ TEST(FlickerPage, WhereTheTruthStandsStill_TheVerdictIsFlickerItself) {
   records::FlickerMotion motion = make_motion(0.03, 0.0, 0.003, 0.001);
   motion.truth = {};
   motion.truth.step_change = {0.0, 0.0};
-  const page::Page page = make_flicker_page(make_record(motion));
-  EXPECT_EQ(page::verdict_of(page, "light", "a"), std::pair(std::string("\u2717 0.03"), page::Grade::kBad));
-  EXPECT_EQ(page::verdict_of(page, "light", "b"), std::pair(std::string("0.003"), page::Grade::kNear));
-  EXPECT_EQ(page::verdict_of(page, "light, snapped", "a"), std::pair(std::string("rounding"), page::Grade::kGood));
+  const document::Page page = make_flicker_page(make_record(motion));
+  EXPECT_EQ(document::verdict_of(page, "light", "a"), std::pair(std::string("\u2717 0.03"), document::Grade::kBad));
+  EXPECT_EQ(document::verdict_of(page, "light", "b"), std::pair(std::string("0.003"), document::Grade::kNear));
+  EXPECT_EQ(document::verdict_of(page, "light, snapped", "a"),
+            std::pair(std::string("rounding"), document::Grade::kGood));
 }
 
 TEST(FlickerPage, SaysWhatSnappingBuys) {
@@ -98,18 +101,18 @@ TEST(FlickerFiles, HoldEveryNumber) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5) << "a header, two filters, without snapping and with it";
   EXPECT_THAT(csv, HasSubstr(",on,a,1000000,0.02,0.01,0.0003,0.02,0.02,0.001,0\r\n"));
   EXPECT_EQ(make_flicker_table(record.motions[0]).rows.size(), 3u) << "the filters, and the truth";
-  const page::Page page = make_flicker_page(record);
-  for (const std::string& written : {page::write_html(page), page::write_markdown(page)})
+  const document::Page page = make_flicker_page(record);
+  for (const std::string& written : {document::write_html(page), document::write_markdown(page)})
     for (const char* part : {"cubes", "The light turns", "flicker.light.png", "flicker.csv", "most flickers a, 3.00 x"})
       EXPECT_THAT(written, HasSubstr(part));
-  EXPECT_THAT(page::write_html(page), HasSubstr("id=\"flicker.light.snapped\""));
+  EXPECT_THAT(document::write_html(page), HasSubstr("id=\"flicker.light.snapped\""));
 }
 
 TEST(FlickerCharts, OfOneMotion_ShareTheirScales_AndHoldTheTruth) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
   motion.variants[0].filters[0].step_change = {0.5, 0.1};
-  const page::Chart free = make_flicker_chart(motion, motion.variants[0]),
-                    snapped = make_flicker_chart(motion, motion.variants[1]);
+  const document::Chart free = make_flicker_chart(motion, motion.variants[0]),
+                        snapped = make_flicker_chart(motion, motion.variants[1]);
   EXPECT_NE(free.id, snapped.id);
   EXPECT_EQ(free.y.high, snapped.y.high);
   EXPECT_GE(free.y.high, 0.5);
@@ -126,8 +129,8 @@ TEST(FlickerCharts, AtMostSixCurves_AreShown_TheTruthNoneAndTheWorst) {
   records::FlickerMotion motion = make_motion(0.03, 0.02);
   motion.variants[0].filters = {make_filter("none", 0.001)};
   for (int i = 1; i < 9; ++i) motion.variants[0].filters.push_back(make_filter(fmt::format("f{}", i), 0.01 * i));
-  const page::Chart chart = make_flicker_chart(motion, motion.variants[0]);
-  EXPECT_THAT(page::list_shown(chart), ElementsAre("none", "f5", "f6", "f7", "f8", "truth"));
+  const document::Chart chart = make_flicker_chart(motion, motion.variants[0]);
+  EXPECT_THAT(document::list_shown(chart), ElementsAre("none", "f5", "f6", "f7", "f8", "truth"));
 }
 
 TEST(FlickerPicture, ScaleIsLogarithmic_FromAThousandthOn) {

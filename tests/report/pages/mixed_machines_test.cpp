@@ -66,7 +66,7 @@ TEST(MixedMachines, OneWarningSaysSo_AlsoWhereShardsWarnedBefore) {
 
 TEST(MixedMachines, ThePagesScriptsReadRatios) {
   const std::vector<CellRecord> cells = make_mixed_cells();
-  const page::Page page = make_run_page(make_run(), cells, make_trade(cells));
+  const document::Page page = make_run_page(make_run(), cells, make_trade(cells));
   const nlohmann::json& data = page.data;
   EXPECT_EQ(data["unit"], "× none");
   EXPECT_EQ(data["ratios"], true);
@@ -79,9 +79,9 @@ TEST(MixedMachines, ThePagesScriptsReadRatios) {
 
 TEST(MixedMachines, FrontsAreDrawnAndWrittenOfRatios) {
   const std::vector<CellRecord> cells = make_mixed_cells();
-  const page::Section section = make_trade_section(make_run(), *withhold_mixed_times(cells), *make_trade(cells));
-  for (const page::Block& block : section.blocks) {
-    const auto* choice = std::get_if<page::ChartChoice>(&block);
+  const document::Section section = make_trade_section(make_run(), *withhold_mixed_times(cells), *make_trade(cells));
+  for (const document::Block& block : section.blocks) {
+    const auto* choice = std::get_if<document::ChartChoice>(&block);
     if (!choice) continue;
     EXPECT_EQ(choice->charts[0].id, "cubes.main.960x540.rmse.moving_ratio");
     EXPECT_EQ(choice->charts[0].x_name, "ratio to 'none' on the same map, moving light");

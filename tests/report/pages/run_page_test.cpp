@@ -73,11 +73,11 @@ nlohmann::json read_data(const std::string& page) {
 }
 
 std::string make_html(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
-  return page::write_html(make_run_page(run, cells, make_trade(cells)));
+  return document::write_html(make_run_page(run, cells, make_trade(cells)));
 }
 
 std::string make_summary(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
-  return page::write_markdown(make_run_page(run, cells, make_trade(cells)));
+  return document::write_markdown(make_run_page(run, cells, make_trade(cells)));
 }
 
 records::CellRecord make_illustrated_cell(const std::string& scene, const std::string& filter) {

@@ -163,13 +163,13 @@ TEST(StressPage, BeginsWithTheAnswer_WhoHoldsFurthest_AndWhatFails) {
   other.degraded.reset();
   other.broken.reset();
   record.axes[0].cases.push_back(other);
-  const page::Page page = make_stress_page(record);
-  EXPECT_EQ(page::answer_of(page),
+  const document::Page page = make_stress_page(record);
+  EXPECT_EQ(document::answer_of(page),
             "On the axis that every filter has, vsm holds furthest, 100 % of the range on average, and esm least far, "
             "0 %. 1 of 2 cells fail; limits that are not where theory puts them, and that nothing explains: 2.");
-  EXPECT_EQ(page::verdict_of(page, "esm-exponent: exponent c, 1 .. 100", "esm"),
-            std::pair(std::string("\u2717 0 %"), page::Grade::kBad));
-  EXPECT_EQ(page::verdict_of(page, "esm-exponent", "vsm"), std::pair(std::string("100 %"), page::Grade::kGood));
+  EXPECT_EQ(document::verdict_of(page, "esm-exponent: exponent c, 1 .. 100", "esm"),
+            std::pair(std::string("\u2717 0 %"), document::Grade::kBad));
+  EXPECT_EQ(document::verdict_of(page, "esm-exponent", "vsm"), std::pair(std::string("100 %"), document::Grade::kGood));
 }
 
 TEST(StressPage, Verdict_IsTheWorstVariants_FromTheEasyEndOn) {
@@ -180,19 +180,19 @@ TEST(StressPage, Verdict_IsTheWorstVariants_FromTheEasyEndOn) {
   cases[0].degraded = records::StressOnset{9.9, 10.0, ""};  // the range is hard at its low end
   cases[2].broken.reset();
   cases[2].degraded = records::StressOnset{1.1, std::pow(10.0, 0.5), ""};
-  const auto verdict = [&] { return page::verdict_of(make_stress_page(record), "esm-exponent", "esm"); };
-  EXPECT_EQ(verdict(), std::pair(std::string("50 .. 75 %"), page::Grade::kNear));
+  const auto verdict = [&] { return document::verdict_of(make_stress_page(record), "esm-exponent", "esm"); };
+  EXPECT_EQ(verdict(), std::pair(std::string("50 .. 75 %"), document::Grade::kNear));
   cases[0].degraded->last_before = 11.0;
-  EXPECT_EQ(verdict(), std::pair(std::string("\u2717 48 .. 75 %"), page::Grade::kBad));
+  EXPECT_EQ(verdict(), std::pair(std::string("\u2717 48 .. 75 %"), document::Grade::kBad));
   cases[0].degraded->last_before.reset();
   EXPECT_EQ(verdict().first, "\u2717 0 .. 75 %");
   cases[0].level = "model";  // says what the GL should do
-  EXPECT_EQ(verdict(), std::pair(std::string("75 %"), page::Grade::kNear));
+  EXPECT_EQ(verdict(), std::pair(std::string("75 %"), document::Grade::kNear));
 }
 
 TEST(StressPage, HasTablesChartSentencesAndWarnings_InBothFormats) {
-  const page::Page page = make_stress_page(make_record());
-  const std::string html = page::write_html(page), markdown = page::write_markdown(page);
+  const document::Page page = make_stress_page(make_record());
+  const std::string html = document::write_html(page), markdown = document::write_markdown(page);
   for (const char* part : {"Measured against theoretical limits", "ln(65504)", "Warnings",
                            "not available: this GL lacks r8", "the blur adds", "ok again at 30", "A mistake",
                            "It was made.", "stress.mistake.png", "stress.csv", "stress.json"}) {
@@ -211,12 +211,12 @@ TEST(StressPage, Texts_AreEscaped) {
   axis.cases[0].limits[0].formula = axis.cases[0].limits[1].explanation = axis.cases[1].not_available = "<u>";
   axis.exhibits[0].title = axis.exhibits[0].sentences[0] = "<s>";
   record.gl.renderer = record.filters[0] = "<tt>";
-  const std::string html = page::write_html(make_stress_page(record));
+  const std::string html = document::write_html(make_stress_page(record));
   for (const char* raw : {"<b>", "<i>", "<u>", "<s>", "<tt>"}) EXPECT_THAT(html, Not(HasSubstr(raw)));
 }
 
 TEST(StressPage, Markdown_EscapesPipes) {
-  EXPECT_THAT(page::write_markdown(make_stress_page(make_record())),
+  EXPECT_THAT(document::write_markdown(make_stress_page(make_record())),
               AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("nothing explains it."), HasSubstr("a\\|b")));
 }
 
@@ -229,7 +229,7 @@ TEST(StressPage, TerminalShowsTheLimits_AndWhatTheyLeaveOut) {
 }
 
 TEST(StressChart, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {
-  const page::Chart chart = make_stress_chart(make_record().axes[0]).value();
+  const document::Chart chart = make_stress_chart(make_record().axes[0]).value();
   EXPECT_EQ(chart.id, "stress.esm-exponent");
   EXPECT_TRUE(chart.x.log && chart.y.log);
   ASSERT_THAT(chart.series, SizeIs(4));
@@ -243,7 +243,7 @@ TEST(StressChart, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {
   EXPECT_THAT(chart.series[1].points[0].details, ::testing::Contains("7 texels overflowed"));
   EXPECT_EQ(chart.series[2].title, "bound, 0.02");
   EXPECT_EQ(chart.series[3].title, "theoretical limits");
-  for (const page::ChartPoint& point : chart.series[3].points) EXPECT_EQ(point.x.value, 11.09);
+  for (const document::ChartPoint& point : chart.series[3].points) EXPECT_EQ(point.x.value, 11.09);
   EXPECT_THAT(chart.notes, ::testing::Contains("some cases have no theoretical limit"));
 }
 
@@ -251,12 +251,12 @@ TEST(StressChart, LevelsOfAVariant_ShareTheirColour_TheModelIsDashed) {
   records::StressAxis axis = make_record().axes[0];
   axis.cases[1] = axis.cases[0];
   axis.cases[1].level = "model";
-  const page::Chart chart = make_stress_chart(axis).value();
-  const auto model = std::ranges::find(chart.series, "esm: r16f, linear (model)", &page::ChartSeries::title);
+  const document::Chart chart = make_stress_chart(axis).value();
+  const auto model = std::ranges::find(chart.series, "esm: r16f, linear (model)", &document::ChartSeries::title);
   ASSERT_NE(model, chart.series.end());
   EXPECT_EQ(model->color, chart.series[0].color);
-  EXPECT_EQ(model->line, page::LineStyle::kDashed);
-  EXPECT_EQ(model->mark, page::Mark::kNone);
+  EXPECT_EQ(model->line, document::LineStyle::kDashed);
+  EXPECT_EQ(model->mark, document::Mark::kNone);
 }
 
 TEST(StressChart, AtMostSixCases_AreShown_TheWorstAndNone) {
@@ -270,7 +270,7 @@ TEST(StressChart, AtMostSixCases_AreShown_TheWorstAndNone) {
     axis.cases.push_back(axis.cases.back());
     axis.cases.back().level = "model";
   }
-  EXPECT_THAT(page::list_shown(make_stress_chart(axis).value()),
+  EXPECT_THAT(document::list_shown(make_stress_chart(axis).value()),
               ::testing::ElementsAre("none: r16f, linear (GL)", "f4: r16f, linear (GL)", "f5: r16f, linear (GL)",
                                      "f6: r16f, linear (GL)", "f7: r16f, linear (GL)", "f8: r16f, linear (GL)",
                                      "bound, 0.02", "theoretical limits"));

@@ -25,7 +25,7 @@ using ::testing::SizeIs;
 constexpr const char* kHostile = "</script><script>alert('1', \"2\")</script><!--";
 
 std::string write_trade(const std::vector<records::CellRecord>& cells) {
-  return page::write_html({"", {make_trade_section(make_run(), cells, *make_trade(cells))}, {}});
+  return document::write_html({"", {make_trade_section(make_run(), cells, *make_trade(cells))}, {}});
 }
 
 nlohmann::json read_charts(const std::string& page) {
@@ -45,51 +45,51 @@ std::string write_and_read(const TemporaryFolder& folder, const std::vector<reco
   return read_text(folder.path() / file);
 }
 
-const page::ChartChoice& find_choice(const page::Section& section, const std::string& id) {
-  for (const page::Block& block : section.blocks)
-    if (const auto* choice = std::get_if<page::ChartChoice>(&block); choice && choice->id == id) return *choice;
+const document::ChartChoice& find_choice(const document::Section& section, const std::string& id) {
+  for (const document::Block& block : section.blocks)
+    if (const auto* choice = std::get_if<document::ChartChoice>(&block); choice && choice->id == id) return *choice;
   throw std::runtime_error("the section has no choice of charts " + id);
 }
 
-std::vector<std::string> list_titles(const page::Chart& chart) {
+std::vector<std::string> list_titles(const document::Chart& chart) {
   std::vector<std::string> titles;
-  for (const page::ChartSeries& series : chart.series) titles.push_back(series.title);
+  for (const document::ChartSeries& series : chart.series) titles.push_back(series.title);
   return titles;
 }
 
 TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   const auto cells = make_crossing_cells("cubes");
-  const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
-  const page::ChartChoice& choice = find_choice(section, "front");
+  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::ChartChoice& choice = find_choice(section, "front");
   ASSERT_THAT(choice.charts, SizeIs(16));
   EXPECT_THAT(choice.selectors[1].options, SizeIs(4));
-  const page::Chart& chart = choice.charts[0];
+  const document::Chart& chart = choice.charts[0];
   EXPECT_EQ(chart.id, "cubes.main.960x540.rmse.moving");
   EXPECT_THAT(chart.x_name, HasSubstr("CPU time (software rasteriser)"));
   // Members of the front, tied, beaten, the lines to what a cell is tied with, and each filter's curve over its width.
   EXPECT_THAT(list_titles(chart), ElementsAre("front, medium", "none", "poisson", "", "", "vsm", "", "", ""));
-  const page::ChartSeries &line = chart.series[0], &beaten = chart.series[3], &tied = chart.series[6];
+  const document::ChartSeries &line = chart.series[0], &beaten = chart.series[3], &tied = chart.series[6];
   EXPECT_THAT(line.points, SizeIs(3));
   EXPECT_EQ(chart.series[1].points[0].label, "none");
   EXPECT_TRUE(beaten.faint);
   EXPECT_FALSE(tied.faint);
   EXPECT_FALSE(tied.filled);
   EXPECT_THAT(tied.points, SizeIs(2));
-  EXPECT_EQ(chart.series[7].line, page::LineStyle::kTies);
+  EXPECT_EQ(chart.series[7].line, document::LineStyle::kTies);
   EXPECT_THAT(chart.series[7].points, SizeIs(4));
-  const page::ChartSeries& curve = chart.series[4];
+  const document::ChartSeries& curve = chart.series[4];
   EXPECT_TRUE(curve.faint);
   ASSERT_THAT(curve.points, SizeIs(3));
   EXPECT_LT(curve.points[0].x.value, curve.points[2].x.value) << "from narrow to wide";
-  const page::ChartPoint& member = chart.series[1].points[0];
+  const document::ChartPoint& member = chart.series[1].points[0];
   EXPECT_THAT(member.details,
               ElementsAre("none", "radius 0", "kernel: 0 texels (medium)", "map 1024 × 1024",
                           HasSubstr("RMSE to the area truth: 0.1 [0.099, 0.101]"),
                           HasSubstr("time of map, prefilter and filter, moving light: 4 ms"), "on the front"));
   EXPECT_EQ(member.opens, cells[0].key);
   EXPECT_EQ(member.group, "medium");
-  for (const page::ChartSeries& series : chart.series)
-    for (const page::ChartPoint& point : series.points) EXPECT_EQ(point.group, "medium") << series.title;
+  for (const document::ChartSeries& series : chart.series)
+    for (const document::ChartPoint& point : series.points) EXPECT_EQ(point.group, "medium") << series.title;
 }
 
 TEST(TradeSection, Fronts_OfALargeRun_LeaveOutWhatIsBeaten) {
@@ -100,11 +100,11 @@ TEST(TradeSection, Fronts_OfALargeRun_LeaveOutWhatIsBeaten) {
       cells.push_back(cell);
     }
   }
-  const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
-  const page::Chart& chart = find_choice(section, "front").charts[0];
+  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::Chart& chart = find_choice(section, "front").charts[0];
   EXPECT_THAT(list_titles(chart), ElementsAre("front, medium", "none", "poisson", "vsm", "", ""));
   EXPECT_THAT(chart.series[4].points, SizeIs(2)) << "tied";
-  const std::string page = page::write_html({"", {section}, {}});
+  const std::string page = document::write_html({"", {section}, {}});
   EXPECT_THAT(page, HasSubstr("more than 2000 cells: beaten ones, and"));
   EXPECT_THAT(write_trade(make_crossing_cells("cubes")), Not(HasSubstr("more than 2000 cells")));
 }
@@ -112,20 +112,20 @@ TEST(TradeSection, Fronts_OfALargeRun_LeaveOutWhatIsBeaten) {
 TEST(TradeSection, FrontOfOnePoint_HasNoLine_AndNamesHaveSixDigits) {
   auto cells = make_crossing_cells("cubes");
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i].params["radius"] = 0.1f * static_cast<float>(i);
-  const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
-  for (const page::Chart& chart : find_choice(section, "front").charts)
-    for (const page::ChartSeries& series : chart.series) {
-      if (series.line == page::LineStyle::kSteps) EXPECT_GT(series.points.size(), 1u) << chart.id;
-      for (const page::ChartPoint& point : series.points) EXPECT_LT(point.label.size(), 24u) << point.label;
+  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  for (const document::Chart& chart : find_choice(section, "front").charts)
+    for (const document::ChartSeries& series : chart.series) {
+      if (series.line == document::LineStyle::kSteps) EXPECT_GT(series.points.size(), 1u) << chart.id;
+      for (const document::ChartPoint& point : series.points) EXPECT_LT(point.label.size(), 24u) << point.label;
     }
 }
 
 TEST(TradeSection, TimesOverTheWidth_AreChartsWithTheirCrossings) {
   const auto cells = make_crossing_cells("cubes");
-  const page::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
-  const page::ChartChoice& choice = find_choice(section, "width");
+  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::ChartChoice& choice = find_choice(section, "width");
   ASSERT_THAT(choice.charts, SizeIs(2));
-  const page::ChartSeries& crossings = choice.charts[0].series.back();
+  const document::ChartSeries& crossings = choice.charts[0].series.back();
   ASSERT_THAT(crossings.points, SizeIs(1));
   EXPECT_EQ(crossings.title, "crossing");
   EXPECT_NEAR(crossings.points[0].x.value, 3.0, 1e-9);

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "filters/base/atomic_file.h"
+#include "base/atomic_file.h"
 
 namespace shadowbench::pages {
 namespace {

@@ -1,11 +1,10 @@
-#include "report/records/tuned_record.h"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
 
-#include "filters/base/atomic_file.h"
+#include "base/atomic_file.h"
 #include "report/pages/tune_page.h"
+#include "report/records/tuned_record.h"
 #include "tests/report/pages/answer.h"
 
 namespace shadowbench::records {
@@ -93,7 +92,7 @@ TEST(TunedJson, ReadsBackAsItWasWritten) {
 TEST(TunePage, SaysParametersScoresGainAndRanges_InBothFormats) {
   TunedRecord record = make_record(make_filter({0.10, 0.05}, {0.12, 0.08}));
   for (const std::string& written :
-       {page::write_markdown(pages::make_tune_page(record)), page::write_html(pages::make_tune_page(record))}) {
+       {document::write_markdown(pages::make_tune_page(record)), document::write_html(pages::make_tune_page(record))}) {
     for (const char* part : {"+33.3 %", "rmse 0.12 to 0.08", "standard error is 0.002", "5 .. 9, and 20", "12.5 %",
                              "all of it: no effect", "107 settings", "tuned.json"})
       EXPECT_THAT(written, HasSubstr(part));
@@ -110,15 +109,15 @@ TEST(TunePage, BeginsWithTheAnswer_WhatWasFound_AndWhatItGains) {
     filter.views.push_back({"ball", "camera +10", false, {0.02, 0.03}, 0.004});
     filter.views.push_back({"stack", "camera +10", false, {0.02, 0.019}, 0.004});
   }
-  const page::Page page = pages::make_tune_page(record);
-  EXPECT_EQ(page::answer_of(page),
+  const document::Page page = pages::make_tune_page(record);
+  EXPECT_EQ(document::answer_of(page),
             "Better on unseen views: vsm with radius 7, idle 0.5: rmse 0.12 to 0.08 (+33.3 %). The default stays for "
             "esm.");
-  using page::Grade;
-  EXPECT_EQ(page::verdict_of(page, "cubes", "vsm"), std::pair(std::string("+33.3 %"), Grade::kGood));
-  EXPECT_EQ(page::verdict_of(page, "ball", "vsm"), std::pair(std::string("\u2717 -50.0 %"), Grade::kBad));
-  EXPECT_EQ(page::verdict_of(page, "stack", "vsm"), std::pair(std::string("+5.0 %"), Grade::kNear));
-  EXPECT_EQ(page::verdict_of(page, "all scenes", "esm"), std::pair(std::string("\u2717 -12.5 %"), Grade::kBad));
+  using document::Grade;
+  EXPECT_EQ(document::verdict_of(page, "cubes", "vsm"), std::pair(std::string("+33.3 %"), Grade::kGood));
+  EXPECT_EQ(document::verdict_of(page, "ball", "vsm"), std::pair(std::string("\u2717 -50.0 %"), Grade::kBad));
+  EXPECT_EQ(document::verdict_of(page, "stack", "vsm"), std::pair(std::string("+5.0 %"), Grade::kNear));
+  EXPECT_EQ(document::verdict_of(page, "all scenes", "esm"), std::pair(std::string("\u2717 -12.5 %"), Grade::kBad));
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <random>
 #include <sstream>
 
-#include "filters/base/atomic_file.h"
-#include "filters/base/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "report/regress/baseline.h"
 
 namespace shadowbench::regress {

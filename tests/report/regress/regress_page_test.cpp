@@ -34,13 +34,13 @@ RegressReport make_report(std::size_t differing) {
 TEST(RegressPage, SaysWhatTheTerminalSays_WithPictures_InBothFormats) {
   const RegressReport report = make_report(2);
   const std::string terminal = make_regress_text(report);
-  const page::Page page = make_regress_page(report);
-  for (const std::string& written : {page::write_html(page), page::write_markdown(page), terminal})
+  const document::Page page = make_regress_page(report);
+  for (const std::string& written : {document::write_html(page), document::write_markdown(page), terminal})
     for (const char* part : {"less accurate: cubes filter0 (view main, map 512, 256 x 144)", "RMSE is 0.2, and was 0.1",
                              "note: times are another machine", "filter1.png", "3 compared: 1 same, 2 less accurate",
                              "if this is meant: shadowbench regress run --accept"})
       EXPECT_THAT(written, HasSubstr(part));
-  EXPECT_THAT(page::write_html(page), HasSubstr("<img src=\"filter0.png\""));
+  EXPECT_THAT(document::write_html(page), HasSubstr("<img src=\"filter0.png\""));
 }
 
 TEST(RegressPage, BeginsWithTheAnswer_WhatMoved_AndByHowMuch) {
@@ -50,34 +50,35 @@ TEST(RegressPage, BeginsWithTheAnswer_WhatMoved_AndByHowMuch) {
   report.comparisons.back().filter = "vsm";
   // A map of another scale is far beyond a limit that means "equal".
   report.comparisons[0].findings.push_back({"map_scale.texel_m", 1.0, 2.0, 1e-9, "another map"});
-  const page::Page page = make_regress_page(report);
+  const document::Page page = make_regress_page(report);
   EXPECT_EQ(
-      page::answer_of(page),
+      document::answer_of(page),
       "3 compared: 1 same, 2 less accurate. Worst: cubes filter0 (view main, map 512, 256 x 144) is less accurate: "
       "RMSE is 0.2, and was 0.1.");
-  const auto verdict = [&](const char* filter) { return page::verdict_of(page, "cubes", filter); };
-  EXPECT_EQ(verdict("filter0"), std::pair(std::string("\u2717 less accurate, 10 x its limit"), page::Grade::kBad));
-  EXPECT_EQ(verdict("filter1"), std::pair(std::string("less accurate, accepted"), page::Grade::kNear));
-  EXPECT_EQ(verdict("vsm"), std::pair(std::string("same"), page::Grade::kGood));
+  const auto verdict = [&](const char* filter) { return document::verdict_of(page, "cubes", filter); };
+  EXPECT_EQ(verdict("filter0"), std::pair(std::string("\u2717 less accurate, 10 x its limit"), document::Grade::kBad));
+  EXPECT_EQ(verdict("filter1"), std::pair(std::string("less accurate, accepted"), document::Grade::kNear));
+  EXPECT_EQ(verdict("vsm"), std::pair(std::string("same"), document::Grade::kGood));
 }
 
 TEST(RegressPage, WhereAllIsTheSame_NothingIsToBeAccepted) {
-  const std::string html = page::write_html(make_regress_page(make_report(0)));
+  const std::string html = document::write_html(make_regress_page(make_report(0)));
   EXPECT_THAT(html, AllOf(HasSubstr("1 compared: 1 same"), Not(HasSubstr("--accept")), Not(HasSubstr("cell-1"))));
 }
 
 TEST(RegressPage, ManyCells_AreCounted_AndStandInTheTable) {
-  const page::Page page = make_regress_page(make_report(kMostListed + 2));
-  EXPECT_THAT(page::write_html(page), AllOf(HasSubstr(fmt::format("id=\"cell-{}\"", kMostListed)),
-                                            Not(HasSubstr(fmt::format("id=\"cell-{}\"", kMostListed + 1))),
-                                            HasSubstr("2 more cells differ: see regress.json.")));
-  EXPECT_EQ(page::verdict_of(page, "cubes", fmt::format("filter{}", kMostListed + 1)).second, page::Grade::kBad);
+  const document::Page page = make_regress_page(make_report(kMostListed + 2));
+  EXPECT_THAT(document::write_html(page), AllOf(HasSubstr(fmt::format("id=\"cell-{}\"", kMostListed)),
+                                                Not(HasSubstr(fmt::format("id=\"cell-{}\"", kMostListed + 1))),
+                                                HasSubstr("2 more cells differ: see regress.json.")));
+  EXPECT_EQ(document::verdict_of(page, "cubes", fmt::format("filter{}", kMostListed + 1)).second,
+            document::Grade::kBad);
 }
 
 TEST(RegressPage, Texts_AreEscaped) {
   RegressReport report = make_report(1);
   report.comparisons[0].scene = report.comparisons[0].findings[0].text = report.accept_command = "<b>";
-  EXPECT_THAT(page::write_html(make_regress_page(report)), Not(HasSubstr("<b>")));
+  EXPECT_THAT(document::write_html(make_regress_page(report)), Not(HasSubstr("<b>")));
 }
 
 }  // namespace

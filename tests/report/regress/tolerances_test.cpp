@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 
 namespace shadowbench::regress {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/load.h"
 #include "tests/harness/scene/test_files.h"
 

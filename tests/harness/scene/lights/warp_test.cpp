@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "filters/base/error.h"
+#include "base/error.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/primitives.h"

@@ -1,0 +1,138 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <regex>
+
+#include "report/document/embedded.h"
+#include "report/document/markdown.h"
+#include "tests/report/document/example_page.h"
+#include "tests/report/pages/answer.h"
+
+namespace shadowbench::document {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(Page, Html_HasEveryBlock_Escaped) {
+  const std::string html = write_html(make_example_page());
+  for (const char* text : {"<title>An &lt;example&gt;</title>",
+                           "<nav class=\"siblings\"><a href=\"../index.html\">the run</a>",
+                           "<a href=\"#warnings\">Warnings</a>",
+                           "<section id=\"warnings\" class=\"warns\">",
+                           "<dt>machine</dt><dd>a_b &amp; c</dd>",
+                           "<p>Data: <a href=\"a%20b.csv\">a b.csv</a>, <a href=\"c.json\">its schema</a></p>",
+                           "<p>Mind:</p>",
+                           "<li>something is odd</li>",
+                           "<h3>A heading</h3>",
+                           "<p class=\"note\">quiet</p>",
+                           "<td class=\"n\">0.25</td>",
+                           "<td class=\"s\">vsm</td>",
+                           "<td class=\"n good\">1</td><td class=\"n bad\">\u2717 3</td></tr>",
+                           "<td class=\"n near\">2</td>",
+                           "<caption>A table</caption>",
+                           "<div class=\"gallery wide\">",
+                           "<img src=\"images/a%20b.png\" alt=\"a picture\" loading=\"lazy\">",
+                           "<rect x=\"200\" y=\"4\" width=\"600\" height=\"16\" fill=\"#f0bf30\">",
+                           "<li>mine: no attribution</li>",
+                           "<figure class=\"chart\" id=\"choice\">",
+                           "<figure class=\"chart\" id=\"single\">",
+                           "<details><summary>More</summary>"})
+    EXPECT_THAT(html, HasSubstr(text));
+}
+
+TEST(Page, Markdown_SaysTheSame_InColumnsThatLineUp) {
+  const std::string text = write_markdown(make_example_page());
+  for (const char* part :
+       {"# An \\<example\\>", "Other pages: [the run](../index.html)", "- **machine**: a_b & c",
+        "## Warnings\n\nMind:\n\n- something is odd", "Data: [a b.csv](a%20b.csv), [its schema](c.json)",
+        "#### A heading", "A table:\n\n", "| vsm    | 0.25 | short ", "| a\\|b   | –    | xxx",
+        "| cubes | 1   | \u2717 3 |", "| stack | 2   | –   |", "Pictures: [a picture](images/a%20b.png)",
+        "- vsm: RMSE 0.03", "one for every scene and cost", "### More\n\n#### Within\n\nunfolded"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST(Page, BeginsWithWhatHasNoHeading_ThenTheContents) {
+  const std::string html = write_html(make_example_page());
+  EXPECT_LT(html.find("<dt>machine</dt>"), html.find("<a href=\"#warnings\">"));
+  EXPECT_LT(html.find("<a href=\"#warnings\">"), html.find("<h2>Warnings</h2>"));
+}
+
+TEST(Page, WithoutCharts_HasNoScript) {
+  const Page page{"t", {{"a", "A", {Paragraph{"text"}}}}, {}};
+  EXPECT_THAT(write_html(page), Not(HasSubstr("<script")));
+}
+
+TEST(Page, LoadsNothingFromElsewhere) {
+  const std::string html = write_html(make_example_page());
+  EXPECT_THAT(html, Not(HasSubstr("@import")));
+  EXPECT_THAT(html, Not(::testing::ContainsRegex("(src|href)=\"(http|//)")));
+}
+
+TEST(Page, StyleSheet_KnowsDarkScreensPhonesAndPaper) {
+  const std::string style(page_style());
+  for (const char* media : {"prefers-color-scheme: dark", "max-width: 600px", "@media print"})
+    EXPECT_THAT(style, HasSubstr(media));
+}
+
+/// Relative luminance of "#rrggbb" (WCAG 2.1).
+double luminance_of(const std::string& color) {
+  double sum = 0.0;
+  const double weights[] = {0.2126, 0.7152, 0.0722};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double part = std::stoi(color.substr(1 + 2 * i, 2), nullptr, 16) / 255.0;
+    sum += weights[i] * (part <= 0.04045 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4));
+  }
+  return sum;
+}
+
+TEST(Page, GradedCells_CanBeRead_OnLightAndDarkScreens) {
+  const std::string style(page_style());
+  for (const std::size_t begin : {style.find(":root"), style.find(":root", style.find(":root") + 1)}) {
+    const auto color = [&](const std::string& name) {
+      return luminance_of(style.substr(style.find("#", style.find("--" + name + ":", begin)), 7));
+    };
+    const double ink = color("ink");
+    for (const char* grade : {"good", "near", "bad"}) {
+      const double other = color(grade);
+      const auto [dark, light] = std::minmax(ink, other);
+      EXPECT_GE((light + 0.05) / (dark + 0.05), 4.5) << grade;
+    }
+  }
+}
+
+TEST(Table, WhatWasSaidFirst_Stays_AndWhatWasNotSaidIsNothing) {
+  Table table{"A table", {{"scene"}, {}}};
+  table.judge("cubes", "vsm", "2", Grade::kBad);
+  table.judge("stack", "esm", "1", Grade::kGood);
+  table.judge("cubes", "vsm", "3", Grade::kGood);
+  EXPECT_THAT(table.table.header, ::testing::ElementsAre("scene", "vsm", "esm"));
+  EXPECT_EQ(table.text_at(0, 1), "\u2717 2");
+  EXPECT_EQ(table.text_at(0, 2), "–");
+  EXPECT_EQ(table.grade_at(0, 2), Grade::kNone);
+  EXPECT_EQ(table.text_at(1, 2), "1");
+}
+
+TEST(Chart, ShowsTheCurvesThatSayMost_AndSaysHowToSeeTheOthers) {
+  Chart chart;
+  std::vector<std::pair<double, std::string>> weights;
+  for (int i = 0; i < 8; ++i) {
+    chart.series.emplace_back().title = std::string(1, static_cast<char>('a' + i));
+    weights.emplace_back(i == 0 ? 100.0 : i, chart.series.back().title);
+  }
+  chart.series.emplace_back().title = "bound";
+  show_most_telling(chart, weights);
+  EXPECT_THAT(list_shown(chart), ::testing::ElementsAre("a", "d", "e", "f", "g", "h", "bound"));
+  EXPECT_THAT(chart.notes, ::testing::Contains(HasSubstr("click a name")));
+  Chart few;
+  show_most_telling(few, {{1.0, "a"}});
+  EXPECT_TRUE(few.notes.empty());
+}
+
+TEST(Markdown, EscapesWhatMeansSomething) {
+  EXPECT_EQ(escape_markdown("a|b\n<c> `d` *e* [f]_g"), "a\\|b \\<c\\> \\`d\\` \\*e\\* \\[f\\]\\_g");
+  EXPECT_EQ(escape_markdown("kernel_rmse _x"), "kernel_rmse \\_x");
+}
+
+}  // namespace
+}  // namespace shadowbench::document
