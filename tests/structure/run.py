@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Checks that the folders are what CONTRIBUTING.md says of them. Standard library only.
 
-An include runs from a room to one that stands before it in ROOMS, never back up. A room is one CMake target and one namespace,
-with the folders inside it that are no rooms. Every folder of sources has a README and holds at most 40 files (the filters' own
-do not count). No source has more than 400 lines (a test 500), none outside of REPLAYS names a filter, and none includes a library that
-belongs to another folder.
+A source is listed in its room's CMakeLists.txt. An include runs from a room to one that stands before it in ROOMS, never back
+up. A room is one CMake target and one namespace, with the folders inside it that are no rooms. Every folder of sources has a
+README and holds at most 40 files (the filters' own do not count). No source has more than 400 lines (a test 500), none outside of
+REPLAYS names a filter, and none includes a library that belongs to another folder.
 """
 import argparse
 import pathlib
@@ -50,6 +50,14 @@ def check_names(root, name, text, faults):
             faults.append(f"{name}: includes what {folder} alone knows")
 
 
+def check_is_listed(root, room, path, faults):
+    """CMake finds what a filter or an axis of `stress` is by its file; every other source is listed."""
+    found = path.with_suffix(".glsl").exists() or path.parent.name == "axes" or path.parent.name == "noise"
+    within = path.relative_to(root / room).as_posix()
+    if not found and not re.search(rf"(?<![\w/]){re.escape(within)}(?!\w)", root.joinpath(room, "CMakeLists.txt").read_text(encoding="utf-8")):
+        faults.append(f"{room}/{within}: is not listed in {room}/CMakeLists.txt")
+
+
 def check_source(root, path, faults):
     name = path.relative_to(root).as_posix()
     text = path.read_text(encoding="utf-8")
@@ -66,8 +74,10 @@ def check_source(root, path, faults):
     opened = set(re.findall(r"^namespace (shadowbench(?:::\w+)?) \{", text, re.MULTILINE))
     if opened - {wanted}:
         faults.append(f"{name}: opens {', '.join(sorted(opened - {wanted}))}; the room's namespace is {wanted}")
+    if path.suffix == ".cpp":
+        check_is_listed(root, room, path, faults)
     for number, line in enumerate(text.splitlines(), 1):
-        include = re.match(r'#include "((?:filters|reference|report|harness)/[^"]+)"', line)
+        include = re.match(r'#include "((?:base|filters|reference|report|harness)/[^"]+)"', line)
         other = room_of(include.group(1)) if include else None
         if other is None or other == room:
             continue
@@ -95,7 +105,7 @@ def main():
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
     root = parser.parse_args().root
     faults = []
-    for top in ("filters", "shaders", "reference", "report", "harness"):
+    for top in ("base", "filters", "shaders", "reference", "report", "harness"):
         for path in sorted(root.joinpath(top).rglob("*")):
             if "out" in path.relative_to(root).parts:
                 continue
