@@ -33,7 +33,7 @@ struct AdviseArguments {
   std::vector<std::string> scenes;
   std::string size;
   std::string width_class;
-  std::string light = "moving";
+  std::string light_motion = "moving";
   std::string cheapest = "time";
   bool json = false;
 };
@@ -45,8 +45,8 @@ double parse_limit(const std::string& text, const char* option) {
   fail(fmt::format("{}: '{}' must be a number, 0 or more", option, text));
 }
 
-const std::map<std::string, analysis::LightMotion> kLights = {{"moving", analysis::LightMotion::kMoving},
-                                                              {"static", analysis::LightMotion::kStatic}};
+const std::map<std::string, analysis::LightMotion> kLightMotions = {{"moving", analysis::LightMotion::kMoving},
+                                                                    {"static", analysis::LightMotion::kStatic}};
 constexpr const char* kGpuPrefix = "gpu:";
 
 analysis::CostKind parse_cost(const std::string& text) {
@@ -74,7 +74,7 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
       request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option.c_str()), {}});
   }
   for (const std::string& claim : arguments.claims) request.demands.push_back({nullptr, 0.0, claim});
-  request.light = kLights.at(arguments.light);
+  request.light = kLightMotions.at(arguments.light_motion);
   request.cheapest = parse_cost(arguments.cheapest);
   request.scenes = arguments.scenes;
   request.width_class = arguments.width_class;
@@ -129,7 +129,7 @@ Command make_advise_command() {
   std::vector<std::string> classes;
   for (const auto& each : filters::width_classes()) classes.emplace_back(each.name);
   command.add("--class", &a->width_class, "judge kernels of this class of width [any]").one_of(classes);
-  command.add("--light", &a->light, "moving or static: whether every frame pays for map and prefilter")
+  command.add("--light-motion", &a->light_motion, "moving or static: whether every frame pays for map and prefilter")
       .one_of({"moving", "static"});
   command
       .add("--cheapest", &a->cheapest,

@@ -31,7 +31,7 @@ constexpr std::size_t kMostNamed = 10;
 
 const std::optional<records::Ratio>& ratio_of(const CellRecord& cell, const std::string& name) {
   const records::RatioRecord& ratios = cell.ratio_to_none;
-  return name == "lookup" ? ratios.lookup : name == "moving" ? ratios.moving : ratios.static_map;
+  return name == "lookup" ? ratios.lookup : name == "moving" ? ratios.moving : ratios.static_light;
 }
 
 std::string describe_apart(const RatioApart& apart) {

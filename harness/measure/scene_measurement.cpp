@@ -280,7 +280,7 @@ class SceneBench {
     record.time_ms.map = summarise({rounds.map.begin(), rounds.map.begin() + count});
     record.time_ms.lookup = summarise(times.lookup);
     record.time_ms.empty = summarise({empty.begin(), empty.begin() + count});
-    record.time_ms.filter = bootstrap_difference(times.lookup, empty, options_.seed);
+    record.time_ms.static_light = bootstrap_difference(times.lookup, empty, options_.seed);
     record.time_ms.moving = bootstrap_difference(moving, empty, options_.seed);
     record.time_ms.stopped = name_of(times.stopped);
     if (times.prefilter.empty())
@@ -288,7 +288,7 @@ class SceneBench {
     else
       record.time_ms.prefilter = summarise(times.prefilter);
     record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, unfiltered.lookup, options_.seed);
-    record.ratio_to_none.static_map = record.ratio_to_none.lookup;
+    record.ratio_to_none.static_light = record.ratio_to_none.lookup;
     record.ratio_to_none.moving = bootstrap_ratio(moving, add_moving(rounds.map, unfiltered), options_.seed);
   }
 };

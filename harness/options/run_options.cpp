@@ -275,7 +275,7 @@ std::vector<RunOption> list_run_options() {
       [](RunOptions& o, const Told& told) { o.rounds.budget_ms = 1e3 * std::get<double>(told); },
       [](const RunOptions& o) { return o.rounds.budget_ms / 1e3; });
   t.add("--lights",
-        fmt::format("also time frames lit by so many suns, each with a map of its own, casters still and moving: "
+        fmt::format("also time frames lit by so many suns, each with a map of its own, casters static and moving: "
                     "counts of 1 .. {} with commas (default: none)",
                     kMostLights),
         &RunOptions::lights)

@@ -28,7 +28,7 @@ CostCurve make_width_curve(const TradeScope& scope, const WidthSeries& series,
   for (const std::size_t i : series.configurations) {
     const TradeConfiguration& each = scope.configurations[i];
     curve.points.push_back(
-        {*each.sigma_texels, {*each.costs[kMovingCost].estimate, *each.costs[kStillCost].estimate}, {}});
+        {*each.sigma_texels, {*each.costs[kMovingCost].estimate, *each.costs[kStaticCost].estimate}, {}});
   }
   return curve;
 }
@@ -38,7 +38,7 @@ std::vector<CostCurve> make_width_curves(const TradeScope& scope, int map_size,
   std::vector<std::size_t> timed;
   for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
     const TradeConfiguration& each = scope.configurations[i];
-    if (each.map_size == map_size && each.costs[kStillCost].estimate && each.costs[kMovingCost].estimate)
+    if (each.map_size == map_size && each.costs[kStaticCost].estimate && each.costs[kMovingCost].estimate)
       timed.push_back(i);
   }
   std::vector<CostCurve> curves;
@@ -54,12 +54,12 @@ Estimate scale(const records::Ratio& ratio, const records::Quartiles& reference)
 }
 
 CurvePoint make_light_point(const records::LightCountRecord& own, const records::CellRecord* reference) {
-  CurvePoint point{static_cast<double>(own.count), {}, {read_spread(own.moving_ms), read_spread(own.still_ms)}};
+  CurvePoint point{static_cast<double>(own.count), {}, {read_spread(own.moving_ms), read_spread(own.static_ms)}};
   point.cost = point.spread;
   if (!reference) return point;
   const auto under = std::ranges::find(*reference->lights, own.count, &records::LightCountRecord::count);
   if (under != reference->lights->end())
-    point.cost = {scale(own.moving_ratio, under->moving_ms), scale(own.still_ratio, under->still_ms)};
+    point.cost = {scale(own.moving_ratio, under->moving_ms), scale(own.static_ratio, under->static_ms)};
   return point;
 }
 
@@ -203,7 +203,7 @@ std::optional<double> find_off_line(const CostCurve& curve, LightMotion light, d
 }  // namespace
 
 bool CurveComparison::has(int sign) const {
-  return std::ranges::count(signs.still, sign) + std::ranges::count(signs.moving, sign) > 0;
+  return std::ranges::count(signs.static_light, sign) + std::ranges::count(signs.moving, sign) > 0;
 }
 
 std::vector<CostChart> make_width_charts(const std::vector<records::CellRecord>& cells,

@@ -19,10 +19,10 @@ namespace shadowbench::analysis {
 /// Something of a frame with a moving light and of one with a static light.
 template <class T>
 struct PerLight {
-  T moving{}, still{};
+  T moving{}, static_light{};
 
-  T& operator[](LightMotion light) { return light == LightMotion::kMoving ? moving : still; }
-  const T& operator[](LightMotion light) const { return light == LightMotion::kMoving ? moving : still; }
+  T& operator[](LightMotion light) { return light == LightMotion::kMoving ? moving : static_light; }
+  const T& operator[](LightMotion light) const { return light == LightMotion::kMoving ? moving : static_light; }
 };
 
 /// Both, in the order in which tables and charts have them.
@@ -78,7 +78,7 @@ struct CurveComparison {
   PerLight<std::vector<int>> signs;  ///< at each: -1 `a` is cheaper, 0 not apart, 1 it is dearer
   PerLight<std::vector<std::pair<double, double>>> crossings;  ///< interpolated place and cost where medians are equal
 
-  /// Whether `a` has a sign anywhere, with casters still or moving.
+  /// Whether `a` has a sign anywhere, with casters static or moving.
   bool has(int sign) const;
   /// Whether each of the two is cheaper somewhere.
   bool changes() const { return has(-1) && has(1); }

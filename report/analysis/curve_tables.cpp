@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
-const char* name_light(LightMotion light) { return light == LightMotion::kStatic ? "still" : "moving"; }
+const char* name_light(LightMotion light) { return light == LightMotion::kStatic ? "static" : "moving"; }
 
 // Where a comparison has a sign: "2, 4".
 std::string join_places(const CurveComparison& comparison, LightMotion light, int sign) {

@@ -28,7 +28,7 @@ std::optional<double> read_estimate(const records::CellRecord& cell, const std::
 }
 
 const std::optional<records::OwnTime>& own_time(const records::CellRecord& cell, LightMotion light) {
-  return light == LightMotion::kStatic ? cell.time_ms.filter : cell.time_ms.moving;
+  return light == LightMotion::kStatic ? cell.time_ms.static_light : cell.time_ms.moving;
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ std::optional<records::Interval> frame_interval(const records::CellRecord& cell,
 }
 
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light) {
-  return light == LightMotion::kStatic ? cell.ratio_to_none.static_map : cell.ratio_to_none.moving;
+  return light == LightMotion::kStatic ? cell.ratio_to_none.static_light : cell.ratio_to_none.moving;
 }
 
 std::string describe_demand(const Demand& demand) {

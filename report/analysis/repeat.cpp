@@ -13,7 +13,7 @@ namespace {
 
 using NamedRatio = std::pair<const char*, std::optional<records::Ratio> records::RatioRecord::*>;
 constexpr NamedRatio kRatios[] = {{"lookup", &records::RatioRecord::lookup},
-                                  {"static", &records::RatioRecord::static_map},
+                                  {"static", &records::RatioRecord::static_light},
                                   {"moving", &records::RatioRecord::moving}};
 
 bool is_same(const records::Ratio& a, const records::Ratio& b) {

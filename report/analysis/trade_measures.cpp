@@ -30,7 +30,7 @@ Measured read_metric(const records::CellRecord& cell, const metrics::Metric& met
 
 Measured read_time(const records::CellRecord& cell, LightMotion light) {
   const auto time = frame_time(cell, light);
-  if (!time) return miss(cell, light == LightMotion::kMoving ? "time_ms.moving" : "time_ms.filter");
+  if (!time) return miss(cell, light == LightMotion::kMoving ? "time_ms.moving" : "time_ms.static");
   const auto interval = frame_interval(cell, light);
   return {interval ? Estimate{time->median, interval->low, interval->high} : Estimate{time->median, time->q1, time->q3},
           {}};
@@ -117,12 +117,12 @@ Measure make_ratio_measure(const char* id, const char* name, const char* frame) 
           true};
 }
 
-// What a frame costs, the light moving and still, in milliseconds.
+// What a frame costs, the light moving and static, in milliseconds.
 std::array<Measure, 2> list_time_measures() {
   return {make_time_measure("moving", "time of map, prefilter and filter, moving light",
                             "what the filter costs while light or casters move: map, prefilter and lookup, less a "
                             "lookup that reads nothing, per round; interval: 95 % of the median"),
-          make_time_measure("filter", "time of the filter alone, still light",
+          make_time_measure("static", "time of the filter alone, static light",
                             "what the filter costs while they stand still: its lookup, less a lookup that reads "
                             "nothing, per round; interval: 95 % of the median")};
 }
@@ -130,7 +130,7 @@ std::array<Measure, 2> list_time_measures() {
 std::array<Measure, 2> list_ratio_measures() {
   return {make_ratio_measure("moving_ratio", "ratio to 'none' on the same map, moving light",
                              "a whole frame whose light or casters move (map, prefilter and lookup)"),
-          make_ratio_measure("still_ratio", "ratio to 'none' on the same map, still light",
+          make_ratio_measure("static_ratio", "ratio to 'none' on the same map, static light",
                              "a whole frame whose light and casters stand still (the lookup alone)")};
 }
 
@@ -159,7 +159,7 @@ std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& 
   bytes.id = "bytes";
   bytes.is_bytes = true;
   const auto frame = mixes_machines(cells) ? list_ratio_measures() : list_time_measures();
-  std::vector<Measure> measures = {frame[kMovingCost], frame[kStillCost],
+  std::vector<Measure> measures = {frame[kMovingCost], frame[kStaticCost],
                                    make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
   for (const std::string& gpu : list_gpus(point_to(cells))) {
     measures.push_back({"gpu_" + gpu, fmt::format("estimate on {}, us", gpu),

@@ -13,7 +13,8 @@
 namespace shadowbench::analysis {
 
 inline constexpr std::size_t kErrorMeasures = 4;
-inline constexpr std::size_t kMovingCost = 0, kStillCost = 1;  ///< of the costs: of a frame, the light moving or still
+inline constexpr std::size_t kMovingCost = 0,
+                             kStaticCost = 1;  ///< of the costs: of a frame, the light moving or static
 
 /// One axis of the trade.
 struct Measure {
@@ -34,7 +35,7 @@ const std::array<Measure, kErrorMeasures>& list_error_measures();
 
 /// Lists the costs: moving, filter, fetches, bytes, and an estimate for each GPU that a cell names. The first is what
 /// is compared unless something else is asked for. Where several kinds of machine measured the cells, moving_ratio and
-/// still_ratio stand in place of the first two.
+/// static_ratio stand in place of the first two.
 std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells = {});
 
 /// Names the GPUs that cells have costs on.

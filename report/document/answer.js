@@ -7,7 +7,7 @@ const startAnswer = (holder) => {
   const kSeen = 0.001;
   const kLights = [
     ["moving", "moving: map and prefilter in every frame"],
-    ["still", "still: the lookup alone"],
+    ["static", "static: the lookup alone"],
   ];
   const places = run.places.map(({ title }) => title);
   const state = { wide: "", limits: { ...run.limits } };
@@ -15,7 +15,7 @@ const startAnswer = (holder) => {
     measure.option === "--max-ms"
       ? { ...measure, field: kTime, title: "time of a frame" }
       : { ...measure, field: measure.id };
-  const limits = run.measures.filter(({ id, option }) => option && id !== `${kTime}.still`).map(nameLimit);
+  const limits = run.measures.filter(({ id, option }) => option && id !== `${kTime}.static`).map(nameLimit);
   const limitOf = (field) => limits.find((limit) => limit.field === field);
   const titleOf = (field) => limitOf(field).title;
   const fieldOf = (field) => (field === kTime ? `${kTime}.${shadowbench.light}` : field);
@@ -53,7 +53,7 @@ const startAnswer = (holder) => {
       "shadowbench advise RUN",
       ...asked.map(({ option, field }) => `${option} ${state.limits[field]}`),
       ...(state.wide ? [`--class ${state.wide}`] : []),
-      ...(shadowbench.light === "still" ? ["--light static"] : []),
+      ...(shadowbench.light === "static" ? ["--light-motion static"] : []),
     ].join(" ");
   };
   // How the worst of what can be limited differs between the choice and the runner-up.

@@ -144,7 +144,7 @@ Json request_json(const analysis::Advice& advice) {
       json["limits"][demand.spec->option] = demand.most;
     else
       json["requires"].push_back(demand.claim);
-  json["light"] = request.light == analysis::LightMotion::kMoving ? "moving" : "static";
+  json["light_motion"] = request.light == analysis::LightMotion::kMoving ? "moving" : "static";
   json["cheapest"] = name_of(request.cheapest);
   json["places"] = Json::array();
   for (const analysis::Place& place : advice.places)

@@ -28,7 +28,7 @@ bool is_advised(const records::CellRecord& cell) { return !cell.teaching.value_o
 
 /// What a frame costs, by the names that the page's scripts have for it: milliseconds, or ratios to `none` where
 /// several kinds of machine measured the cells.
-constexpr const char *kMoving = "time_ms.moving", *kStill = "time_ms.still";
+constexpr const char *kMoving = "time_ms.moving", *kStatic = "time_ms.static";
 
 json value_of(const std::optional<double>& value) { return value && std::isfinite(*value) ? json(*value) : json(); }
 
@@ -47,7 +47,7 @@ json make_measure(std::string_view id, std::string_view title, std::string_view 
           {"better", kBetter[static_cast<std::size_t>(direction)]}};
 }
 
-/// The time of a frame, light moving and still; no limit is set on a ratio.
+/// The time of a frame, light moving and static; no limit is set on a ratio.
 json list_frame_measures(const records::RunRecord& run, const analysis::CostKind& frame) {
   const bool is_ratio = frame == analysis::CostKind::kRatio;
   const std::string unit = is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl);
@@ -61,7 +61,7 @@ json list_frame_measures(const records::RunRecord& run, const analysis::CostKind
                         is_ratio ? "" : "--max-ms", "cost");
   };
   return {make(kMoving, "moving light", "map, prefilter and lookup", "in which light or casters move"),
-          make(kStill, "still light", is_ratio ? "the lookup" : "lookup", "while light and casters stand still")};
+          make(kStatic, "static light", is_ratio ? "the lookup" : "lookup", "while light and casters stand still")};
 }
 
 /// Everything that the table can show, and that limits can be set on.
@@ -83,7 +83,7 @@ json list_values(const records::CellRecord& cell, const std::vector<std::string>
                  const analysis::CostKind& frame) {
   json values;
   values[kMoving] = value_of(analysis::cost_spec(frame).read(cell, analysis::LightMotion::kMoving));
-  values[kStill] = value_of(analysis::cost_spec(frame).read(cell, analysis::LightMotion::kStatic));
+  values[kStatic] = value_of(analysis::cost_spec(frame).read(cell, analysis::LightMotion::kStatic));
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty()) values[std::string(metric.path)] = value_of(metric.read(cell));
   for (const std::string& gpu : gpus)
@@ -96,7 +96,7 @@ json list_values(const records::CellRecord& cell, const std::vector<std::string>
 json list_intervals(const records::CellRecord& cell, const analysis::CostKind& frame) {
   json intervals = json::object();
   for (const auto& [id, light] :
-       {std::pair(kMoving, analysis::LightMotion::kMoving), std::pair(kStill, analysis::LightMotion::kStatic)}) {
+       {std::pair(kMoving, analysis::LightMotion::kMoving), std::pair(kStatic, analysis::LightMotion::kStatic)}) {
     const auto cost = analysis::measure_cost({&cell}, frame, light);
     if (!cost) continue;
     const records::Interval& interval = cost->ci95 ? *cost->ci95 : cost->quartiles;
@@ -130,7 +130,7 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
 }
 
 constexpr std::pair<const char*, analysis::LightMotion> kLights[] = {{"moving", analysis::LightMotion::kMoving},
-                                                                     {"still", analysis::LightMotion::kStatic}};
+                                                                     {"static", analysis::LightMotion::kStatic}};
 
 std::size_t find_index(const std::vector<analysis::Place>& places, const records::CellRecord& cell) {
   return static_cast<std::size_t>(std::ranges::find(places, analysis::place_of(cell)) - places.begin());
@@ -228,7 +228,7 @@ json make_configuration(const analysis::Configuration& configuration, const std:
           {"color", style.color},
           {"worst", list_worst(configuration, places, frame)},
           {kMoving, describe_cost(configuration, frame, analysis::LightMotion::kMoving)},
-          {kStill, describe_cost(configuration, frame, analysis::LightMotion::kStatic)}};
+          {kStatic, describe_cost(configuration, frame, analysis::LightMotion::kStatic)}};
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
                   "parameters",
                   kKernelColumn,
                   fmt::format("moving light: map, prefilter, filter, {}, median [95 %]", unit),
-                  fmt::format("still light: filter alone, {}, median [95 %]", unit),
+                  fmt::format("static light: filter alone, {}, median [95 %]", unit),
                   fmt::format("lookup, {}, median [quartiles]", unit),
                   fmt::format("prefilter, {}", unit),
                   fmt::format("map, {}", unit)};
@@ -105,7 +105,7 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
   for (const records::CellRecord& cell : group.cells) {
     auto& row = table.rows.emplace_back(std::vector<std::string>{
         cell.filter, cell.params.empty() ? records::kNothing : records::describe_params(cell.params),
-        records::describe_kernel(cell.kernel), format_own(cell.time_ms.moving), format_own(cell.time_ms.filter),
+        records::describe_kernel(cell.kernel), format_own(cell.time_ms.moving), format_own(cell.time_ms.static_light),
         format_quartiles(cell.time_ms.lookup), format_quartiles(cell.time_ms.prefilter),
         format_quartiles(cell.time_ms.map)});
     if (mixed) row.insert(row.begin() + kMachineColumn, number_machine(machines, cell));

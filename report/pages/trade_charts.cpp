@@ -209,7 +209,7 @@ class CurveChart {
 
   document::Chart make(const std::vector<std::string>& filters) const {
     document::Chart made;
-    const char* state = light_ == LightMotion::kStatic ? "still" : "moving";
+    const char* state = light_ == LightMotion::kStatic ? "static" : "moving";
     made.id = fmt::format("{}.map{}.{}.{}", chart_.scope_id, chart_.map_size, is_lights_ ? "lights" : "width", state);
     made.title = chart_.title;
     made.x_name = is_lights_ ? "lights, each with a map of its own" : "kernel's width (standard deviation), texels";
@@ -279,7 +279,7 @@ class CurveChart {
   const std::vector<double> places_ = analysis::list_measured({&chart_, 1});
   const bool is_lights_ = chart_.axis == analysis::CurveAxis::kLights;
   const analysis::Measure& cost_ =
-      chart_.costs[light_ == LightMotion::kStatic ? analysis::kStillCost : analysis::kMovingCost];
+      chart_.costs[light_ == LightMotion::kStatic ? analysis::kStaticCost : analysis::kMovingCost];
 };
 
 /// The maps of a filter: RMSE over what a frame costs in which the map is drawn, a curve for each fit.
@@ -331,7 +331,8 @@ document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>&
 
 document::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
                                         const std::vector<std::string>& filters, const records::GlRecord& gl) {
-  document::ChartChoice choice{id, {{"where", {}}, {"light", {"still: lookup", "moving: map, prefilter, lookup"}}}, {}};
+  document::ChartChoice choice{
+      id, {{"where", {}}, {"light", {"static: lookup", "moving: map, prefilter, lookup"}}}, {}};
   for (const analysis::CostChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
     for (const LightMotion light : analysis::kBothLights)

@@ -40,10 +40,10 @@ void visit_fields(Is<MachineKind> auto& kind, auto&& visit) {
 
 void visit_fields(Is<LightCountRecord> auto& lights, auto&& visit) {
   visit("count", lights.count, {.least = 1, .most = 16});
-  visit("still_ms", lights.still_ms);
+  visit("static_ms", lights.static_ms);
   visit("moving_ms", lights.moving_ms);
   visit("ratio_to_none", kGroup, {.text = "per-round ratios, under as many lights"});
-  visit("ratio_to_none.still", lights.still_ratio);
+  visit("ratio_to_none.static", lights.static_ratio);
   visit("ratio_to_none.moving", lights.moving_ratio);
   visit("maps_bytes", lights.maps_bytes, {.text = "of the maps that the lookups read"});
 }
@@ -152,7 +152,7 @@ void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {
         {.text = "a lookup that reads what the filter does of its receivers, and nothing of the map",
          .later = true,
          .column = "lookup that reads nothing of the map"});
-  visit("filter", time.filter,
+  visit("static", time.static_light,
         {.text = "the filter's own: the lookup less a lookup that reads nothing, per round",
          .later = true,
          .column = "the filter's own: lookup less that"});
@@ -169,7 +169,8 @@ void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {
 
 void visit_fields(Is<RatioRecord> auto& ratio, auto&& visit) {
   visit("lookup", ratio.lookup, {.column = "lookup against none", .column_name = "ratio_lookup"});
-  visit("static", ratio.static_map, {.column = "frame with a cached map against none", .column_name = "ratio_static"});
+  visit("static", ratio.static_light,
+        {.column = "frame with a cached map against none", .column_name = "ratio_static"});
   visit("moving", ratio.moving, {.column = "frame with a new map against none", .column_name = "ratio_moving"});
 }
 

@@ -16,7 +16,7 @@ using metrics::ArtefactRecord, metrics::AttributionPart, metrics::AttributionRec
     metrics::TruthRecord;
 
 /// Version of results.json and of the cell files; a reader refuses any other.
-inline constexpr int kSchemaVersion = 2;
+inline constexpr int kSchemaVersion = 3;
 
 /// The spread of `n` repeated measurements.
 struct Quartiles {
@@ -104,17 +104,17 @@ struct TimeRecord {
 /// Per-round ratios to the filter `none`; `none` itself carries 1 [1, 1].
 struct RatioRecord {
   std::optional<Ratio> lookup;
-  std::optional<Ratio> static_map;  ///< map and prefilter cached: lookup alone is paid
-  std::optional<Ratio> moving;      ///< map, prefilter and lookup are paid in every frame
+  std::optional<Ratio> static_light;  ///< map and prefilter cached: lookup alone is paid
+  std::optional<Ratio> moving;        ///< map, prefilter and lookup are paid in every frame
 };
 
 /// What a frame lit by several lights costs, each with a shadow map of its own; milliseconds of the clock that
 /// the run names.
 struct LightCountRecord {
   int count = 0;        ///< lights: the scene's, turned about the vertical by i * 360 / count degrees
-  Quartiles still_ms;   ///< maps and prefilters cached: a lookup per light
+  Quartiles static_ms;  ///< maps and prefilters cached: a lookup per light
   Quartiles moving_ms;  ///< a depth map, a prefilter and a lookup per light
-  Ratio still_ratio;    ///< per-round ratios to the filter `none` under as many lights
+  Ratio static_ratio;   ///< per-round ratios to the filter `none` under as many lights
   Ratio moving_ratio;
   std::int64_t maps_bytes = 0;  ///< bytes of the maps that the lookups read
 };

@@ -24,7 +24,7 @@ constexpr Definition find_definition() {
   if (std::is_same_v<T, OwnTime>) return {"own_time", "may be below 0 where a difference is too small for this clock"};
   if (std::is_same_v<T, LightCountRecord>)
     return {"light_count",
-            "still: maps and prefilters cached, a lookup per light; moving: a depth map, a prefilter and a lookup per "
+            "static: maps and prefilters cached, a lookup per light; moving: a depth map, a prefilter and a lookup per "
             "light"};
   if (std::is_same_v<T, GpuRecord>)
     return {"gpu", "facts of the compiler, and an estimate made of them; or why there are none"};

@@ -121,7 +121,7 @@ test("LookCloser_OpensTheViewerAtTheWorstPlace", async () => {
 
 test("ALink_OpensTheSameAnswerAndTable", async () => {
   const { page, close } = await openRun("several");
-  await choose(page, "light", "still");
+  await choose(page, "light", "static");
   await choose(page, "class", "medium");
   await move(page, { name: "error.flip" }, 2);
   await page.locator('.numbers select[name="measure"]').selectOption("error.mean");
@@ -130,7 +130,7 @@ test("ALink_OpensTheSameAnswerAndTable", async () => {
   const read = (from) => from.evaluate(() => [".choice", ".answer code", ".numbers table", ".sliders"].map((name) => document.querySelector(name).textContent));
   await page.waitForFunction(() => /limits=.*table=.*3x/.test(location.hash));
   const hash = new URL(page.url()).hash, wanted = await read(page), again = await openRun("several", { hash });
-  assert.match(wanted[1], /--max-flip .*--class medium --light static/);
+  assert.match(wanted[1], /--max-flip .*--class medium --light-motion static/);
   assert.deepEqual(await read(again.page), wanted);
   assert.deepEqual(again.messages, []);
   // What the page does not have is left as it was.

@@ -18,7 +18,7 @@ const isNear = (shown, value) => (value === null ? shown === null : shown !== nu
 
 // A value of results.json: the page's times are medians of what a frame takes.
 const readValue = (cell, id) => {
-  const path = { "time_ms.moving": "time_ms.moving.median", "time_ms.still": "time_ms.filter.median" }[id] ?? id;
+  const path = { "time_ms.moving": "time_ms.moving.median", "time_ms.static": "time_ms.static.median" }[id] ?? id;
   return path.split(".").reduce((value, name) => value?.[name] ?? null, cell);
 };
 
@@ -163,7 +163,7 @@ test("ACell_OpensTheViewer", async () => {
 
 test("TheLightOfTheAnswer_IsThatOfTheCost", async () => {
   const { page, close } = await openRun("several"), data = await readData(page);
-  for (const light of ["still", "moving"]) {
+  for (const light of ["static", "moving"]) {
     await page.locator('.limits select[name="light"]').selectOption(light);
     assert.ok((await readHead(page))[2].startsWith(`${light} light`));
     for (const row of await readRows(page)) {

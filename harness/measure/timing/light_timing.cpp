@@ -15,9 +15,9 @@ records::LightCountRecord make_record(int count, const RoundTimes& times, std::s
   const std::vector<double> moving = add_moving(times.map, own);
   records::LightCountRecord record;
   record.count = count;
-  record.still_ms = summarise(own.lookup);
+  record.static_ms = summarise(own.lookup);
   record.moving_ms = summarise(moving);
-  record.still_ratio = bootstrap_ratio(own.lookup, reference.lookup, seed);
+  record.static_ratio = bootstrap_ratio(own.lookup, reference.lookup, seed);
   record.moving_ratio = bootstrap_ratio(moving, add_moving(times.map, reference), seed);
   return record;
 }

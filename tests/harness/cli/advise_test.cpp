@@ -61,7 +61,7 @@ TEST_F(Advise, GivesTheCheapestThatKeepsTheLimits) {
 }
 
 TEST_F(Advise, Options_ReachTheRequest) {
-  EXPECT_THAT(run("advise run --light static").out,
+  EXPECT_THAT(run("advise run --light-motion static").out,
               StartsWith("none, map 1024 × 1024 d32f: 1 ms (CPU) a frame, static"));
   EXPECT_THAT(run("advise run --cheapest bytes").out, HasSubstr(": 4194304 bytes; cheapest of 2"));
   EXPECT_THAT(run("advise run --scene cubes --scene stack").out, HasSubstr("on cubes, stack."));

@@ -41,8 +41,8 @@ TEST_F(Lights, AreTimedForEveryCell_ByAscendingCount_UsersFiltersToo) {
       const json& each = cell["lights"][i];
       const std::int64_t count = std::int64_t{1} << i;
       EXPECT_EQ(each["count"], count);
-      EXPECT_EQ(each["still_ms"]["n"], 3);
-      EXPECT_GT(each["moving_ms"]["median"], each["still_ms"]["median"]);
+      EXPECT_EQ(each["static_ms"]["n"], 3);
+      EXPECT_GT(each["moving_ms"]["median"], each["static_ms"]["median"]);
       EXPECT_EQ(each["maps_bytes"], count * cell["cost"]["map_bytes"].get<std::int64_t>());
     }
     EXPECT_FALSE(cell["absent"].contains("lights"));

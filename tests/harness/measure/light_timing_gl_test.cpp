@@ -111,12 +111,12 @@ TEST(LightTiming, TimesEveryPassOnce_OfFiltersThatNeedIt) {
     EXPECT_EQ(filter[0].count, 1);
     EXPECT_EQ(filter[1].count, 2);
     for (const records::LightCountRecord& each : filter) {
-      EXPECT_EQ(each.still_ms.n, 3);
+      EXPECT_EQ(each.static_ms.n, 3);
       EXPECT_EQ(each.moving_ms.n, 3);
-      EXPECT_GT(each.moving_ms.median, each.still_ms.median);
+      EXPECT_GT(each.moving_ms.median, each.static_ms.median);
     }
   }
-  EXPECT_EQ(measured.filters[0][1].still_ratio.median, 1.0);
+  EXPECT_EQ(measured.filters[0][1].static_ratio.median, 1.0);
   EXPECT_EQ(measured.filters[0][1].moving_ratio.ci95.high, 1.0);
   EXPECT_GT(measured.spent_ms, 0.0);
   measure::LightFrameBench bench = frames.bench(2);
@@ -131,7 +131,7 @@ TEST(LightTiming, MoreLights_TakeLonger_StillAndMoving) {
   LightFrames frames("cubes", "none,vsm");
   const measure::LightMeasurement measured = frames.measure({1, 8}, 9);
   for (const auto& filter : measured.filters) {
-    EXPECT_GT(filter[1].still_ms.median, 4.0 * filter[0].still_ms.q1);
+    EXPECT_GT(filter[1].static_ms.median, 4.0 * filter[0].static_ms.q1);
     EXPECT_GT(filter[1].moving_ms.median, 4.0 * filter[0].moving_ms.q1);
   }
 }

@@ -37,7 +37,7 @@ records::CellRecord measure(const std::string& scene, const std::string& filter,
   cell.cost.prefilter_texels = 0;
   cell.time_ms.map = records::Quartiles{1.0, 0.99, 1.01, 9};
   cell.time_ms.lookup = records::Quartiles{ms, 0.99 * ms, 1.01 * ms, 9};
-  cell.ratio_to_none.static_map = cell.ratio_to_none.lookup;
+  cell.ratio_to_none.static_light = cell.ratio_to_none.lookup;
   cell.ratio_to_none.moving = records::Ratio{(1.0 + ms) / 5.0, {(1.0 + ms) / 5.0 * 0.99, (1.0 + ms) / 5.0 * 1.01}};
   cell.error.rmse = rmse;
   cell.truth.se = 0.001;

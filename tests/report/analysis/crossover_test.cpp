@@ -23,9 +23,9 @@ TEST(Crossover, IsFoundWhereTapsGrowDearer) {
   const auto comparisons = compare_curves(charts[0]);
   ASSERT_THAT(comparisons, SizeIs(1));
   EXPECT_THAT(comparisons[0].at, ElementsAre(2.0, 4.0, 8.0));
-  EXPECT_THAT(comparisons[0].signs.still, ElementsAre(1, -1, -1));
-  ASSERT_THAT(comparisons[0].crossings.still, SizeIs(1));
-  const auto [width, cost] = comparisons[0].crossings.still[0];
+  EXPECT_THAT(comparisons[0].signs.static_light, ElementsAre(1, -1, -1));
+  ASSERT_THAT(comparisons[0].crossings.static_light, SizeIs(1));
+  const auto [width, cost] = comparisons[0].crossings.static_light[0];
   EXPECT_NEAR(width, 3.0, 1e-9);  // 1.6 and 2.5 are as far below and above 2
   EXPECT_NEAR(cost, 8.0, 1e-9);
   EXPECT_THAT(
@@ -38,14 +38,14 @@ TEST(Crossover, WidthsThatNearlyAgree_AreOne) {
   cells[2].kernel.sigma_texels = 4.03;  // of the taps; the blurred map's is 4
   const auto comparison = compare_curves(make_charts(cells)[0])[0];
   EXPECT_THAT(comparison.at, ElementsAre(2.0, 4.0, 8.0));
-  EXPECT_THAT(comparison.signs.still, ElementsAre(1, -1, -1));
+  EXPECT_THAT(comparison.signs.static_light, ElementsAre(1, -1, -1));
 }
 
 TEST(Crossover, OverlappingTimes_AreNotApart) {
   std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
-  cells[2].time_ms.filter->ci95 = {7.6, 10.4};
+  cells[2].time_ms.static_light->ci95 = {7.6, 10.4};
   const auto comparison = compare_curves(make_charts(cells)[0])[0];
-  EXPECT_THAT(comparison.signs.still, ElementsAre(1, 0, -1));
+  EXPECT_THAT(comparison.signs.static_light, ElementsAre(1, 0, -1));
   const auto row = make_comparison_table(make_charts(cells)).rows.at(0);
   EXPECT_EQ(row[4], "8") << "not to be told apart at 4";
   EXPECT_EQ(row[5], "2");
@@ -101,11 +101,12 @@ TEST(Crossover, Sentence_CountsComparisonsAndNamesTheNarrowest) {
     cells[i].time_ms.moving = records::OwnTime{{0.1, 0.1, 0.1, 9}, {0.1, 0.1}};
   const auto charts = make_charts(cells);
   EXPECT_EQ(make_comparison_table(charts).rows.size(), 2u);
-  EXPECT_EQ(summarize_widths(charts),
-            "A prefiltered map is cheaper than many taps with a still light in 2 of 2 comparisons, from a kernel width "
-            "of 4 texels on at the earliest (vsm against poisson on cubes · view main · 960 × 540 · map 1024); with a "
-            "moving light in 1 of 2 comparisons, from a kernel width of 4 texels on at the earliest (vsm against "
-            "poisson on cubes · view main · 960 × 540 · map 1024).");
+  EXPECT_EQ(
+      summarize_widths(charts),
+      "A prefiltered map is cheaper than many taps with a static light in 2 of 2 comparisons, from a kernel width "
+      "of 4 texels on at the earliest (vsm against poisson on cubes · view main · 960 × 540 · map 1024); with a "
+      "moving light in 1 of 2 comparisons, from a kernel width of 4 texels on at the earliest (vsm against "
+      "poisson on cubes · view main · 960 × 540 · map 1024).");
 }
 
 TEST(Growth, Exponent_IsTheSlopeOfLogarithms) {

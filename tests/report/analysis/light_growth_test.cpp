@@ -69,8 +69,8 @@ TEST(LightGrowth, Times_AreRatiosTimesTheReference) {
   EXPECT_THAT(list_measured(charts), ElementsAre(1.0, 2.0, 4.0, 8.0));
   const CurvePoint& point = charts[0].curves[2].points[3];
   EXPECT_EQ(point.at, 8.0);
-  EXPECT_NEAR(point.cost.still.value, 12.0, 1e-9);
-  EXPECT_NEAR(point.cost.still.low, 0.99 * 12.0, 1e-9);
+  EXPECT_NEAR(point.cost.static_light.value, 12.0, 1e-9);
+  EXPECT_NEAR(point.cost.static_light.low, 0.99 * 12.0, 1e-9);
   EXPECT_NEAR(point.cost.moving.high, 1.01 * 64.0, 1e-9);
   EXPECT_EQ(charts[0].curves[2].maps_bytes, 8 * 4194304);
 }
@@ -79,8 +79,8 @@ TEST(LightGrowth, WithoutTheReference_TimesAreMediansAndQuartiles) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   cells.erase(cells.begin());
   const CurvePoint point = make_lit_charts(cells)[0].curves[1].points[3];
-  EXPECT_NEAR(point.cost.still.value, 1.1 * 12.0, 1e-9);
-  EXPECT_NEAR(point.cost.still.low, 1.1 * 12.0 - 0.5, 1e-9);
+  EXPECT_NEAR(point.cost.static_light.value, 1.1 * 12.0, 1e-9);
+  EXPECT_NEAR(point.cost.static_light.low, 1.1 * 12.0 - 0.5, 1e-9);
 }
 
 TEST(LightGrowth, IsTheSlopeAndTheExponent) {
@@ -111,7 +111,7 @@ TEST(LightGrowth, TellsHowFarTimesAreFromALine) {
   CostCurve curve{"vsm", "vsm", {{1, {}, {{}, {3, 3, 3}}}, {2, {}, {{}, {6, 6, 6}}}, {4, {}, {{}, {15, 15, 15}}}}};
   EXPECT_NEAR(*find_light_growth(curve, LightMotion::kStatic).off_line,
               std::abs(8.0 - 57.0 / 14.0 * 4.0 / 3.0 - 3.0) / 3.0, 1e-12);
-  curve.points[2].spread.still = {12, 12, 12};
+  curve.points[2].spread.static_light = {12, 12, 12};
   EXPECT_NEAR(*find_light_growth(curve, LightMotion::kStatic).off_line, 0.0, 1e-12);
   curve.points.pop_back();
   EXPECT_EQ(find_light_growth(curve, LightMotion::kStatic).off_line, std::nullopt) << "two points are always on a line";
@@ -119,7 +119,7 @@ TEST(LightGrowth, TellsHowFarTimesAreFromALine) {
 
 TEST(LightGrowth, IsSaidInASentence_WithItsClock) {
   EXPECT_EQ(summarize_lights(make_lit_charts(make_lit_cells()), make_run().gl),
-            "Each further light costs 1 ms (CPU) (none, casters still, cubes · view main · 960 × 540 · map 1024) to "
+            "Each further light costs 1 ms (CPU) (none, casters static, cubes · view main · 960 × 540 · map 1024) to "
             "9.9 (esm, casters moving, cubes · view main · 960 × 540 · map 1024); 3 of 6 pairs of filters change "
             "order between numbers of lights, or between casters that stand still and that move.");
 }
@@ -128,7 +128,7 @@ TEST(LightGrowth, OfAllPlaces_IsInOneTable_AndWhereItIsNotLinear) {
   std::vector<records::CellRecord> cells = make_lit_cells();
   for (records::CellRecord cell : make_lit_cells()) {
     cell.scene = "bulb";
-    if (cell.filter == "vsm") cell.lights->back().still_ms.median *= 2.0;
+    if (cell.filter == "vsm") cell.lights->back().static_ms.median *= 2.0;
     cells.push_back(cell);
   }
   const auto row_of = [&](std::size_t row) { return make_light_table(make_lit_charts(cells)).rows.at(row); };
@@ -159,7 +159,7 @@ TEST(LightOrder, OverlappingTimes_AreNotApart) {
   ASSERT_THAT(comparisons, SizeIs(6));
   const CurveComparison& vsm_esm = comparisons[5];
   EXPECT_THAT(vsm_esm.at, ElementsAre(1.0, 2.0, 4.0, 8.0));
-  EXPECT_THAT(vsm_esm.signs.still, ElementsAre(-1, 0, 1, 1));
+  EXPECT_THAT(vsm_esm.signs.static_light, ElementsAre(-1, 0, 1, 1));
   EXPECT_THAT(vsm_esm.signs.moving, ElementsAre(-1, -1, -1, -1));
   EXPECT_TRUE(vsm_esm.changes());
   EXPECT_FALSE(comparisons[0].changes());
@@ -169,7 +169,7 @@ TEST(LightOrder, TableHasWhereOneOvertakesAnother_AndNoMore) {
   const records::TextTable table = make_comparison_table(make_lit_charts(make_lit_cells()));
   constexpr const char* kWhere = "cubes · view main · 960 × 540 · map 1024";
   EXPECT_THAT(table.header, ElementsAre("filter", "other filter", "where", "lights compared",
-                                        "still, the first is cheaper at", "still, the first is dearer at",
+                                        "static, the first is cheaper at", "static, the first is dearer at",
                                         "moving, the first is cheaper at", "moving, the first is dearer at"));
   ASSERT_THAT(table.rows, SizeIs(3));
   EXPECT_THAT(table.rows[0], ElementsAre("poisson", "vsm", kWhere, "1, 2, 4, 8", records::kNothing, "1, 2, 4, 8",
@@ -220,9 +220,9 @@ TEST(LightTable, HasBothStates) {
               ElementsAre("filter", "casters", "where", "1 light", "2 lights", "4 lights", "8 lights",
                           "ms per added light", "exponent", "off a line", "MiB of maps at the most lights"));
   ASSERT_THAT(table.rows, SizeIs(8));
-  EXPECT_THAT(table.rows[4], ElementsAre("vsm", "still", "cubes · view main · 960 × 540 · map 1024", "1.5 [1.48, 1.52]",
-                                         "3 [2.97, 3.03]", "6 [5.94, 6.06]", "12 [11.9, 12.1]", "1.65 [1.49, 1.81]",
-                                         "1.00 [0.84, 1.21]", "0.0 %", "32"));
+  EXPECT_THAT(table.rows[4], ElementsAre("vsm", "static", "cubes · view main · 960 × 540 · map 1024",
+                                         "1.5 [1.48, 1.52]", "3 [2.97, 3.03]", "6 [5.94, 6.06]", "12 [11.9, 12.1]",
+                                         "1.65 [1.49, 1.81]", "1.00 [0.84, 1.21]", "0.0 %", "32"));
   EXPECT_THAT(table.rows[5][1], "moving");
   EXPECT_THAT(table.rows[5][6], HasSubstr("64 ["));
 }
@@ -247,7 +247,7 @@ TEST(LightSection, ShowsChartTableAndSentence) {
         "cubes.main.960x540.map1024.lights.moving", "lights, each with a map of its own", "in proportion"})
     EXPECT_THAT(page, HasSubstr(text));
   for (const char* text :
-       {"3 of 6 pairs of filters change order", "| vsm     | still   | cubes ", "| 1.5 \\[1.48, 1.52\\] "})
+       {"3 of 6 pairs of filters change order", "| vsm     | static  | cubes ", "| 1.5 \\[1.48, 1.52\\] "})
     EXPECT_THAT(summary, HasSubstr(text));
 }
 
@@ -262,7 +262,7 @@ TEST(LightSection, NeedsNoFront) {
   EXPECT_THAT(page, HasSubstr("map1024.lights"));
   EXPECT_THAT(page, Not(HasSubstr("fronts.csv")));
   EXPECT_FALSE(std::filesystem::exists(out / "fronts.csv"));
-  EXPECT_THAT(read_text(out / "summary.md"), AllOf(HasSubstr("| poisson | still "), Not(HasSubstr("fronts.csv"))));
+  EXPECT_THAT(read_text(out / "summary.md"), AllOf(HasSubstr("| poisson | static "), Not(HasSubstr("fronts.csv"))));
 }
 
 TEST(LightSection, IsNotThere_WhereNothingWasTimed) {

@@ -74,8 +74,8 @@ TEST(MixedMachines, FrontsFollowRatios) {
   ASSERT_TRUE(withheld);
   const TradeScope scope = make_trade_scopes(*withheld)[0];
   EXPECT_EQ(scope.costs[kMovingCost].id, "moving_ratio");
-  EXPECT_EQ(scope.costs[kStillCost].id, "still_ratio");
-  for (const std::size_t cost : {kMovingCost, kStillCost}) {
+  EXPECT_EQ(scope.costs[kStaticCost].id, "static_ratio");
+  for (const std::size_t cost : {kMovingCost, kStaticCost}) {
     const TradeFront front = make_trade_front(scope, 0, cost);
     EXPECT_EQ(front.points[1].cost.value, 2.0);
     EXPECT_EQ(front.points[1].cost.high, 2.0 * 1.01);
@@ -165,7 +165,7 @@ TEST(MixedMachines, CrossoversFollowRatios) {
   const auto withheld = *withhold_mixed_times(cells);
   const auto charts = make_width_charts(withheld, make_trade_scopes(withheld));
   EXPECT_EQ(make_comparison_table(charts).rows, expected.rows);
-  EXPECT_TRUE(charts.at(0).costs[kStillCost].is_ratio);
+  EXPECT_TRUE(charts.at(0).costs[kStaticCost].is_ratio);
 }
 
 TEST(MixedMachines, WhatNeedsMilliseconds_IsSilent) {

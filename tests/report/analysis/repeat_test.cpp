@@ -18,14 +18,14 @@ using ::testing::SizeIs;
 /// A cell whose lookup is `ratio` times that of `none`, known to a tenth of it, and so is its static frame.
 records::CellRecord make_timed(const std::string& filter, double ratio) {
   records::CellRecord cell = make_cell("cubes", filter, 4.0);
-  cell.ratio_to_none.lookup = cell.ratio_to_none.static_map = records::Ratio{ratio, {0.9 * ratio, 1.1 * ratio}};
+  cell.ratio_to_none.lookup = cell.ratio_to_none.static_light = records::Ratio{ratio, {0.9 * ratio, 1.1 * ratio}};
   cell.ratio_to_none.moving = records::Ratio{2.0, {1.9, 2.1}};
   return cell;
 }
 
 records::CellRecord make_reference() {
   records::CellRecord cell = make_cell("cubes", "none", 4.0);
-  cell.ratio_to_none.lookup = cell.ratio_to_none.static_map = cell.ratio_to_none.moving =
+  cell.ratio_to_none.lookup = cell.ratio_to_none.static_light = cell.ratio_to_none.moving =
       records::Ratio{1.0, {1.0, 1.0}};
   return cell;
 }
@@ -38,7 +38,7 @@ TEST(Repeat, CountsEveryRatioThatCanDifferOnce) {
   EXPECT_EQ(same.record.overlapping, 4);
   EXPECT_THAT(same.apart, SizeIs(0));
   std::vector<records::CellRecord> b = a;
-  b[1].ratio_to_none.static_map->median = 1.01;
+  b[1].ratio_to_none.static_light->median = 1.01;
   EXPECT_EQ(compare_times(a, b).record.of, 5) << "a static frame of its own";
 }
 

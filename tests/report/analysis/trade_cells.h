@@ -25,9 +25,9 @@ inline records::CellRecord make_sweep_cell(const SweepCell& from) {
   cell.kernel_radius_texels = cell.kernel.sigma_texels = from.radius;
   cell.time_ms.map = records::Quartiles{4.0, 4.0, 4.0, 9};
   const records::Ratio ratio{from.ratio, {from.ratio * (1.0 - from.slack), from.ratio * (1.0 + from.slack)}};
-  cell.ratio_to_none.lookup = cell.ratio_to_none.static_map = cell.ratio_to_none.moving = ratio;
+  cell.ratio_to_none.lookup = cell.ratio_to_none.static_light = cell.ratio_to_none.moving = ratio;
   const double ms = 4.0 * from.ratio, reach = ms * from.slack;
-  cell.time_ms.filter = cell.time_ms.moving =
+  cell.time_ms.static_light = cell.time_ms.moving =
       records::OwnTime{{ms, ms - reach, ms + reach, 9}, {ms - reach, ms + reach}};
   cell.error.rmse = from.rmse;
   cell.truth.se = 0.001;

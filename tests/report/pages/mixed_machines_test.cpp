@@ -73,7 +73,7 @@ TEST(MixedMachines, ThePagesScriptsReadRatios) {
   EXPECT_EQ(data["measures"][0]["unit"], "× none");
   EXPECT_EQ(data["measures"][0]["option"], "");
   EXPECT_EQ(data["cells"][2]["values_of"]["time_ms.moving"], 3.0);
-  EXPECT_EQ(data["cells"][2]["intervals"]["time_ms.still"], nlohmann::json({3.0 * 0.99, 3.0 * 1.01}));
+  EXPECT_EQ(data["cells"][2]["intervals"]["time_ms.static"], nlohmann::json({3.0 * 0.99, 3.0 * 1.01}));
   EXPECT_EQ(data["configurations"][2]["time_ms.moving"], 3.0);
 }
 

@@ -72,7 +72,7 @@ TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
   CellRecord cell = make_cell("cubes", "vsm", 4.5);
   cell.time_ms.prefilter = Quartiles{12.5, 12.25, 12.75, 8};
   cell.range = {"repeat", true, false};
-  cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
+  cell.ratio_to_none.static_light = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
   const auto rows = parse_csv(make_csv(CsvTable::kTimings, make_run(), {cell}));
   EXPECT_EQ(field(rows, 1, "clock"), "CPU time (software rasteriser)");

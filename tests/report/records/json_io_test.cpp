@@ -68,7 +68,7 @@ CellRecord make_full_cell() {
   cell.map_scale = {0.02, 10.0};
   cell.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8, {0.0, 0.9, 1.0}, true, 1.1, 1.2, true, true};
   cell.time_ms.prefilter = Quartiles{1.5, 1.25, 1.75, 3};
-  cell.ratio_to_none.static_map = Ratio{1.5, {1.25, 1.75}};
+  cell.ratio_to_none.static_light = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
   cell.cost.prefilter_texels = 2097152;
   cell.range = {"edge", false, false};
@@ -86,7 +86,7 @@ CellRecord make_full_cell() {
   cell.phases = 4;
   cell.rmse_ci95 = Interval{0.09, 0.11};
   cell.time_ms.empty = Quartiles{1.0, 0.5, 1.5, 3};
-  cell.time_ms.filter = OwnTime{{-0.25, -0.5, 0.5, 3}, {-0.5, 0.5}};
+  cell.time_ms.static_light = OwnTime{{-0.25, -0.5, 0.5, 3}, {-0.5, 0.5}};
   cell.time_ms.moving = OwnTime{{4.0, 3.5, 4.5, 3}, {3.5, 4.5}};
   cell.gpu = {
       {"navi21",
@@ -166,7 +166,7 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(gpu.estimate->bound_by, "memory");
   ASSERT_EQ(back.lights->size(), 2u);
   EXPECT_EQ(back.lights->back().count, 16);
-  EXPECT_EQ(back.lights->back().still_ms.q3, 28.0);
+  EXPECT_EQ(back.lights->back().static_ms.q3, 28.0);
   EXPECT_EQ(back.lights->back().moving_ms.n, 5);
   EXPECT_EQ(back.lights->back().moving_ratio.ci95.low, 1.75);
   EXPECT_EQ(back.lights->back().maps_bytes, 16384);
@@ -406,7 +406,7 @@ TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
   const TemporaryFolder folder("json_version");
   write_text_file(folder.path() / "results.json", R"({"schema_version": 99})");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
-              HasSubstr("schema_version is 99, and this program reads 2"));
+              HasSubstr("schema_version is 99, and this program reads 3"));
   write_text_file(folder.path() / "results.json", "[]");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr("is missing"));
 }
@@ -451,7 +451,7 @@ TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
 TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
   const TemporaryFolder folder("json_deep");
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
-  write_text_file(folder.path() / "results.json", R"({"schema_version": 2, "commit": )" + deep + "}");
+  write_text_file(folder.path() / "results.json", R"({"schema_version": 3, "commit": )" + deep + "}");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
               HasSubstr("nested more than 100 deep"));
 }
