@@ -95,8 +95,8 @@ struct TimeRecord {
   std::optional<Quartiles> prefilter;
   std::optional<Quartiles> lookup;
   std::optional<Quartiles> empty = std::nullopt;  ///< a lookup that reads what the filter does of its receivers, alone
-  std::optional<OwnTime> filter = std::nullopt;   ///< the lookup less a lookup that reads nothing: the filter's own
-  std::optional<OwnTime> moving = std::nullopt;   ///< map, prefilter and the filter's own: what a moving light pays
+  std::optional<OwnTime> static_light = std::nullopt;  ///< lookup less empty: the filter's own
+  std::optional<OwnTime> moving = std::nullopt;  ///< map, prefilter and the filter's own: what a moving light pays
   std::optional<std::string> stopped =
       std::nullopt;  ///< why no more rounds were timed: "rounds", "precise" or "budget"
 };
