@@ -18,7 +18,7 @@ inline records::CellRecord move_to(records::CellRecord cell, const records::Mach
   for (auto member : {&records::TimeRecord::map, &records::TimeRecord::prefilter, &records::TimeRecord::lookup,
                       &records::TimeRecord::empty})
     scale(cell.time_ms.*member);
-  for (auto member : {&records::TimeRecord::filter, &records::TimeRecord::moving}) {
+  for (auto member : {&records::TimeRecord::static_light, &records::TimeRecord::moving}) {
     scale(cell.time_ms.*member);
     if (!(cell.time_ms.*member)) continue;
     (cell.time_ms.*member)->ci95.low *= times;
