@@ -52,7 +52,7 @@ metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<
        .surroundings = around.visibility,
        .surroundings_settled = around.settled,
        .first_blocker_ws = truth.rays.first_blockers_ws,
-       .contact_ws = metrics::kArtefactLimits.contact_texels * layers.front().grid.texel_size_ws});
+       .contact_ws = metrics::kArtefactLimits.contact_texels * layers.front().frustum.texel_size_ws});
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/content_hash.h"
-#include "harness/measure/filter_setup.h"
 
 namespace shadowbench::measure {
 namespace {
@@ -54,7 +53,7 @@ std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, cons
                                             const render::LightLayers& light) {
   std::vector<TracedLayer> layers;
   for (const render::LightSetup& each : light) {
-    TracedLayer& layer = layers.emplace_back(TracedLayer{scene::make_map_grid(each.frustum), {}, {}});
+    TracedLayer& layer = layers.emplace_back(TracedLayer{each.frustum, {}, {}});
     if (!each.frustum.is_layered()) continue;
     layer.shares = render::read_layer_shares(shaders, gbuffer, each);
     ContentHash hash;
@@ -64,21 +63,12 @@ std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, cons
   return layers;
 }
 
-std::vector<CoveredLayer> list_covered_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
-                                              const options::RunOptions& options, const scene::Light& light,
-                                              const std::vector<scene::LightFrustum>& layers) {
-  const auto traced = list_traced_layers(shaders, gbuffer, make_unbiased_light(options, light, layers));
-  std::vector<CoveredLayer> covered;
-  for (std::size_t i = 0; i < traced.size(); ++i) covered.push_back({layers[i], traced[i].shares});
-  return covered;
-}
-
 truth::TracedVisibility trace_layers(const std::vector<TracedLayer>& layers, const truth::ReceiverImage& receivers,
                                      const LayerTrace& trace) {
-  if (layers.front().shares.empty()) return trace(receivers, layers.front().grid, 0);
+  if (layers.front().shares.empty()) return trace(receivers, scene::make_map_grid(layers.front().frustum), 0);
   SharedTrace sum(receivers.points.size());
   for (std::size_t i = 0; i < layers.size(); ++i)
-    sum.add(trace(keep_served(receivers, layers[i]), layers[i].grid, i), layers[i].shares);
+    sum.add(trace(keep_served(receivers, layers[i]), scene::make_map_grid(layers[i].frustum), i), layers[i].shares);
   return sum.take();
 }
 

@@ -4,32 +4,25 @@
 #include <string>
 #include <vector>
 
-#include "harness/measure/map_coverage.h"
-#include "harness/options/options.h"
 #include "harness/render/receivers.h"
 #include "reference/truth/cached_tracer.h"
 
 namespace shadowbench::measure {
 
-/// A layer of a light's map, as rays follow a kernel through it.
+/// A layer of a light's map, as rays follow a kernel through it, and pixels fall in it.
 struct TracedLayer {
-  truth::MapGrid grid;
-  std::vector<float> shares;  ///< of each pixel that this layer serves, rows top to bottom; empty: it serves all
-  std::string content;        ///< a name for the shares, by which a cache knows them
+  scene::LightFrustum frustum;
+  std::vector<float> shares = {};  ///< of each pixel that this layer serves, rows top to bottom; empty: it serves all
+  std::string content = {};        ///< a name for the shares, by which a cache knows them
 };
 
 /// What traces the receivers through the layer of this index.
 using LayerTrace =
     std::function<truth::TracedVisibility(const truth::ReceiverImage&, const truth::MapGrid&, std::size_t)>;
 
-/// The layers of a light's map for the receivers of a view.
+/// The layers of a light's map for the receivers of a view; no bias plays a part.
 std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
                                             const render::LightLayers& light);
-
-/// The same for measure_coverage(); the layers have no bias.
-std::vector<CoveredLayer> list_covered_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
-                                              const options::RunOptions& options, const scene::Light& light,
-                                              const std::vector<scene::LightFrustum>& layers);
 
 /// Traces receivers through the grid of the layer that serves them; where several share a pixel, their traces are added
 /// by their shares, and agree where all rays of all of them do.

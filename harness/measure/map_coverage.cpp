@@ -115,19 +115,19 @@ records::CoverageRecord summarise_coverage(std::vector<float> densities, const s
 }
 
 /// The layer that serves most of a pixel.
-std::size_t choose_layer(const std::vector<CoveredLayer>& layers, std::size_t pixel) {
+std::size_t choose_layer(const std::vector<TracedLayer>& layers, std::size_t pixel) {
   if (layers.size() == 1) return 0;
-  const auto most = std::ranges::max_element(layers, {}, [&](const CoveredLayer& each) { return each.shares[pixel]; });
+  const auto most = std::ranges::max_element(layers, {}, [&](const TracedLayer& each) { return each.shares[pixel]; });
   return static_cast<std::size_t>(most - layers.begin());
 }
 
 }  // namespace
 
 MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera& camera,
-                             const std::vector<CoveredLayer>& layers, const images::Image& depth_map) {
+                             const std::vector<TracedLayer>& layers, const images::Image& depth_map) {
   const int width = receivers.image.width, height = receivers.image.height, map_size = depth_map.height;
   std::vector<PixelProjector> projectors;
-  for (const CoveredLayer& each : layers) projectors.emplace_back(camera, each.frustum, height, map_size);
+  for (const TracedLayer& each : layers) projectors.emplace_back(camera, each.frustum, height, map_size);
   std::vector<CoverageCells> cells(layers.size(), CoverageCells(map_size));
   MapCoverage coverage{images::Image(width, height, 1), images::Image(width, height, 2), {}};
   std::vector<float> densities;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "harness/measure/layer_truth.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
@@ -18,12 +19,6 @@ struct MapCoverage {
   records::CoverageRecord record;  ///< empty fields where no receiver in the map faces the light
 };
 
-/// A layer of a light's map, and the share of each pixel that it serves, rows top to bottom; empty: all of every one.
-struct CoveredLayer {
-  scene::LightFrustum frustum;
-  std::vector<float> shares = {};
-};
-
 /// Lays the pixels of a view out in the map.
 ///
 /// A pixel's footprint is the parallelogram that its sides cut out of its receiver's tangent plane, seen from the
@@ -35,6 +30,6 @@ struct CoveredLayer {
 /// the map.
 /// Of a map with layers a pixel falls in the one that serves most of it; layers stand side by side, as in `depth_map`.
 MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera& camera,
-                             const std::vector<CoveredLayer>& layers, const images::Image& depth_map);
+                             const std::vector<TracedLayer>& layers, const images::Image& depth_map);
 
 }  // namespace shadowbench::measure

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/gl/context/context.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"
 #include "harness/options/options.h"
@@ -24,12 +25,7 @@ inline constexpr const char* kAmbientPart = "ambient";  ///< of a scene with sev
 inline constexpr const char* kTruthPart = "truth.area";
 inline constexpr const char* kTruthMaskPart = "truth.mask";
 inline constexpr const char* kTruthPicturePart = "truth.picture";
-std::string visibility_part(const std::string& label);
 std::string picture_part(const std::string& label);
-std::string unbiased_part(const std::string& label);  ///< a worker's alone: visibility without bias
-std::string stability_part(const std::string& label, const images::StabilityImage& image);
-std::string uncertainty_part(const std::string& label, const images::UncertaintyImage& image);
-std::string phase_part(const std::string& label, std::size_t phase);
 std::string error_part(const std::string& label, const records::ErrorPart& part);
 
 /// Writes `<stem>.exr`: depth map, truth, and visibility and picture of each filter, with metadata to repeat the run.

@@ -165,11 +165,11 @@ class TaskRun {
       std::optional<measure::ViewReceivers> untraced;
       if (truth.receivers.image.points.empty())
         untraced = measure::read_view_receivers(assets_.gbuffer(*task_.camera), task_.scene->light);
-      coverage_ =
-          measure::measure_coverage(untraced ? *untraced : truth.receivers, *task_.camera,
-                                    measure::list_covered_layers(renderer_.shaders, assets_.gbuffer(*task_.camera),
-                                                                 options_, task_.scene->light, light.layers),
-                                    measure::read_linear_depth(light.map));
+      coverage_ = measure::measure_coverage(
+          untraced ? *untraced : truth.receivers, *task_.camera,
+          measure::list_traced_layers(renderer_.shaders, assets_.gbuffer(*task_.camera),
+                                      measure::make_unbiased_light(options_, task_.scene->light, light.layers)),
+          measure::read_linear_depth(light.map));
     }
     for (measure::MeasuredCell& cell : measured.cells) {
       cell.record.coverage = coverage_->record;

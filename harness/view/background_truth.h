@@ -33,7 +33,7 @@ struct TruthJob {
   /// What measure_coverage() asks for beside receivers.
   struct Map {
     scene::Camera camera;
-    std::vector<measure::CoveredLayer> layers;
+    std::vector<measure::TracedLayer> layers;
     images::Image linear_depth;
   };
 

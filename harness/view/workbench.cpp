@@ -107,10 +107,11 @@ void Workbench::start_truth() {
   TruthJob job{surfaces_, state_.scene.light};
   if (wants_coverage_) {
     const measure::LightMap& light = stage_.light_map();
-    job.map = {state_.active_camera(),
-               measure::list_covered_layers(renderer_.shaders, stage_.gbuffer(), state_.options, state_.scene.light,
-                                            light.layers),
-               measure::read_linear_depth(light.map)};
+    job.map = {
+        state_.active_camera(),
+        measure::list_traced_layers(renderer_.shaders, stage_.gbuffer(),
+                                    measure::make_unbiased_light(state_.options, state_.scene.light, light.layers)),
+        measure::read_linear_depth(light.map)};
   }
   truth_.start(std::move(job));
 }

@@ -34,16 +34,7 @@ BaselineCell Accepter::make_cell(const ActualCell& cell) const {
     return std::isinf(tolerances_.find(record.filter, value.first).limit);
   };
   std::erase_if(values.ratios, is_ignored);
-  return {.key = record.key,
-          .scene = record.scene,
-          .view = record.view,
-          .filter = record.filter,
-          .label = record.images.parts.value_or(record.filter),
-          .map_size = record.map_size,
-          .width = record.width,
-          .height = record.height,
-          .origin = cell.origin,
-          .values = std::move(values)};
+  return {name_cell(record), record.map_size, record.width, record.height, cell.origin, std::move(values)};
 }
 
 /// A file that cannot be read keeps only its numbers, if those can be read, and the cells that are taken over now.

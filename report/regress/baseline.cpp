@@ -139,6 +139,10 @@ void remove_file(const std::filesystem::path& file) {
 
 }  // namespace
 
+CellName name_cell(const records::CellRecord& cell) {
+  return {cell.key, cell.scene, cell.view, cell.filter, cell.images.parts.value_or(cell.filter)};
+}
+
 std::string truth_key(const records::CellRecord& cell) {
   return fmt::format("{} {}x{} {}", files::make_file_stem(cell.view), cell.width, cell.height, cell.light);
 }

@@ -24,13 +24,19 @@ struct Origin {
   bool operator==(const Origin&) const = default;
 };
 
+/// Which cell of a run it is.
+struct CellName {
+  std::string key = {};  ///< key of the cell's settings
+  std::string scene = {};
+  std::string view = {};
+  std::string filter = {};
+  std::string label = {};  ///< filter and the parameters that were asked for
+};
+
+CellName name_cell(const records::CellRecord& cell);
+
 /// One cell of a baseline, without its images.
-struct BaselineCell {
-  std::string key;  ///< key of the cell's settings
-  std::string scene;
-  std::string view;
-  std::string filter;
-  std::string label;  ///< filter and the parameters that were asked for
+struct BaselineCell : CellName {
   int map_size = 0;
   int width = 0;
   int height = 0;

@@ -14,6 +14,21 @@ namespace {
 using records::format_number;
 using records::format_ratio;
 
+/// Notes what a test finds to be more than noise: `what` says so of many, and `one` of them, in so many columns, is the
+/// least likely.
+void add_noise(Comparison& comparison, const metrics::PixelTest& test, const char* what, const char* one, int columns) {
+  if (test.beyond == 0) return;
+  const auto x = test.worst % static_cast<std::size_t>(columns), y = test.worst / static_cast<std::size_t>(columns);
+  comparison.add(
+      Outcome::kChanged,
+      {.metric = kLevel,
+       .actual = test.smallest_p,
+       .limit = test.corrected_level,
+       .text = fmt::format("{} of {} {}; the least likely is {} ({}, {}), p = {:.2g} (corrected level "
+                           "{:.2g})",
+                           test.beyond, test.tested, what, one, x, y, test.smallest_p, test.corrected_level)});
+}
+
 /// Compares one cell, finding by finding.
 class CellComparer {
  public:
@@ -108,21 +123,10 @@ class CellComparer {
     const SpreadTest test = test_spread(actual_.images.visibility, images_.uncertainty, lookups, level);
     result_.notes.push_back(fmt::format("drawn with seed {}, the baseline with {}: tested as noise, at level {}",
                                         actual_.origin.seed, expected_.origin.seed, format_number(level)));
-    add_noise(test.pixels, "pixels", "pixel", actual_.images.visibility.width);
-    add_noise(test.blocks, "blocks of 8 x 8 pixels", "block", (actual_.images.visibility.width + 7) / 8);
-  }
-
-  void add_noise(const metrics::PixelTest& test, const char* many, const char* one, int columns) {
-    if (test.beyond == 0) return;
-    const auto x = test.worst % static_cast<std::size_t>(columns), y = test.worst / static_cast<std::size_t>(columns);
-    result_.add(
-        Outcome::kChanged,
-        {.metric = kLevel,
-         .actual = test.smallest_p,
-         .limit = test.corrected_level,
-         .text = fmt::format("{} of {} {} are not explained by the filter's noise; the least likely is {} ({}, {}), p "
-                             "= {:.2g} (corrected level {:.2g})",
-                             test.beyond, test.tested, many, one, x, y, test.smallest_p, test.corrected_level)});
+    const int width = actual_.images.visibility.width;
+    add_noise(result_, test.pixels, "pixels are not explained by the filter's noise", "pixel", width);
+    add_noise(result_, test.blocks, "blocks of 8 x 8 pixels are not explained by the filter's noise", "block",
+              (width + 7) / 8);
   }
 
   void compare_number(const metrics::Metric& metric, const ComparedValues& values) {
@@ -276,33 +280,16 @@ void Comparison::add(Outcome worse, Finding finding) {
 }
 
 Comparison name_comparison(const records::CellRecord& record) {
-  Comparison comparison;
-  comparison.key = record.key;
-  comparison.scene = record.scene;
-  comparison.view = record.view;
-  comparison.filter = record.filter;
-  comparison.label = record.images.parts.value_or(record.filter);
-  comparison.settings = describe_cell(record.view, record.map_size, record.width, record.height);
-  return comparison;
+  return {name_cell(record), describe_cell(record.view, record.map_size, record.width, record.height)};
 }
 
 Comparison name_truth(const records::CellRecord& record) {
-  Comparison comparison = name_comparison(record);
-  comparison.key = truth_key(record);
-  comparison.filter = comparison.label = kTruthName;
-  comparison.settings = fmt::format("view {}, {} x {}", record.view, record.width, record.height);
-  return comparison;
+  return {{truth_key(record), record.scene, record.view, kTruthName, kTruthName},
+          fmt::format("view {}, {} x {}", record.view, record.width, record.height)};
 }
 
 Comparison name_comparison(const BaselineCell& cell) {
-  Comparison comparison;
-  comparison.key = cell.key;
-  comparison.scene = cell.scene;
-  comparison.view = cell.view;
-  comparison.filter = cell.filter;
-  comparison.label = cell.label;
-  comparison.settings = describe_cell(cell.view, cell.map_size, cell.width, cell.height);
-  return comparison;
+  return {cell, describe_cell(cell.view, cell.map_size, cell.width, cell.height)};
 }
 
 Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, const CellImages& expected_images,
@@ -321,17 +308,8 @@ Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected,
     return comparison;
   }
   const metrics::PixelTest test = test_truth(actual.images, expected, level);
-  if (test.beyond == 0) return comparison;
-  const auto width = static_cast<std::size_t>(actual.images.area.width);
-  comparison.add(
-      Outcome::kChanged,
-      {.metric = kLevel,
-       .actual = test.smallest_p,
-       .limit = test.corrected_level,
-       .text = fmt::format("{} of {} pixels of the truth differ by more than its standard errors explain; the least "
-                           "likely is pixel ({}, {}), p = {:.2g} (corrected level {:.2g})",
-                           test.beyond, test.tested, test.worst % width, test.worst / width, test.smallest_p,
-                           test.corrected_level)});
+  add_noise(comparison, test, "pixels of the truth differ by more than its standard errors explain", "pixel",
+            actual.images.area.width);
   return comparison;
 }
 

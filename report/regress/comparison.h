@@ -25,19 +25,14 @@ struct Finding {
 };
 
 /// What comparing one cell, or one view's truth, found.
-struct Comparison {
+struct Comparison : CellName {  // the filter is "truth" for a view's truth
+  std::string settings;         ///< "view main, map 512, 256 x 144"
   Outcome outcome = Outcome::kSame;
-  std::string key;
-  std::string scene;
-  std::string view;
-  std::string filter;    ///< "truth" for a view's truth
-  std::string label;     ///< filter and the parameters that were asked for
-  std::string settings;  ///< "view main, map 512, 256 x 144"
-  std::vector<Finding> findings;
-  std::vector<std::string> notes;  ///< what was not compared, and why
-  std::optional<PixelChange> pixels;
-  std::optional<std::string> picture;  ///< below the folder of the comparison
-  bool accepted = false;               ///< what differs has become the baseline
+  std::vector<Finding> findings = {};
+  std::vector<std::string> notes = {};  ///< what was not compared, and why
+  std::optional<PixelChange> pixels = {};
+  std::optional<std::string> picture = {};  ///< below the folder of the comparison
+  bool accepted = false;                    ///< what differs has become the baseline
 
   bool differs() const { return outcome != Outcome::kSame; }
   bool failed() const { return differs() && !accepted; }

@@ -49,8 +49,7 @@ ActualCell make_cell() {
 
 BaselineCell expect(const ActualCell& cell) {
   const records::CellRecord& r = cell.record;
-  return {r.key,      r.scene, r.view,   r.filter,    *r.images.parts,
-          r.map_size, r.width, r.height, cell.origin, read_values(r)};
+  return {name_cell(r), r.map_size, r.width, r.height, cell.origin, read_values(r)};
 }
 
 /// Compares what `change` makes of a cell with the cell as it was.
