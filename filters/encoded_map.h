@@ -34,7 +34,7 @@ class EncodedMap {
         accuracy_(input.accuracy),
         store_(store_precision(text_or(input.values, "store", "r32f"))),
         log_(combines_logs(input.values)),
-        nearest_(is_nearest(input.values)) {
+        nearest_(reads_nearest(input.values)) {
     fill(input, encode);
     if (radius_texels > 0) blur(gaussian_weights(radius_texels));
   }
@@ -53,7 +53,7 @@ class EncodedMap {
   /// The prefilter's kernel, whose half-width is the parameter `radius`.
   static Kernel kernel(const ParamValues& values) {
     return Kernel::make_gaussian(static_cast<int>(number(values, "radius")),
-                                 is_nearest(values) ? Reconstruction::kNearest : Reconstruction::kBilinear);
+                                 reads_nearest(values) ? Reconstruction::kNearest : Reconstruction::kBilinear);
   }
 
   const Texel& texel(int x, int y) const { return texel_at(grid_.find(x, y)); }
@@ -155,10 +155,6 @@ class EncodedMap {
   /// A texel for a lookup, whose read is noted.
   const Texel& read(int x, int y) const { return texel_at(grid_.read(x, y)); }
 
-  static bool is_nearest(const ParamValues& values) {
-    return combines_logs(values) || text_or(values, "sample", "linear") == "nearest";
-  }
-
   Texel stored(Texel texel) const {
     for (T& channel : texel) channel = round_to_store(channel, store_);
     return texel;
@@ -207,6 +203,51 @@ class EncodedMap {
       result[c] = largest + logarithm(sum);
     }
     return result;
+  }
+};
+
+/// What variance shadow maps store, and the light that two moments allow: the same as the functions of
+/// filters/vsm.glsl.
+template <class T>
+class Variance {
+  using P = Position<T>;
+
+ public:
+  explicit Variance(const ModelInput& input)
+      : slope_variance_(read(input, "slope_variance")),
+        min_variance_(read(input, "min_variance")),
+        reduction_(read(input, "bleed_reduction")) {}
+
+  std::array<T, 2> encode(const EncodeInput<T>& e) const {
+    const T squared = e.slope[0] * e.slope[0] + e.slope[1] * e.slope[1];
+    return {e.depth, e.depth * e.depth + T(slope_variance_) * squared};
+  }
+
+  T variance(const std::array<T, 2>& moments) const {
+    return maximum(moments[1] - moments[0] * moments[0], T(min_variance_));
+  }
+
+  T visibility(const std::array<T, 2>& moments, float depth) const {
+    const T zero(P(0)), one(P(1));
+    const T distance = maximum(T(static_cast<P>(depth)) - moments[0], zero);
+    const T variance = this->variance(moments);
+    const T bound = value_of(variance) > 0.0 ? chebyshev(variance, distance) : value_of(distance) > 0.0 ? zero : one;
+    return maximum(bound - T(reduction_), zero) / (one - T(reduction_));
+  }
+
+ private:
+  P slope_variance_;
+  P min_variance_;
+  P reduction_;
+
+  static P read(const ModelInput& input, const char* name) {
+    return static_cast<P>(static_cast<float>(number(input.values, name)));
+  }
+
+  /// The GLSL's v / (v + d^2), written with one v: a propagated bound would count the error of the other one again.
+  static T chebyshev(T variance, T distance) {
+    const T one(P(1));
+    return one / (one + distance * distance / variance);
   }
 };
 

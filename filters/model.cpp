@@ -1,6 +1,6 @@
 #include "filters/model.h"
 
-#include "filters/format/declared_kernel.h"
+#include "filters/format/front_matter.h"
 
 namespace shadowbench::filters {
 

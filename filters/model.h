@@ -38,15 +38,13 @@ class Lookup {
 };
 
 /// The scalar model of a filter: the same arithmetic as `<id>.glsl`, without a GL.
-class Model {
- public:
-  virtual ~Model() = default;
+struct Model {
   /// Cost: one pass over the map for filters that encode, two more for the prefilter; none otherwise.
-  virtual std::unique_ptr<Lookup> prepare(const ModelInput& input, Precision precision) const = 0;
+  std::unique_ptr<Lookup> (*prepare)(const ModelInput& input, Precision precision);
 
   /// Names the kernel that the filter averages with, for these complete parameter values; none where it differs from
   /// receiver to receiver, and is ModelResult::disk_radius_texels wide.
-  virtual std::optional<Kernel> kernel(const ParamValues& values) const = 0;
+  std::optional<Kernel> (*kernel)(const ParamValues& values);
 };
 
 /// Makes the model of a filter; CMake lists one for each `<id>.cpp` that stands beside its `<id>.glsl`.
@@ -100,26 +98,22 @@ class TemplatedLookup final : public Lookup {
 };
 
 template <template <class> class Filter>
-class TemplatedModel final : public Model {
- public:
-  std::unique_ptr<Lookup> prepare(const ModelInput& input, Precision precision) const override {
-    switch (precision) {
-      case Precision::kFloat: return std::make_unique<TemplatedLookup<Filter<float>>>(input);
-      case Precision::kDouble: return std::make_unique<TemplatedLookup<Filter<double>>>(input);
-      case Precision::kExtended: return std::make_unique<TemplatedLookup<Filter<long double>>>(input);
-      case Precision::kTracked: return std::make_unique<TemplatedLookup<Filter<Tracked>>>(input);
-    }
-    return nullptr;
+std::unique_ptr<Lookup> prepare_templated(const ModelInput& input, Precision precision) {
+  switch (precision) {
+    case Precision::kFloat: return std::make_unique<TemplatedLookup<Filter<float>>>(input);
+    case Precision::kDouble: return std::make_unique<TemplatedLookup<Filter<double>>>(input);
+    case Precision::kExtended: return std::make_unique<TemplatedLookup<Filter<long double>>>(input);
+    case Precision::kTracked: return std::make_unique<TemplatedLookup<Filter<Tracked>>>(input);
   }
-
-  std::optional<Kernel> kernel(const ParamValues& values) const override { return Filter<double>::kernel(values); }
-};
+  return nullptr;
+}
 
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
 /// `static Kernel kernel(const ParamValues&)`, or an optional one, as a Model.
 template <template <class> class Filter>
 std::unique_ptr<Model> make_templated_model() {
-  return std::make_unique<TemplatedModel<Filter>>();
+  const auto kernel = [](const ParamValues& values) -> std::optional<Kernel> { return Filter<double>::kernel(values); };
+  return std::make_unique<Model>(Model{&prepare_templated<Filter>, kernel});
 }
 
 }  // namespace shadowbench::filters

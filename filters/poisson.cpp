@@ -1,6 +1,6 @@
 #include "filters/disk_points.h"
 #include "filters/model.h"
-#include "filters/penumbra/disk_turn.h"
+#include "filters/penumbra/penumbra_disk.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/tracked.h"
+#include "filters/scalar.h"
 
 namespace shadowbench::filters {
 

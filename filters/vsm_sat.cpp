@@ -1,6 +1,6 @@
+#include "filters/encoded_map.h"
 #include "filters/model.h"
 #include "filters/summed_area.h"
-#include "filters/variance.h"
 
 namespace shadowbench::filters {
 namespace {

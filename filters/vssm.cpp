@@ -1,7 +1,7 @@
+#include "filters/encoded_map.h"
 #include "filters/model.h"
 #include "filters/penumbra/penumbra_disk.h"
 #include "filters/summed_area.h"
-#include "filters/variance.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -26,7 +26,7 @@ vec2 plane_depth_per_texel(vec3 position_ws, vec3 normal_ws, float n_dot_l) {
 }
 
 // Whether the map says anything about a receiver. The NO_ variants show what goes wrong without these tests: see
-// filters/map_range.h.
+// filters/depth_map.h.
 bool map_reaches(float depth_unbiased, float w) {
 #ifndef NO_FAR_TEST
   if (!(depth_unbiased <= 1.0)) return false;

@@ -1,5 +1,3 @@
-#include "filters/format/declared_kernel.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <numeric>
 
 #include "base/nearest_name.h"
+#include "filters/format/front_matter.h"
 
 namespace shadowbench::filters {
 namespace {

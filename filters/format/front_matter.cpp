@@ -11,7 +11,6 @@
 #include "base/input_file.h"
 #include "base/toml.h"
 #include "filters/disk_points.h"
-#include "filters/format/declared_kernel.h"
 #include "filters/format/glsl_words.h"
 #include "filters/store_format.h"
 

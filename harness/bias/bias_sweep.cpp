@@ -15,7 +15,7 @@
 #include "harness/measure/scene_assets.h"
 #include "harness/render/bias/bias_theory.h"
 #include "harness/render/filter_passes.h"
-#include "harness/render/receivers.h"
+#include "harness/render/gbuffer.h"
 #include "harness/render/shade_pass.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"

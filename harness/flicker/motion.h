@@ -8,7 +8,7 @@
 
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
-#include "reference/truth/receiver_image.h"
+#include "reference/truth/visibility.h"
 
 namespace shadowbench::flicker {
 

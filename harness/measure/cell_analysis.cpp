@@ -6,8 +6,7 @@
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/map_traffic.h"
-#include "harness/render/receivers.h"
-#include "reference/metrics/attribution.h"
+#include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"
 #include "report/records/absence.h"
 #include "report/records/error_parts.h"

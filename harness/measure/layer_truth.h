@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/render/receivers.h"
+#include "harness/render/gbuffer.h"
 #include "reference/truth/cached_tracer.h"
 
 namespace shadowbench::measure {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/tracked.h"
+#include "filters/scalar.h"
 #include "harness/gl/context/context.h"
 #include "harness/gl/timer/timer.h"
 #include "harness/options/options.h"

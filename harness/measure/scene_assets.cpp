@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "harness/measure/mean_flip.h"
 #include "harness/render/shade_pass.h"
-#include "harness/scene/occluders.h"
+#include "harness/scene/scene.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::measure {

@@ -17,7 +17,7 @@
 #include "harness/measure/timing/light_timing.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
-#include "harness/render/receivers.h"
+#include "harness/render/gbuffer.h"
 #include "harness/render/shade_pass.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"

@@ -10,7 +10,7 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/receiver_pixels.h"
 #include "harness/measure/view_receivers.h"
-#include "harness/render/receivers.h"
+#include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/stability_words.h"
 #include "report/files/file_name.h"

@@ -5,7 +5,7 @@
 
 #include "harness/render/gbuffer.h"
 #include "harness/scene/lights/light.h"
-#include "reference/truth/receiver_image.h"
+#include "reference/truth/visibility.h"
 #include "report/images/image.h"
 
 namespace shadowbench::measure {

@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "filters/map_range.h"
+#include "filters/depth_map.h"
 #include "harness/gl/context/context.h"
 #include "harness/gpu/gpu.h"
 #include "harness/options/round_limits.h"
 #include "harness/render/bias/bias_rule.h"
-#include "harness/render/map_settings.h"
 #include "harness/scene/lights/light_fit.h"
 
 namespace shadowbench::options {

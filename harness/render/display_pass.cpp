@@ -78,6 +78,4 @@ const gl::Texture& DisplayPass::scale_of(Colors colors) const {
   return colors == Colors::kSequential ? sequential_ : grey_;
 }
 
-unsigned gl_name(const gl::Texture& texture) { return texture.id(); }
-
 }  // namespace shadowbench::render

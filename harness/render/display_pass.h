@@ -59,7 +59,4 @@ class DisplayPass {
   void draw_side(ShaderLibrary& shaders, const DisplayedValues& shown, const DisplayPlace& place, int from, int to);
 };
 
-/// The name of a texture, for libraries that draw by themselves.
-unsigned gl_name(const gl::Texture& texture);
-
 }  // namespace shadowbench::render

@@ -1,5 +1,3 @@
-#include "harness/render/filter_glsl.h"
-
 #include <fmt/format.h>
 
 #include <cctype>
@@ -7,7 +5,7 @@
 #include "filters/disk_points.h"
 #include "filters/store_format.h"
 #include "harness/gl/pixel_format.h"
-#include "harness/render/map_passes.h"
+#include "harness/render/prefilter.h"
 
 namespace shadowbench::render {
 namespace {

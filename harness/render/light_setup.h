@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "filters/map_range.h"
+#include "filters/depth_map.h"
 #include "harness/gl/program.h"
-#include "harness/render/bias/bias.h"
+#include "harness/render/bias/bias_rule.h"
 #include "harness/render/shader_library.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"

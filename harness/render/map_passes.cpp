@@ -1,12 +1,10 @@
-#include "harness/render/map_passes.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 
 #include "base/error.h"
-#include "harness/render/filter_glsl.h"
+#include "harness/render/prefilter.h"
 
 namespace shadowbench::render {
 namespace {

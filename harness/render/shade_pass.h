@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filters/map_range.h"
+#include "filters/depth_map.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/image_target.h"
 #include "report/images/image.h"

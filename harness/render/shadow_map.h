@@ -8,9 +8,8 @@
 
 #include "filters/depth_map.h"
 #include "harness/gl/objects.h"
-#include "harness/render/bias/bias.h"
+#include "harness/render/bias/bias_rule.h"
 #include "harness/render/geometry.h"
-#include "harness/render/map_settings.h"
 #include "harness/scene/lights/light_fit.h"
 #include "report/images/image.h"
 

@@ -12,7 +12,6 @@
 #include "base/nearest_name.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
-#include "harness/scene/scene_file.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {

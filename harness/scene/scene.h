@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/scene/lights/light.h"
+#include "reference/truth/occluders.h"
 
 namespace shadowbench::scene {
 
@@ -90,5 +91,9 @@ struct Scene {
 
 /// A copy of a scene for each of its lights, which alone shines there; called SCENE.LIGHT where there are several.
 std::vector<Scene> separate_lights(const Scene& scene);
+
+/// What rays can hit of a scene: every mesh that casts a shadow, with the holes of its material; or, without
+/// `casts_shadow`, the other meshes.
+std::vector<truth::OccluderMesh> list_occluders(const Scene& scene, bool casts_shadow = true);
 
 }  // namespace shadowbench::scene

@@ -1,5 +1,3 @@
-#include "harness/scene/scene_file.h"
-
 #include <fmt/format.h>
 
 #include <functional>
@@ -11,6 +9,7 @@
 #include "base/nearest_name.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
+#include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/primitives.h"
 #include "harness/scene/validate.h"

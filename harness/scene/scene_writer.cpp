@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/toml.h"
+#include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
-#include "harness/scene/framing.h"
-#include "harness/scene/scene_file.h"
+#include "harness/scene/load.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {

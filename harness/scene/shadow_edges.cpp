@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "harness/scene/occluders.h"
+#include "harness/scene/scene.h"
 #include "harness/scene/view_clip.h"
 #include "reference/truth/visibility.h"
 
@@ -66,7 +66,7 @@ EdgeCount& EdgeCount::operator+=(const EdgeCount& other) {
 
 EdgeMeter::EdgeMeter(const Scene& scene) {
   for (const bool casts_shadow : {true, false}) {
-    const std::vector<truth::OccluderMesh> meshes = casts_shadow ? list_occluders(scene) : list_non_casters(scene);
+    const std::vector<truth::OccluderMesh> meshes = list_occluders(scene, casts_shadow);
     if (!meshes.empty()) parts_.push_back({truth::Occluders(meshes), casts_shadow});
   }
 }

@@ -6,7 +6,7 @@
 
 #include "harness/scene/scene.h"
 #include "reference/truth/occluders.h"
-#include "reference/truth/receiver_image.h"
+#include "reference/truth/visibility.h"
 
 namespace shadowbench::scene {
 

@@ -1,5 +1,8 @@
 #include "harness/scene/view_clip.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace shadowbench::scene {
 namespace {
 
@@ -45,6 +48,15 @@ Polygon cut(const Polygon& polygon, const HalfSpace& bound) {
 
 double view_depth(const Camera& camera, const glm::dvec3& point_ws) {
   return glm::dot(point_ws - glm::dvec3(camera.position_ws), glm::dvec3(camera.forward_ws));
+}
+
+DepthSpan find_depth_span(const Camera& camera, const std::vector<glm::dvec3>& points) {
+  DepthSpan span{std::numeric_limits<double>::max(), 0.0};
+  for (const glm::dvec3& p : points) {
+    const double depth = view_depth(camera, p);
+    span = {std::min(span.near_m, depth), std::max(span.far_m, depth)};
+  }
+  return span;
 }
 
 ViewCorners list_view_corners(const Camera& camera, double aspect, const DepthSpan& span) {

@@ -34,6 +34,9 @@ struct ViewAxes {
 /// How far along its axis a camera sees a point, metres.
 double view_depth(const Camera& camera, const glm::dvec3& point_ws);
 
+/// The least and the greatest of these depths; without points the least is the largest number there is.
+DepthSpan find_depth_span(const Camera& camera, const std::vector<glm::dvec3>& points);
+
 /// The corners of the scene's triangles after cutting them at the sides of what a camera sees, in world space; empty
 /// where it sees nothing, or nothing between the two depths of `span`. Surfaces behind others are kept. `aspect` is
 /// width / height of the picture.

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "harness/measure/layer_truth.h"
-#include "harness/scene/occluders.h"
+#include "harness/scene/scene.h"
 #include "harness/view/save.h"
 
 namespace shadowbench::view {

@@ -9,6 +9,17 @@
 #include <vector>
 
 namespace shadowbench::metrics {
+namespace {
+
+using Parts = std::array<double, kErrorParts>;
+
+Parts split(const AttributionStations& s, std::size_t i) {
+  const double image = static_cast<double>(s.image[i]), kernel = static_cast<double>(s.kernel[i]);
+  const double model = s.model.empty() ? image : s.model[i];
+  return {image - model, model - s.closer[i], s.closer[i] - kernel, kernel - static_cast<double>(s.area[i])};
+}
+
+}  // namespace
 
 std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<const float> truth,
                                         std::span<const std::uint8_t> mask) {
@@ -49,6 +60,40 @@ std::optional<MeanInterval> find_mean_interval(std::span<const double> values) {
   const double of_difference = std::sqrt(2.0 * squares / (count - 1.0) / count);
   const double reach = gsl_cdf_tdist_Pinv(0.975, count - 1.0) * of_difference;
   return MeanInterval{mean, mean - reach, mean + reach};
+}
+
+Attribution attribute_error(const AttributionStations& stations) {
+  const std::size_t pixels = stations.mask.size();
+  assert(stations.image.size() == pixels && stations.closer.size() == pixels);
+  assert(stations.model.empty() || stations.model.size() == pixels);
+  assert(stations.kernel.size() == pixels && stations.area.size() == pixels);
+  Attribution result;
+  for (auto& part : result.parts) part.assign(pixels, 0.0f);
+  Parts squares{}, products{};
+  double error_squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (!stations.mask[i]) continue;
+    const Parts parts = split(stations, i);
+    const double error = parts[0] + parts[1] + parts[2] + parts[3];
+    if (!std::isfinite(error)) {
+      ++result.not_finite;
+      continue;
+    }
+    for (std::size_t p = 0; p < kErrorParts; ++p) {
+      result.parts[p][i] = static_cast<float>(parts[p]);
+      squares[p] += parts[p] * parts[p];
+      products[p] += parts[p] * error;
+    }
+    error_squares += error * error;
+    count += 1.0;
+  }
+  for (std::size_t p = 0; p < kErrorParts && error_squares > 0.0; ++p)
+    result.stats[p] = PartStats{.rms = std::sqrt(squares[p] / count), .share = products[p] / error_squares};
+  if (stations.model.empty()) {
+    result.parts.front().clear();
+    result.stats.front().reset();
+  }
+  return result;
 }
 
 }  // namespace shadowbench::metrics

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace shadowbench::metrics {
 
@@ -32,5 +34,38 @@ struct MeanInterval {
 /// The mean of values with its 95 % prediction interval by Student's t (Hahn and Meeker 1991, Statistical Intervals,
 /// section 4.8): two means of one thing differ by sqrt(2) of what each is uncertain. Nothing for fewer than two values.
 std::optional<MeanInterval> find_mean_interval(std::span<const double> values);
+
+/// The stations between a filter's image and the truth, one value per pixel each; 1 lit, 0 blocked.
+struct AttributionStations {
+  std::span<const float> image;        ///< as the GPU made it
+  std::span<const double> model;       ///< the filter in double precision, on the same map; may be empty
+  std::span<const double> closer;      ///< brute-force percentage-closer filter with the filter's own kernel and depth
+  std::span<const float> kernel;       ///< ray-traced continuous kernel: an ideal map and an ideal bias
+  std::span<const float> area;         ///< ray-traced visibility of the real light
+  std::span<const std::uint8_t> mask;  ///< 0: the pixel does not count
+};
+
+/// The parts of an error, in the order in which they add up.
+enum class ErrorPart { kNumeric, kEstimator, kDiscretisation, kModel };
+inline constexpr std::size_t kErrorParts = 4;
+
+/// How much of the error one part is.
+struct PartStats {
+  double rms = 0.0;    ///< root mean square of the part alone; those of several parts do not add
+  double share = 0.0;  ///< mean(e * part) / mean(e^2), e the whole error: shares add up to 1, and may be negative
+};
+
+/// An error as the sum of four signed parts.
+struct Attribution {
+  std::array<std::vector<float>, kErrorParts>
+      parts;  ///< per pixel, 0 where a pixel does not count; empty: there is none
+  std::array<std::optional<PartStats>, kErrorParts> stats;  ///< a share is absent where there is no error at all
+  std::int64_t not_finite = 0;                              ///< pixels of the mask that are left out
+};
+
+/// Splits image - area into (image - model) + (model - closer) + (closer - kernel) + (kernel - area).
+/// Without a model the first part does not exist, and the second is image - closer, which includes it.
+/// Requires spans of one length.
+Attribution attribute_error(const AttributionStations& stations);
 
 }  // namespace shadowbench::metrics

@@ -1,10 +1,9 @@
-#include "reference/truth/sample_sets.h"
-
 #include <tbb/parallel_for.h>
 
 #include <array>
 
 #include "filters/random.h"
+#include "reference/truth/visibility.h"
 
 namespace shadowbench::truth {
 namespace {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <glm/glm.hpp>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -12,10 +13,59 @@
 #include "filters/kernel.h"
 #include "reference/truth/area_light.h"
 #include "reference/truth/occluders.h"
-#include "reference/truth/receiver_image.h"
-#include "reference/truth/sample_sets.h"
 
 namespace shadowbench::truth {
+
+/// The number of independent scrambles; a standard error over them has one degree of freedom less.
+inline constexpr int kScrambles = RayPacket::kSize;
+
+/// Low-discrepancy points, mapped once to where rays go: 16 randomisations, of which each pixel takes one by a hash of
+/// its place, each with 16 independent scrambles side by side as the lanes of a packet.
+///
+/// Each scramble is a Sobol sequence of its own Owen scrambling; the randomisations differ by digital shifts, which
+/// keep it uniform. The first 4^k points of a scramble are evenly spread.
+class SampleSets {
+ public:
+  static constexpr int kSets = 16;
+
+  /// Maps two independent points of [0,1)^2 to an offset.
+  using Mapping = std::function<glm::dvec2(const glm::dvec2& first, const glm::dvec2& second)>;
+
+  /// One point of every scramble.
+  struct Lanes {
+    alignas(64) RayPacket::Lanes x;
+    alignas(64) RayPacket::Lanes y;
+  };
+
+  /// Cost: 16 * 16 * `max_points` mappings, 128 bytes for every 16 of them.
+  SampleSets(int max_points, std::uint32_t seed, const Mapping& mapping);
+
+  const Lanes& at(int set, int point) const {
+    return lanes_[static_cast<std::size_t>(set) * static_cast<std::size_t>(max_points_) +
+                  static_cast<std::size_t>(point)];
+  }
+
+  int max_points() const { return max_points_; }
+
+ private:
+  int max_points_;
+  std::vector<Lanes> lanes_;  ///< set by set
+};
+
+/// A receiver point of the G-buffer.
+struct ReceiverPoint {
+  glm::vec3 position_ws{0.0f};
+  glm::vec3 normal_ws{0.0f, 1.0f, 0.0f};  ///< geometric, unit length, flipped to the viewer
+  bool counts = false;                    ///< false: background, or turned away from the light; not traced
+};
+
+/// Receivers as an image, row by row.
+struct ReceiverImage {
+  int width = 0;
+  int height = 0;
+  std::vector<ReceiverPoint> points;  ///< width * height
+  std::string content = {};           ///< a name for these points, by which a cache knows them; may be empty
+};
 
 /// A tile of an image that is being traced. What lies in the tile is not written while this is looked at, what lies
 /// elsewhere may be.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/depth_curve.h"
+#include "filters/depth_map.h"
 #include "report/images/figure.h"
 
 namespace shadowbench::images {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "reference/metrics/attribution.h"
+#include "reference/metrics/error_stats.h"
 #include "report/records/format.h"
 #include "report/records/records.h"
 

@@ -1,4 +1,4 @@
-// How the map stores depth; filters/depth_curve.h does the same. Filters see linear depth, 0 near. With
+// How the map stores depth; filters/depth_map.h does the same. Filters see linear depth, 0 near. With
 // PERSPECTIVE_DEPTH the map holds the depth of a perspective projection; with REVERSED_DEPTH it holds 1 minus the depth.
 #ifdef PERSPECTIVE_DEPTH
 uniform float far_over_near;  // the distance of the far plane divided by that of the near plane

@@ -12,7 +12,7 @@
 #include "harness/options/options.h"
 #include "harness/render/shader_library.h"
 #include "harness/scene/load.h"
-#include "harness/scene/occluders.h"
+#include "harness/scene/scene.h"
 #include "harness/view/background_truth.h"
 #include "tests/bench/median.h"
 

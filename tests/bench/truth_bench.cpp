@@ -19,7 +19,7 @@
 #include "harness/render/gbuffer.h"
 #include "harness/render/shader_library.h"
 #include "harness/scene/load.h"
-#include "harness/scene/occluders.h"
+#include "harness/scene/scene.h"
 #include "reference/truth/cached_tracer.h"
 #include "reference/truth/embree.h"
 #include "tests/bench/median.h"

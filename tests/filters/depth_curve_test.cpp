@@ -1,9 +1,8 @@
-#include "filters/depth_curve.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "filters/depth_map.h"
 #include "tests/filters/perspective_depth.h"
 
 namespace shadowbench::filters {

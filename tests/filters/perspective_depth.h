@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filters/depth_curve.h"
+#include "filters/depth_map.h"
 
 namespace shadowbench::filters {
 

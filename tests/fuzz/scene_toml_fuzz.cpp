@@ -1,7 +1,7 @@
 // A scene file, read whole: its tables, its shapes, the model beside it, and the checks of the finished scene.
 
 #include "harness/scene/lights/light_fit.h"
-#include "harness/scene/scene_file.h"
+#include "harness/scene/load.h"
 #include "tests/fuzz/scratch_folder.h"
 
 namespace shadowbench::fuzz {

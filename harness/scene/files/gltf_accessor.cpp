@@ -1,5 +1,3 @@
-#include "harness/scene/files/gltf_accessor.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,13 +17,13 @@ constexpr std::size_t kMostElements = std::size_t{1} << 27;
 constexpr std::size_t kMostZeros = std::size_t{1} << 16;
 
 /// Bytes that were found to lie inside their buffer.
-struct Span {
+struct ByteSpan {
   const unsigned char* data = nullptr;
   std::size_t size = 0;
 };
 
-Span checked_span(const tinygltf::Model& model, const tinygltf::BufferView& view, const std::string& owner,
-                  const std::string& where) {
+ByteSpan checked_span(const tinygltf::Model& model, const tinygltf::BufferView& view, const std::string& owner,
+                      const std::string& where) {
   const std::vector<unsigned char>& bytes =
       find_element(model.buffers, view.buffer, owner + " names buffer", where).data;
   if (view.byteOffset <= bytes.size() && view.byteLength <= bytes.size() - view.byteOffset)
@@ -35,7 +33,7 @@ Span checked_span(const tinygltf::Model& model, const tinygltf::BufferView& view
              where);
 }
 
-Span checked_view(const tinygltf::Model& model, int index, const std::string& owner, const std::string& where) {
+ByteSpan checked_view(const tinygltf::Model& model, int index, const std::string& owner, const std::string& where) {
   const tinygltf::BufferView& view = find_element(model.bufferViews, index, owner + ": there is no buffer view", where);
   return checked_span(model, view, fmt::format("{}: buffer view {}", owner, index), where);
 }
@@ -84,7 +82,7 @@ struct Elements {
 };
 
 /// Checks that `layout.count` elements from `offset` lie inside the span, and points the layout at the first.
-Elements place(Elements layout, Span span, std::size_t offset, const std::string& owner, const std::string& where) {
+Elements place(Elements layout, ByteSpan span, std::size_t offset, const std::string& owner, const std::string& where) {
   const std::size_t element_size = layout.type->bytes * layout.components;
   if (layout.stride == 0) layout.stride = element_size;
   if (layout.stride < element_size) {
@@ -118,7 +116,7 @@ Elements checked_elements(const tinygltf::Model& model, int index, int component
                where);
   }
   if (accessor.bufferView < 0) return elements;
-  const Span span = checked_view(model, accessor.bufferView, owner, where);
+  const ByteSpan span = checked_view(model, accessor.bufferView, owner, where);
   elements.stride = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
   return place(elements, span, accessor.byteOffset, owner, where);
 }
@@ -204,13 +202,13 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int access
 
 std::vector<unsigned char> read_span(const tinygltf::Model& model, const tinygltf::BufferView& view,
                                      const std::string& owner, const std::string& where) {
-  const Span span = checked_span(model, view, owner, where);
+  const ByteSpan span = checked_span(model, view, owner, where);
   return {span.data, span.data + span.size};
 }
 
 std::vector<unsigned char> read_buffer_view(const tinygltf::Model& model, int view, const std::string& owner,
                                             const std::string& where) {
-  const Span span = checked_view(model, view, owner, where);
+  const ByteSpan span = checked_view(model, view, owner, where);
   return {span.data, span.data + span.size};
 }
 

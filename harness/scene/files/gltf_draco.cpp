@@ -10,7 +10,6 @@
 #include <type_traits>
 
 #include "base/error.h"
-#include "harness/scene/files/gltf_accessor.h"
 #include "harness/scene/files/gltf_parse.h"
 
 namespace shadowbench::scene {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "harness/scene/files/gltf_accessor.h"
 #include "harness/scene/files/gltf_parse.h"
 
 namespace shadowbench::scene {

@@ -13,7 +13,7 @@
 #include <type_traits>
 
 #include "base/error.h"
-#include "harness/scene/files/file_bytes.h"
+#include "harness/scene/files/mesh_file.h"
 
 namespace shadowbench::scene {
 namespace {

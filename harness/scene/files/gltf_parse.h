@@ -4,8 +4,8 @@
 #include <tiny_gltf.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,14 +50,20 @@ tinygltf::Model unpack_meshopt(tinygltf::Model model, const std::string& where);
 /// Throws kInput, at `where`, for data that are damaged or claim too much, before anything is allocated for the claim.
 tinygltf::Model unpack_draco(tinygltf::Model model, const std::string& where);
 
-/// A node and the product of the transforms on its way from the root.
-struct PlacedNode {
-  int node;
-  glm::dmat4 world_from_node;
-};
+/// Reads an accessor's elements as floats, `components` per element; normalized integers become [-1,1] or [0,1].
+/// Checks the accessor, its buffer view and buffer before it reads a byte, sparse ones included.
+/// Throws kInput, at `where`, naming the accessor and what is out of range.
+std::vector<float> read_floats(const tinygltf::Model& model, int accessor, int components, const std::string& where);
 
-/// Lists the nodes of the default scene. Throws kInput where the nodes are no tree (a cycle, two parents, no such
-/// node) or a transform is not finite or has the wrong length.
-std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, const std::string& where);
+/// Reads an accessor's elements as indices; same checks.
+std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor, const std::string& where);
+
+/// Copies a span's bytes after checking that they lie in its buffer. Throws kInput, about `owner`, at `where`.
+std::vector<unsigned char> read_span(const tinygltf::Model& model, const tinygltf::BufferView& span,
+                                     const std::string& owner, const std::string& where);
+
+/// The same of one of the file's buffer views.
+std::vector<unsigned char> read_buffer_view(const tinygltf::Model& model, int view, const std::string& owner,
+                                            const std::string& where);
 
 }  // namespace shadowbench::scene

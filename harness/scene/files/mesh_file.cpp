@@ -16,6 +16,13 @@
 namespace shadowbench::scene {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// Whether a path begins with all parts of a folder's; both are canonical.
+bool is_below(const fs::path& folder, const fs::path& path) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
 std::string extension_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),
@@ -173,6 +180,17 @@ std::optional<PictureSize> read_picture_size(std::span<const unsigned char> byte
   if (starts_with(bytes, {'B', 'M'})) return bmp_size(bytes);
   if (starts_with(bytes, {'G', 'I', 'F', '8'})) return gif_size(bytes);
   return tga_size(bytes);
+}
+
+std::optional<fs::path> resolve_inside(const fs::path& folder, std::string_view reference) {
+  if (reference.find('\0') != std::string_view::npos) return std::nullopt;
+  const fs::path relative = fs::path(reference).lexically_normal();
+  if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return std::nullopt;
+  std::error_code failure;
+  const fs::path top = fs::weakly_canonical(folder.empty() ? "." : folder, failure);
+  const fs::path target = failure ? fs::path() : fs::weakly_canonical(folder / relative, failure);
+  if (failure || !is_below(top, target)) return std::nullopt;
+  return folder / relative;
 }
 
 }  // namespace shadowbench::scene

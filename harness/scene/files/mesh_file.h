@@ -5,8 +5,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/input_file.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
@@ -63,5 +65,10 @@ struct PictureSize {
 /// Reads the size from the header of a PNG, JPEG, BMP, GIF or TGA picture, without decoding it; nothing where the bytes
 /// are no such picture. The formats must be told apart as the decoder does it, or a picture would be decoded unchecked.
 std::optional<PictureSize> read_picture_size(std::span<const unsigned char> bytes);
+
+/// Resolves a reference that a file in `folder` makes; percent signs must be decoded already. Returns nothing if it
+/// would leave that folder: by "../x" or "/etc/passwd", by a symbolic link, or by a NUL that hides its end. Links that
+/// stay inside are followed, and the folder itself may be reached by one.
+std::optional<std::filesystem::path> resolve_inside(const std::filesystem::path& folder, std::string_view reference);
 
 }  // namespace shadowbench::scene

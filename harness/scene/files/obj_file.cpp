@@ -15,7 +15,6 @@
 
 #include "base/error.h"
 #include "base/split_list.h"
-#include "harness/scene/files/file_bytes.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
 

@@ -1,5 +1,3 @@
-#include "harness/scene/lights/fit_rule.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/split_list.h"
+#include "harness/scene/lights/light_fit.h"
 
 namespace shadowbench::scene {
 namespace {

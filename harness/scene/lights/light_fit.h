@@ -2,15 +2,66 @@
 
 #include <glm/glm.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
-#include "harness/scene/lights/fit_rule.h"
 #include "harness/scene/scene.h"
 #include "harness/scene/view_clip.h"
 #include "reference/truth/visibility.h"
 
 namespace shadowbench::scene {
+
+/// Chooses what the light's frustum encloses.
+enum class FitMode {
+  kSphere,    ///< a sphere around the scene: its size does not change when the light turns
+  kTight,     ///< casters and receivers, as the light sees them
+  kView,      ///< what the camera sees of the scene, with the casters between that and the light
+  kCascades,  ///< slices of that, each with a layer of the map for itself
+  kFocused,   ///< what the camera sees, its width and its length by themselves; see fit_warped() for this and the next
+              ///< four
+  kLispsm,
+  kPsm,
+  kTsm,
+  kLogpsm,
+  kParaboloid,  ///< of a point light: two halves in place of a cube's six faces
+};
+
+/// Whether the sun's map goes through a projection that follows the camera.
+constexpr bool is_warped(FitMode mode) { return mode >= FitMode::kFocused && mode <= FitMode::kLogpsm; }
+
+/// How cascades share what the camera sees.
+struct CascadeRule {
+  int count = 4;       ///< 2 .. 4
+  double split = 0.5;  ///< 0: slices of equal depth, 1: of equal ratios of depth; between them: a mean of both
+  double blend = 0.1;  ///< the last share of a slice, over which it fades into the next
+  bool seen = false;   ///< split the depths that pixels show, and not those of all geometry in view
+
+  bool operator==(const CascadeRule&) const = default;
+};
+
+/// `--fit` as it was asked for.
+struct FitRule {
+  FitMode mode = FitMode::kTight;
+  CascadeRule cascades;  ///< FitMode::kCascades only
+
+  /// Whether each camera has a map of its own.
+  bool follows_view() const { return mode == FitMode::kView || mode == FitMode::kCascades || is_warped(mode); }
+};
+
+/// Every fit's name, as FitMode has them.
+std::vector<std::string> list_fit_names();
+
+/// The fit's name on the command line and in records.
+std::string_view name_of(FitMode mode);
+
+/// The rule as parse_fit_rule() reads it: "tight", "cascades:count=4,split=0.5,blend=0.1,depths=all".
+std::string describe_fit(const FitRule& rule);
+
+/// Reads a rule. Throws kUsage for a name that is no fit, or a key or value that cascades have not, with those there
+/// are.
+FitRule parse_fit_rule(std::string_view text);
 
 /// What a light's frustum is fitted to, and how.
 struct FitRequest {
@@ -169,5 +220,57 @@ int count_layers(const Light& light, const FitRule& rule);
 /// The same for a fit that makes one layer.
 LightFrustum fit_light(const Scene& scene, const FitRequest& request);
 LightFrustum fit_light(const Scene& scene, FitMode mode, int map_size, double pad_texels);
+
+/// Distances along a perspective map's axis of what stands in the map; nothing does where `farthest` is 0. Metres.
+struct AxisExtent {
+  double nearest = 0.0;
+  double farthest = 0.0;
+
+  /// Both in one.
+  AxisExtent joined(const AxisExtent& other) const;
+};
+
+/// Finds what a square map sees that is drawn from a place in the scene: `light_from_world` looks along -z, and half
+/// the map's side is `tangent` times the distance. A triangle that crosses the plane of the light begins at it.
+AxisExtent find_extent(const Scene& scene, const glm::dmat4& light_from_world, double tangent);
+
+/// The rigid transformation to a light's space, which looks along the beam's axis.
+glm::dmat4 look_along(const Beam& beam);
+
+/// The tangent of the map's half side that leaves `tangent` to the scene, and the rest to padding and snapping.
+double pad_tangent(double tangent, const FitRequest& request);
+
+/// The frustum of such a map, whose depth runs over `extent`.
+LightFrustum fit_perspective(const Beam& beam, double tangent, const AxisExtent& extent, const FitRequest& request);
+
+/// The depths at which cascades meet, metres from the camera along its axis; the first is where they begin and the last
+/// where they end. With split 0 all are as deep, with 1 each is as many times deeper than the one before; else this is
+/// the mean of both, weighted by `split`.
+/// Source: Zhang, Sun, Xu and Lun 2006, Parallel-Split Shadow Maps for Large-Scale Virtual Environments, VRCIA, eq. 7.
+/// Requires 0 < near_m < far_m.
+std::vector<double> split_depths(const CascadeRule& rule, double near_m, double far_m);
+
+/// Fits the sun's map to what the camera sees as FitMode::kView does, but with more texels where the camera is near:
+/// u and v go through a projection whose lines of equal w are across the view direction. Depth stays linear along the
+/// light, so that every filter works as ever. Of each method this is what makes it different:
+///
+/// - kFocused: none at all; the map fits the view's width and length by themselves. What the others are measured by.
+/// - kLispsm: w grows along the view from n = (z_n + sqrt(z_n z_f)) / sin(gamma), where gamma is the angle between view
+///   and light. Source: Wimmer, Scherzer and Purgathofer 2004, Light Space Perspective Shadow Maps, EGSR.
+/// - kPsm: the projection that the camera's own perspective leads to, after which a light at infinity is a lamp; the
+///   camera steps back until that lamp sees everything in view.
+///   Source: Stamminger and Drettakis 2002, Perspective Shadow Maps, SIGGRAPH; the step back: Kozlov 2004, Perspective
+///   Shadow Maps: Care and Feeding, GPU Gems 14.
+/// - kTsm: n so that the nearest kTrapezoidFocus of the length gets four fifths of the map.
+///   Source: Martin and Tan 2004, Anti-aliasing and Continuity with Trapezoidal Shadow Maps, EGSR.
+/// - kLogpsm: u as in a perspective map of n = z_n / sin(gamma), v as the logarithm of w: texels grow with the distance
+///   along both. Source: Lloyd, Govindaraju, Quammen, Molnar and Manocha 2008, Logarithmic Perspective Shadow Maps,
+///   TOG.
+///
+/// Where the view is along the light, all are kFocused. Requires a camera. Throws kUsage for `snap`, which a map whose
+/// texels change with the camera cannot do.
+LightFrustum fit_warped(const Sun& sun, const Scene& scene, const FitRequest& request);
+
+inline constexpr double kTrapezoidFocus = 0.25;
 
 }  // namespace shadowbench::scene

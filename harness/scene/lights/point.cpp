@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/scene/lights/perspective_fit.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/validate.h"
 
 namespace shadowbench::scene {

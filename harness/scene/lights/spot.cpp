@@ -7,9 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "harness/scene/files/file_bytes.h"
 #include "harness/scene/files/mesh_file.h"
-#include "harness/scene/lights/perspective_fit.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/validate.h"
 

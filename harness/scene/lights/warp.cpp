@@ -1,5 +1,3 @@
-#include "harness/scene/lights/warp.h"
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -8,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "harness/scene/lights/light_fit.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -34,7 +33,7 @@ struct View {
   glm::dvec3 eye, ahead, to_light;
   glm::dvec3 forward{0.0}, right{0.0};  ///< across the light; forward is the way that the camera looks
   double sine = 0.0;                    ///< between the camera's direction and the light's
-  DepthSpan depths{std::numeric_limits<double>::max(), 0.0};
+  DepthSpan depths;
 
   View(const Sun& sun, const Scene& scene, const FitRequest& request)
       : points(list_visible_corners(scene, *request.camera, request.aspect)),
@@ -47,10 +46,7 @@ struct View {
     sine = glm::length(across);
     forward = sine > kLeastSine ? across / sine : glm::transpose(light_rotation(-to_light))[1];
     right = glm::cross(forward, to_light);
-    for (const glm::dvec3& p : points) {
-      const double depth = view_depth(camera, p);
-      depths = {std::min(depths.near_m, depth), std::max(depths.far_m, depth)};
-    }
+    depths = find_depth_span(camera, points);
     depths.near_m = std::max(depths.near_m, kLeastNear * depths.far_m);
   }
 

@@ -9,7 +9,7 @@
 
 #include "filters/map_reader.h"
 #include "harness/gl/pixel_format.h"
-#include "harness/render/receivers.h"
+#include "harness/render/gbuffer.h"
 
 namespace shadowbench::view {
 namespace {

@@ -109,7 +109,7 @@ bool Widgets::tick(const std::string& name, const std::string& label, bool& valu
 }
 
 void Widgets::show(const std::string& name, const gl::Texture& texture) {
-  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(render::gl_name(texture))),
+  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.id())),
                {static_cast<float>(texture.width()), static_cast<float>(texture.height())}, {0.0f, 1.0f}, {1.0f, 0.0f});
   note(name);
 }

@@ -1,7 +1,7 @@
 // A lamp so far away that its rays are parallel is a sun.
 
 #include "harness/measure/view_receivers.h"
-#include "harness/scene/occluders.h"
+#include "harness/scene/scene.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

@@ -12,7 +12,7 @@
 #include "harness/options/options.h"
 #include "harness/render/bias/bias_rule.h"
 #include "harness/render/filter_passes.h"
-#include "harness/render/receivers.h"
+#include "harness/render/gbuffer.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::test {

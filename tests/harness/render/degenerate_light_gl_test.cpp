@@ -4,8 +4,8 @@
 
 #include "harness/measure/view_receivers.h"
 #include "harness/render/shade_pass.h"
-#include "harness/scene/occluders.h"
-#include "harness/scene/scene_file.h"
+#include "harness/scene/load.h"
+#include "harness/scene/scene.h"
 #include "tests/harness/render/contract_fixture.h"
 #include "tests/harness/scene/test_files.h"
 

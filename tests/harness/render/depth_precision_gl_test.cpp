@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "filters/depth_curve.h"
+#include "filters/depth_map.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/primitives.h"
 #include "tests/filters/perspective_depth.h"

@@ -8,8 +8,8 @@
 
 #include "harness/measure/view_receivers.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/occluders.h"
 #include "harness/scene/primitives.h"
+#include "harness/scene/scene.h"
 #include "harness/scene/validate.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/contract_fixture.h"

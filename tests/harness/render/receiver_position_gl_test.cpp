@@ -5,8 +5,8 @@
 #include <glm/gtc/constants.hpp>
 
 #include "harness/measure/view_receivers.h"
-#include "harness/scene/occluders.h"
 #include "harness/scene/primitives.h"
+#include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/bench_fixture.h"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "harness/scene/occluders.h"
+#include "harness/scene/scene.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "harness/scene/framing.h"
+#include "harness/scene/complete.h"
 #include "harness/scene/lights/light_fit.h"
 #include "test_files.h"
 

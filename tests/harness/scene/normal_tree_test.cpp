@@ -1,10 +1,10 @@
-#include "harness/scene/normal_tree.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 #include <random>
+
+#include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
 namespace {

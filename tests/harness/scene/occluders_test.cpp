@@ -1,12 +1,11 @@
 // What rays hit of a scene: what casts a shadow, but for the holes of its material; and where kernels lie in a map.
 
-#include "harness/scene/occluders.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "harness/scene/lights/light_fit.h"
+#include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/scene/gltf_parts.h"
 

@@ -1,5 +1,3 @@
-#include "harness/scene/scene_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "harness/scene/load.h"
 #include "test_files.h"
 
 namespace shadowbench::scene {

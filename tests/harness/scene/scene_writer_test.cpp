@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "harness/scene/framing.h"
+#include "harness/scene/complete.h"
 #include "harness/scene/load.h"
 #include "tests/harness/scene/gltf_parts.h"
 #include "tests/harness/scene/same_scene.h"

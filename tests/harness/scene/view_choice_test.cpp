@@ -7,9 +7,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "harness/scene/complete.h"
+#include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/primitives.h"
-#include "harness/scene/scene_file.h"
 #include "test_files.h"
 
 namespace shadowbench::scene {

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "harness/options/options.h"
-#include "harness/scene/framing.h"
+#include "harness/scene/complete.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::tune {

@@ -1,12 +1,12 @@
 // Errors taken apart: the parts add up, and shares follow from numbers that can be worked out by hand.
 
-#include "reference/metrics/attribution.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "reference/metrics/error_stats.h"
 
 namespace shadowbench::metrics {
 namespace {

@@ -1,11 +1,10 @@
-#include "harness/scene/lights/cascades.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/error.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
 #include "tests/harness/scene/test_files.h"
 

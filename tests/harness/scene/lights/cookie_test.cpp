@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/scene/scene_file.h"
+#include "harness/scene/load.h"
 #include "tests/harness/scene/test_files.h"
 
 namespace shadowbench::scene {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/scene/framing.h"
+#include "harness/scene/complete.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
 

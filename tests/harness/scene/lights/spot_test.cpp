@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "filters/depth_curve.h"
+#include "filters/depth_map.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/primitives.h"

@@ -1,13 +1,12 @@
 // Warped maps of the sun: they hold what the camera sees, and each spends its texels as its method says.
 
-#include "harness/scene/lights/warp.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 
 #include "base/error.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/primitives.h"
