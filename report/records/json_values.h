@@ -30,6 +30,7 @@ std::string dump_file(const nlohmann::json& value);
 /// The place in an object that a dotted path names.
 nlohmann::json::json_pointer make_pointer(std::string path);
 
+/// Whether a type is made by a template, such as std::optional.
 template <class T, template <class...> class Of>
 inline constexpr bool kIsA = false;
 template <class... Parts, template <class...> class Of>
@@ -44,6 +45,7 @@ inline constexpr bool kIsText = std::is_same_v<T, std::string> || std::is_same_v
 template <class T>
 nlohmann::json value_json(const T& value);
 
+/// Writes a value that is within a record or a list.
 template <class T>
 nlohmann::json member_json(const T& value) {
   if constexpr (std::is_same_v<T, double>) return value;
@@ -91,6 +93,7 @@ nlohmann::json value_json(const T& value) {
   return result;
 }
 
+/// Throws std::invalid_argument, which says what was expected, where that does not hold.
 inline void require(bool holds, const std::string& expected) {
   if (!holds) throw std::invalid_argument(expected);
 }
@@ -115,6 +118,7 @@ struct MemberReader {
   }
 };
 
+/// Reads the name of an enumeration's value; likewise.
 template <class Enum>
 Enum read_enum(const nlohmann::json& json) {
   const auto found = std::find(std::begin(kNames<Enum>), std::end(kNames<Enum>), json);
