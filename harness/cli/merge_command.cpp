@@ -6,8 +6,8 @@
 #include "harness/cli/commands.h"
 #include "harness/cli/interruption.h"
 #include "harness/run/merge.h"
-#include "harness/submit/sweep_jobs.h"
 #include "harness/submit/sweep_folder.h"
+#include "harness/submit/sweep_jobs.h"
 
 namespace shadowbench::cli {
 

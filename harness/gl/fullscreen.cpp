@@ -1,6 +1,5 @@
 #include "harness/gl/fullscreen.h"
 
-
 namespace shadowbench::gl {
 
 FullscreenTriangle::FullscreenTriangle() : empty_("fullscreen triangle") {}

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "harness/gl/shader_source.h"
 #include "harness/gl/objects.h"
+#include "harness/gl/shader_source.h"
 
 namespace shadowbench::gl {
 

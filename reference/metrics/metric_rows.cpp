@@ -1,5 +1,3 @@
-#include "reference/metrics/metric_table.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "reference/metrics/artefacts.h"
 #include "reference/metrics/flip.h"
+#include "reference/metrics/metric_table.h"
 
 namespace shadowbench::metrics {
 namespace {

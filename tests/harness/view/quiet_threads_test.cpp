@@ -1,5 +1,3 @@
-#include "harness/view/background_truth.h"
-
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <tbb/info.h>
@@ -11,6 +9,8 @@
 #include <set>
 #include <stdexcept>
 #include <thread>
+
+#include "harness/view/background_truth.h"
 
 namespace shadowbench::view {
 namespace {

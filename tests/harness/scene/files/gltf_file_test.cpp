@@ -1,11 +1,10 @@
-#include "harness/scene/files/mesh_file.h"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/validate.h"
 #include "tests/harness/scene/gltf_parts.h"

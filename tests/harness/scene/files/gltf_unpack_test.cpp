@@ -1,5 +1,3 @@
-#include "harness/scene/files/gltf_parse.h"
-
 #include <dlfcn.h>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
@@ -10,6 +8,7 @@
 #include <functional>
 #include <random>
 
+#include "harness/scene/files/gltf_parse.h"
 #include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {

@@ -1,8 +1,7 @@
-#include "harness/scene/files/mesh_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/scene/files/mesh_file.h"
 #include "tests/harness/scene/test_files.h"
 
 namespace shadowbench::scene {

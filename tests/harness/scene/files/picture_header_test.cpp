@@ -1,10 +1,9 @@
-#include "harness/scene/files/mesh_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "harness/scene/files/mesh_file.h"
 #include "tests/harness/scene/test_files.h"
 
 namespace shadowbench::scene {
