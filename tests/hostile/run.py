@@ -127,7 +127,7 @@ class Maker:
                                                      "{}"], {0, 2, 5}),
             ("glsl", ROOT / "filters" / "pcss.glsl", ["run", "--scene", "cubes", "--filters", "mutant", "--filter-file",
                                                       "{}"], {0, 2, 5}),
-            ("toml", ROOT / "harness" / "experiments" / "quick.toml", ["run", "{}", "--scene", "cubes", "--filters",
+            ("toml", ROOT / "data" / "experiments" / "quick.toml", ["run", "{}", "--scene", "cubes", "--filters",
                                                                        "none"], {0, 2, 3}),
             ("exr", samples / "run" / "cubes.exr", ["diff", "{}#none.visibility", str(samples / "run" / "cubes.exr")
                                                     + "#none.visibility"], {0, 1, 2, 3}),
@@ -297,7 +297,7 @@ def try_case(program, case, timeout):
 
 def make_samples(program, folder):
     """A real file of each format."""
-    shutil.copy(ROOT / "harness" / "scenes" / "cubes.toml", folder / "cubes.toml")
+    shutil.copy(ROOT / "data" / "scenes" / "cubes.toml", folder / "cubes.toml")
     subprocess.run([program, "run", "--out", str(folder / "run"), "--scene", "cubes", "--filters", "none", "--size", "64x36",
                     "--map-size", "32", "--rounds", "1"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     (folder / "small.obj").write_text("mtllib small.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0.5 1 0.5\nvt 0 0\nvn 0 1 0\n"

@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::filesystem::path kShipped = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "gpus";
+const std::filesystem::path kShipped = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "gpus";
 
 std::string read(const std::filesystem::path& file) {
   std::ifstream stream(file);

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::filesystem::path kScenes = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "scenes";
+const std::filesystem::path kScenes = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes";
 constexpr double kAspect = 16.0 / 9.0;
 
 LoadOptions make_options(bool ground = false) {

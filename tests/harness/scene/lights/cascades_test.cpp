@@ -64,7 +64,7 @@ std::vector<LightFrustum> fit(const Scene& scene, const Camera& camera, CascadeR
 }
 
 Scene load_avenue() {
-  return load("avenue", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "scenes"});
+  return load("avenue", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
 }
 
 TEST(Cascades, EachHoldsWhatItServes_WithItsPadding) {

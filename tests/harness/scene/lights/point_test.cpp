@@ -12,7 +12,7 @@ namespace shadowbench::scene {
 namespace {
 
 Scene load_lantern() {
-  return load("lantern", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "scenes"});
+  return load("lantern", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
 }
 
 /// The face that a direction belongs to: its longest axis, x before y before z.

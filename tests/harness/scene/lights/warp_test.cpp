@@ -19,7 +19,7 @@ constexpr double kWarpPad = 6.0, kWarpAspect = 16.0 / 9.0;
 constexpr FitMode kWarps[] = {FitMode::kFocused, FitMode::kLispsm, FitMode::kPsm, FitMode::kTsm, FitMode::kLogpsm};
 
 Scene load_deep_scene() {
-  return load("avenue", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "harness" / "scenes"});
+  return load("avenue", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
 }
 
 LightFrustum fit_warp(const Scene& scene, FitMode mode, const glm::dvec2& shift_texels = {}) {
