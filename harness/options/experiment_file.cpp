@@ -27,18 +27,15 @@ class ExperimentReader {
       : folder_(file.parent_path()), root_(read_toml(file, "the experiment")) {}
 
   Experiment read() {
-    std::vector<const RunOption*> known;
+    std::vector<RunOption> known = list_run_options();
+    std::erase_if(known, [](const RunOption& option) { return option.decides == Decides::kWay; });
     std::vector<std::string> keys;
-    for (const RunOption& option : list_run_options()) {
-      if (option.decides == Decides::kWay) continue;
-      known.push_back(&option);
-      keys.push_back(option.key());
-    }
+    for (const RunOption& option : known) keys.push_back(option.key());
     root_.require_known_keys(keys, {"title", "filter"});
     Experiment experiment;
     experiment.title = root_.string("title", std::string());
-    for (const RunOption* option : known)
-      if (const auto value = root_.find(option->key())) experiment.settings.push_back(read_setting(*option, *value));
+    for (const RunOption& option : known)
+      if (const auto value = root_.find(option.key())) experiment.settings.push_back(read_setting(option, *value));
     if (const auto filter = root_.find("filter"); filter && filter->as_table(""))
       throw filter->error("'filter' must be tables, each headed [[filter]]");
     for (const TomlTable& table : root_.tables("filter")) experiment.filters.push_back(read_filter(table));
