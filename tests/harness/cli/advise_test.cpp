@@ -107,7 +107,7 @@ TEST_F(Advise, LimitsThatAreNotNumbers_AreUsageErrors) {
 }
 
 TEST_F(Advise, UnknownNames_AreUsageErrors) {
-  expect_refusal("advise run --light fast", 2, {"--light: 'fast' must be one of moving, static"});
+  expect_refusal("advise run --light-motion fast", 2, {"--light-motion: 'fast' must be one of moving, static"});
   expect_refusal("advise run --cheapest money", 2,
                  {"--cheapest: 'money' must be one of time, bytes, fetches, gpu:NAME"});
   expect_refusal("advise run --scene stick", 2, {"--scene: the run has no 'stick'; it has cubes, stack"});

@@ -50,7 +50,7 @@ TEST_F(Lights, AreTimedForEveryCell_ByAscendingCount_UsersFiltersToo) {
   const json& none = all["cells"][0];
   EXPECT_EQ(none["lights"][2]["ratio_to_none"]["moving"]["ci95"], json({1.0, 1.0}));
   const std::string page = read_text(folder() / "out" / "index.html");
-  EXPECT_THAT(page, HasSubstr("<figure class=\"chart\" id=\"cubes.main.64x36.map64.lights\">"));
+  EXPECT_THAT(page, HasSubstr("<figure class=\"chart\" id=\"lights\">"));
 }
 
 TEST_F(Lights, ThatWereNotAskedFor_AreAbsentWithTheReason) {
