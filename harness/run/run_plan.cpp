@@ -20,7 +20,9 @@
 namespace shadowbench::run {
 namespace {
 
-void add_options(ContentHash& hash, const options::RunOptions& options) {
+void add_options(ContentHash& hash, options::RunOptions options) {
+  // How precise times are to be decides nothing where the number of rounds is told.
+  if (options.rounds.is_fixed()) options.rounds = options::RoundLimits::exactly(options.rounds.most);
   for (const options::RunOption& option : options::list_run_options()) {
     if (option.decides != options::Decides::kContent) continue;
     hash.add(option.name);

@@ -68,7 +68,6 @@ struct Metric {
   std::string_view group() const { return path.substr(0, path.find('.') == path.npos ? 0 : path.find('.')); }
   /// The path without its group: "rmse", "numeric.share".
   std::string_view name() const { return path.substr(path.find('.') + 1); }
-  bool is_count() const { return member.index() == 1; }
   /// The value as a number, where it exists.
   std::optional<double> read(const MetricValues& values) const;
 };

@@ -63,6 +63,8 @@ TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
   EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " of them finished before"));
   EXPECT_EQ(cell_times(), before);
   EXPECT_THAT(outcome.err, HasSubstr("nothing is left to do"));
+  EXPECT_THAT(run("run e.toml --out out --precision 0.2 --budget 1").err, HasSubstr("nothing is left to do"))
+      << "the number of rounds is told";
   EXPECT_EQ(results(), first);
   // Without its page or its results the report is made again, and nothing else.
   std::filesystem::remove(folder() / "out" / "index.html");
