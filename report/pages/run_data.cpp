@@ -34,17 +34,21 @@ json value_of(const std::optional<double>& value) { return value && std::isfinit
 
 json path_of(const std::optional<std::string>& path) { return path ? json(files::encode_url_path(*path)) : json(); }
 
-json make_measure(std::string_view id, std::string_view title, std::string_view text, std::string_view unit,
-                  std::string_view option, std::string_view group,
-                  metrics::MetricDirection direction = metrics::MetricDirection::kLess) {
+/// What the page says of one column of its table of numbers.
+struct MeasureWords {
+  std::string_view id, title, text, unit, option = {}, group = {};
+  metrics::MetricDirection direction = metrics::MetricDirection::kLess;
+};
+
+json make_measure(const MeasureWords& words) {
   static constexpr const char* kBetter[] = {"less", "more", "zero", "neither"};
-  return {{"id", id},
-          {"title", title},
-          {"text", text},
-          {"unit", unit},
-          {"option", option},
-          {"group", group},
-          {"better", kBetter[static_cast<std::size_t>(direction)]}};
+  return {{"id", words.id},
+          {"title", words.title},
+          {"text", words.text},
+          {"unit", words.unit},
+          {"option", words.option},
+          {"group", words.group},
+          {"better", kBetter[static_cast<std::size_t>(words.direction)]}};
 }
 
 /// The time of a frame, light moving and static; no limit is set on a ratio.
@@ -57,8 +61,13 @@ json list_frame_measures(const records::RunRecord& run, const analysis::CostKind
                               " over that of 'none' in the same rounds, on the same machine and map; a map of another "
                               "size has another 'none'";
     const std::string time = passes + " less a lookup that reads nothing: what a frame pays " + frames + clock;
-    return make_measure(id, (is_ratio ? "ratio to 'none', " : "time, ") + title, is_ratio ? ratio : time, unit,
-                        is_ratio ? "" : "--max-ms", "cost");
+    const std::string titled = (is_ratio ? "ratio to 'none', " : "time, ") + title;
+    return make_measure({.id = id,
+                         .title = titled,
+                         .text = is_ratio ? ratio : time,
+                         .unit = unit,
+                         .option = is_ratio ? "" : "--max-ms",
+                         .group = "cost"});
   };
   return {make(kMoving, "moving light", "map, prefilter and lookup", "in which light or casters move"),
           make(kStatic, "static light", is_ratio ? "the lookup" : "lookup", "while light and casters stand still")};
@@ -70,12 +79,15 @@ json list_measures(const records::RunRecord& run, const std::vector<std::string>
   json measures = list_frame_measures(run, frame);
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty())
-      measures.push_back(make_measure(metric.path, metric.title, metric.definition, metric.unit, metric.limit,
-                                      metric.group(), metric.direction));
+      measures.push_back(make_measure(
+          {metric.path, metric.title, metric.definition, metric.unit, metric.limit, metric.group(), metric.direction}));
   for (const std::string& gpu : gpus)
-    measures.push_back(make_measure("gpu." + gpu + ".estimate_us", "estimate, " + gpu,
-                                    "prefilter and a million receivers' lookups on that GPU, which was not there", "us",
-                                    "", "cost"));
+    measures.push_back(
+        make_measure({.id = "gpu." + gpu + ".estimate_us",
+                      .title = "estimate, " + gpu,
+                      .text = "prefilter and a million receivers' lookups on that GPU, which was not there",
+                      .unit = "us",
+                      .group = "cost"}));
   return measures;
 }
 

@@ -128,7 +128,7 @@ def test_requeued_task_goes_on(program, cluster, folder):
 
 
 def test_cancelled_sweep_is_continued(program, cluster, folder):
-    sweep = Sweep(program, cluster, folder, LONG, tasks=4)
+    sweep = Sweep(program, cluster, folder, [*LONG, "--rounds", 24], tasks=4)
     sweep.submit()
     sweep.wait_for_cells(26)  # two nodes, 12 cells a task: one is finished, and a third begun
     cluster.run("scancel", "--user=root")
