@@ -137,13 +137,13 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
     return truth;
   }
   render::GBuffer& view = gbuffer(camera);
-  truth = trace_scene(tracer_, scene_.light, read_view_receivers(view, scene_.light));
+  truth = trace_scene(tracer_, scene_.light, read_view_receivers(view, scene_.light), options_.truth_weight);
   if (!truth.absent.empty()) return truth;
   const auto shaded = [&](const images::Image& visibility) {
     return render::shade(renderer_.shaders, view, render::upload_image(visibility), scene_, camera);
   };
   truth.hard_picture = shaded(truth.hard);
-  truth.area_picture = shaded(truth.area);
+  truth.area_picture = shaded(truth.ratio);
   truth.area_seen = view_picture(images::round_to_half(truth.area_picture));
   return truth;
 }

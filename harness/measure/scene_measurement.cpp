@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "filters/kernel_width.h"
 #include "filters/model.h"
 #include "filters/random.h"
 #include "harness/measure/filter_setup.h"
+#include "harness/measure/phases.h"
 #include "harness/measure/receiver_pixels.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
@@ -257,7 +257,7 @@ class SceneBench {
   /// Draws every filter again with the map's grid moved by parts of a texel. The passes stay turned to the last of
   /// them.
   void draw_phases(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
-    const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases);
+    const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases, options_.seed);
     if (shifts.size() > 1) listener_.begin(options::Work::kPhases, filters.size(), "phases");
     for (std::size_t phase = 1; phase < shifts.size(); ++phase) {
       const LightMap moved = assets_.make_light_map(task_.scene->light, *task_.camera, task_.map_size, shifts[phase]);
@@ -302,9 +302,6 @@ void set_kernel(records::CellRecord& record, const filters::FilterRequest& reque
     record.absent["kernel.class"] =
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);
 }
-
-/// Moves a part of a texel in [0,1) to [-1/2, 1/2): the grid is the same.
-double center_shift(double shift) { return shift < 0.5 ? shift : shift - 1.0; }
 
 }  // namespace
 
@@ -357,17 +354,6 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
 SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
                                SceneAssets& assets, const options::StepListener& listener) {
   return SceneBench(renderer, options, task, assets, listener).run();
-}
-
-std::vector<glm::dvec2> list_phase_shifts(int count) {
-  std::vector<double> places;
-  for (int i = 0; i < count; ++i) places.push_back(std::fmod(i * std::numbers::phi, 1.0));
-  std::vector<glm::dvec2> shifts;
-  for (int i = 0; i < count; ++i) {
-    const auto rank = std::ranges::count_if(places, [&](double place) { return place < places[shifts.size()]; });
-    shifts.emplace_back(center_shift(static_cast<double>(i) / count), center_shift(static_cast<double>(rank) / count));
-  }
-  return shifts;
 }
 
 }  // namespace shadowbench::measure

@@ -1,43 +1,60 @@
 #include "harness/measure/scene_truth.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "harness/measure/mean_flip.h"
+#include "harness/measure/phases.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/flicker.h"
 #include "report/images/picture_io.h"
 #include "report/records/absence.h"
+#include "report/records/format.h"
 
 namespace shadowbench::measure {
 namespace {
 
 void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
-  double squares = 0.0, unanimous = 0.0, count = 0.0;
+  double squares = 0.0, gaps = 0.0, unanimous = 0.0, count = 0.0;
   for (std::size_t i = 0; i < truth.mask.size(); ++i) {
     if (!truth.mask[i]) continue;
-    squares += static_cast<double>(area.standard_error[i]) * static_cast<double>(area.standard_error[i]);
+    const double gap = static_cast<double>(area.visibility[i]) - static_cast<double>(area.ratio[i]);
+    squares += static_cast<double>(truth.standard_errors[i]) * static_cast<double>(truth.standard_errors[i]);
+    gaps += gap * gap;
     unanimous += area.unanimous[i];
     count += 1.0;
   }
   truth.standard_error = std::sqrt(squares / count);
+  truth.weight_rmse = std::sqrt(gaps / count);
   truth.unanimous = unanimous / count;
+}
+
+constexpr double kTellingWeight = 0.01;
+
+std::string warn_of_weight(const records::CellRecord& record, double rmse) {
+  return fmt::format(
+      "{}, view {}: the share of the light that is seen and the share of its unshadowed light that arrives differ by "
+      "an RMSE of {}; --truth-weight chooses which of them visibility is held against",
+      record.scene, record.view, records::format_number(rmse));
 }
 
 constexpr const char* kOnePhase = "one phase of the map's grid tells nothing of the others; see --phases";
 
-/// Notes the mean of every error over the phases; the largest error is the largest of all.
-void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases) {
+/// Notes the mean of every error over the phases, which come in groups; the largest error is the largest of all.
+void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases, std::size_t group) {
   metrics::ErrorStats sum;
-  std::vector<double> rmses;
+  std::vector<double> replicates(phases.size() / group);
   for (const metrics::ErrorStats& stats : phases) {
     sum.rmse += stats.rmse;
     sum.mae += stats.mae;
     sum.p95 += stats.p95;
     sum.mean += stats.mean;
     sum.max = std::max(sum.max, stats.max);
-    rmses.push_back(stats.rmse);
   }
+  for (std::size_t i = 0; i < replicates.size() * group; ++i)
+    replicates[i / group] += phases[i].rmse / static_cast<double>(group);
   const auto count = static_cast<double>(phases.size());
   record.error.rmse = sum.rmse / count;
   record.error.mae = sum.mae / count;
@@ -45,15 +62,28 @@ void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorSt
   record.error.max = sum.max;
   record.error.mean = sum.mean / count;
   record.phases = static_cast<std::int64_t>(phases.size());
-  if (const auto interval = metrics::find_mean_interval(rmses))
-    record.rmse_ci95 = records::Interval{interval->low, interval->high};
+  const auto interval = metrics::find_mean_interval(replicates);
+  if (!interval) return;
+  record.rmse_ci95 = records::Interval{interval->low, interval->high};
+  record.rmse_replicates = std::move(replicates);
+}
+
+void note_flicker(records::CellRecord& record, const std::optional<metrics::Change>& change) {
+  for (const char* field : {"error.flicker", "error.flicker_ci95", "error.rmse_ci95", "error.rmse_replicates"})
+    if (!change) record.absent[field] = kOnePhase;
+  if (!change) return;
+  record.error.flicker = change->value;
+  if (change->reach)
+    record.flicker_ci95 =
+        records::Interval{std::max(0.0, change->value - *change->reach), change->value + *change->reach};
   else
-    record.absent["error.rmse_ci95"] = kOnePhase;
+    record.absent["error.flicker_ci95"] = "two phases have no interval; see --phases";
 }
 
 }  // namespace
 
-SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, ViewReceivers receivers) {
+SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, ViewReceivers receivers,
+                       options::TruthWeight weight) {
   SceneTruth truth;
   truth.mask = receivers.mask();
   truth.receivers = std::move(receivers);
@@ -63,7 +93,10 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
   }
   truth.rays = tracer.trace_view(truth.receivers.image, scene::make_area_light(light));
   truth.hard = truth.receivers.to_image(truth.rays.hard);
-  truth.area = truth.receivers.to_image(truth.rays.area.visibility);
+  const bool is_ratio = weight == options::TruthWeight::kCosine;
+  truth.ratio = truth.receivers.to_image(truth.rays.area.ratio);
+  truth.area = is_ratio ? truth.ratio : truth.receivers.to_image(truth.rays.area.visibility);
+  truth.standard_errors = is_ratio ? truth.rays.area.ratio_error : truth.rays.area.standard_error;
   summarise_errors(truth, truth.rays.area);
   return truth;
 }
@@ -95,12 +128,14 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
     return {};
   }
   std::ranges::for_each(other_phases, measure_phase);
-  note_errors(record, phases);
+  // Without a phase of which nothing is finite, those that are left make no groups.
+  const bool is_whole = phases.size() == other_phases.size() + 1;
+  const std::size_t group = is_whole ? count_phases_of_group(phases.size()) : 1;
+  note_errors(record, phases, group);
   std::vector<std::span<const float>> images = {visibility.texels};
   for (const images::Image& phase : other_phases)
     if (!phase.empty()) images.emplace_back(phase.texels);
-  record.error.flicker = metrics::measure_change(images, truth.mask);
-  if (!record.error.flicker) record.absent["error.flicker"] = kOnePhase;
+  note_flicker(record, metrics::measure_change(images, group, truth.mask));
   // Of the pictures as they are saved, so that `diff` finds the same.
   images::Image flip;
   if (const auto seen = view_picture(images::round_to_half(picture)); seen && truth.area_seen) {
@@ -109,7 +144,8 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
   }
   record.error.flip = find_mean(flip.texels, {});
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
-  record.truth = {truth.standard_error, truth.unanimous};
+  record.truth = {truth.standard_error, truth.unanimous, truth.weight_rmse};
+  if (truth.weight_rmse > kTellingWeight) record.warnings.push_back(warn_of_weight(record, truth.weight_rmse));
   return flip;
 }
 

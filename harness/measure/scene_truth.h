@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/measure/view_receivers.h"
+#include "harness/options/options.h"
 #include "harness/scene/lights/light.h"
 #include "reference/metrics/flip.h"
 #include "reference/truth/cached_tracer.h"
@@ -21,17 +22,21 @@ struct SceneTruth {
   ViewReceivers receivers;
   truth::ViewRays rays;
   images::Image hard;                          ///< the light as a point: 1 seen, 0 blocked
-  images::Image area;                          ///< the fraction of the light that is seen
+  images::Image area;                          ///< what visibility is held against: see options::TruthWeight
+  images::Image ratio;                         ///< the share of the unshadowed light that arrives
   images::Image hard_picture;                  ///< shaded with `hard`, linear RGB
-  images::Image area_picture;                  ///< shaded with `area`, linear RGB
+  images::Image area_picture;                  ///< shaded with `ratio`, linear RGB
   std::optional<metrics::FlipView> area_seen;  ///< that picture, rounded to half as it is saved, as FLIP sees it
   std::vector<std::uint8_t> mask;              ///< 1 where a pixel counts: a surface that faces the light
+  std::vector<float> standard_errors;          ///< of `area`, pixel by pixel
   double standard_error = 0.0;                 ///< root mean square over the pixels that count
+  double weight_rmse = 0.0;     ///< between the fraction of the light that is seen and `ratio`, over the same pixels
   double unanimous = 0.0;  ///< share of them whose rays all agree, and which therefore have no standard error
 };
 
 /// Traces the receivers of a view; the pictures are left empty.
-SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, ViewReceivers receivers);
+SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, ViewReceivers receivers,
+                       options::TruthWeight weight = options::TruthWeight::kArea);
 
 /// Scores a cell's images against the truth and notes the errors, or why there are none, in its record: visibility over
 /// the pixels that count, as the mean over the phases of the map's grid, of which `visibility` is the first and

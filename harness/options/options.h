@@ -49,6 +49,12 @@ struct CellRange {
   bool operator==(const CellRange&) const = default;
 };
 
+/// What visibility is held against; pictures are held against the second of the two.
+enum class TruthWeight {
+  kArea,    ///< the share of the light's area, of a sphere's solid angle, that is seen: what filters define
+  kCosine,  ///< the share of the light that would arrive unshadowed: what a renderer multiplies its shading by
+};
+
 /// What a run leaves of the cells that it does.
 enum class Product {
   kReport,  ///< a folder of its own, and a report once all of them are there
@@ -100,13 +106,14 @@ struct RunOptions {
   bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: as many as the widest kernel needs
   RoundLimits rounds;
-  int phases = 4;                    ///< places of the map's grid over which errors are averaged
+  int phases = 8;                    ///< places of the map's grid over which errors are averaged
   std::vector<gpu::Gpu> gpus;        ///< also estimate costs on these, which need not be there
   std::vector<int> lights;           ///< also time frames with these numbers of lights
   filters::FilterRequest reference;  ///< the filter that the others' times are ratios to
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;
   bool truth = true;         ///< trace rays, and score every filter against them
+  TruthWeight truth_weight = TruthWeight::kArea;
   bool attribution = true;   ///< split the errors into their four parts; needs truth
   bool stability = false;    ///< find where numbers break, per texel and per pixel
   bool uncertainty = false;  ///< keep how far rounding and other seeds can move each pixel

@@ -98,6 +98,12 @@ void take(const char*, const std::string& text, std::optional<scene::SkyAngles>&
 std::string tell(filters::Border border) { return filters::to_string(border); }
 void take(const char*, const std::string& text, filters::Border& border) { border = filters::parse_border(text); }
 
+std::string tell(TruthWeight weight) { return weight == TruthWeight::kArea ? "area" : "cosine"; }
+void take(const char* name, const std::string& text, TruthWeight& weight) {
+  if (text != "area" && text != "cosine") fail(fmt::format("{}: '{}' must be area or cosine", name, text));
+  weight = text == "area" ? TruthWeight::kArea : TruthWeight::kCosine;
+}
+
 std::string tell(const RoundLimits& rounds) { return rounds.is_fixed() ? fmt::format("{}", rounds.most) : kAuto; }
 void take(const char* name, const std::string& text, RoundLimits& rounds) {
   if (text == kAuto) return;
@@ -299,6 +305,11 @@ std::vector<RunOption> list_run_options() {
   t.add("--cell-timeout", "seconds that a filter of your own may take on one scene", &RunOptions::cell_timeout_s);
   t.decides = Decides::kContent;
   t.add("--truth", "trace rays, and score every filter against them (default)", &RunOptions::truth).with_opposite();
+  t.add("--truth-weight",
+        "what visibility is held against: 'area', the share of the light's area (of a sphere's solid angle) that is "
+        "seen, as filters define it, or 'cosine', the share of the unshadowed light that arrives, as a renderer has "
+        "it; pictures are always held against the latter",
+        &RunOptions::truth_weight);
   t.add("--attribution", "take the errors apart: trace kernels, run models (default)", &RunOptions::attribution)
       .with_opposite();
   t.add("--stability",

@@ -133,7 +133,8 @@ void add_truth_parts(std::vector<images::Part>& parts, const measure::SceneTruth
                      const std::optional<metrics::ArtefactMasks>& masks) {
   add_part(parts, "truth.hard", truth.hard);
   add_part(parts, kTruthPart, truth.area);
-  add_part(parts, "truth.standard_error", make_image(truth, truth.rays.area.standard_error));
+  add_part(parts, "truth.ratio", truth.ratio);
+  add_part(parts, "truth.standard_error", make_image(truth, truth.standard_errors));
   add_part(parts, kTruthMaskPart, make_image(truth, truth.mask));
   add_part(parts, kTruthPicturePart, truth.area_picture);
   add_receiver_parts(parts, truth.receivers.image);
@@ -216,7 +217,7 @@ void write_truth_pictures(const options::RunOptions& options, const std::string&
   images::write_value_file(options.out / values, values,
                            {{"area", truth.area},
                             {"hard", truth.hard},
-                            {"standard_error", make_image(truth, truth.rays.area.standard_error)},
+                            {"standard_error", make_image(truth, truth.standard_errors)},
                             {"mask", make_image(truth, truth.mask)}});
   for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.images.truth_picture = picture;

@@ -24,15 +24,20 @@ struct ErrorStats {
 std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<const float> truth,
                                         std::span<const std::uint8_t> mask);
 
-/// A mean with the interval in which the mean of as many other values lies in 95 of 100 cases.
+/// A mean with its 95 % confidence interval.
 struct MeanInterval {
   double mean = 0.0;
   double low = 0.0;
   double high = 0.0;
 };
 
-/// The mean of values with its 95 % prediction interval by Student's t (Hahn and Meeker 1991, Statistical Intervals,
-/// section 4.8): two means of one thing differ by sqrt(2) of what each is uncertain. Nothing for fewer than two values.
+/// How many standard errors of a mean of `count` values are the half-width of its 95 % interval: Student's t, at 97 %
+/// because means over few places of a map's grid are not normal (reference/README.md has what was measured). Requires
+/// two values or more.
+double find_student_t(std::size_t count);
+
+/// The mean of independent values with its 95 % confidence interval by find_student_t(). Nothing for fewer than two
+/// values.
 std::optional<MeanInterval> find_mean_interval(std::span<const double> values);
 
 /// The stations between a filter's image and the truth, one value per pixel each; 1 lit, 0 blocked.

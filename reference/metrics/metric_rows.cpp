@@ -63,6 +63,10 @@ std::vector<Metric> list_errors() {
        "standard error of the truth, root mean square over receivers", kKept},
       {"truth.unanimous", at<&V::truth, &TruthRecord::unanimous>, "share", kZeroToOne, kMore, "unanimous receivers",
        "receivers whose rays all agree, and which therefore have no standard error"},
+      {"truth.weight_rmse", at<&V::truth, &TruthRecord::weight_rmse>, "visibility", kPositive, kNeither,
+       "what weighing the truth changes",
+       "root mean square, over receivers, of the share of the light's area that is seen less the share of its "
+       "unshadowed light that arrives; see --truth-weight"},
       {"receivers", at<&V::receivers>, "pixels", kPositive, kNeither, "receivers",
        "pixels whose surface faces the light: those that count", kCount},
       {"nan", at<&V::nan>, "pixels", kPositive, kLess, "not finite", "pixels whose visibility is not finite", kCount},

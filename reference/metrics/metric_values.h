@@ -39,6 +39,7 @@ struct ErrorRecord {
 struct TruthRecord {
   std::optional<double> se;
   std::optional<double> unanimous;
+  std::optional<double> weight_rmse;
 };
 
 /// How well the map's texels are spent on the view.

@@ -52,6 +52,12 @@ void write_cap(std::array<RayPacket::Lanes, 3>& to, const RayFan& fan, const Sam
   }
 }
 
+/// What the rays of each scramble would bring to a receiver, in any unit, and what arrives of it.
+struct Arrival {
+  std::array<float, kScrambles> sent{};
+  std::array<float, kScrambles> arrived{};
+};
+
 /// Traces a fan's points, one packet of all scrambles for each, and counts the rays that reach the light.
 class FanTracer {
  public:
@@ -75,14 +81,17 @@ class FanTracer {
     if (settings.on_packet) settings.on_packet(packet_);
     occluders.find_blocked(packet_);
     for (std::size_t s = 0; s < lit_.size(); ++s) lit_[s] -= packet_.reach[s] < 0.0f ? 0 : packet_.active[s];
+    if (fan_.weighs) weigh();
   }
 
   const Counts& lit() const { return lit_; }
+  const Arrival& arrival() const { return arrival_; }
 
  private:
   const RayFan& fan_;
   RayPacket packet_;
   Counts lit_{};
+  Arrival arrival_;
 
   static void write(const SampleSets::Lanes& offsets, std::array<RayPacket::Lanes, 3>& to, const glm::vec3& base,
                     const glm::vec3& along_x, const glm::vec3& along_y) {
@@ -96,6 +105,20 @@ class FanTracer {
     for (std::size_t i = 0; i < packet_.active.size(); ++i) {
       const float above = d[0][i] * fan_.normal.x + d[1][i] * fan_.normal.y + d[2][i] * fan_.normal.z;
       packet_.active[i] = above > 0.0f ? -1 : 0;
+    }
+  }
+
+  /// By the receiver's cosine, and for points of a flat light by its own cosine over the distance squared.
+  void weigh() {
+    const auto& d = packet_.direction;
+    const bool is_flat = fan_.light_axis != glm::vec3(0.0f);
+    for (std::size_t i = 0; i < lit_.size(); ++i) {
+      const glm::vec3 way(d[0][i], d[1][i], d[2][i]);
+      const float squared = glm::dot(way, way), cosine = std::max(0.0f, glm::dot(way, fan_.normal));
+      const float weight = is_flat ? cosine * std::abs(glm::dot(way, fan_.light_axis)) / (squared * squared)
+                                   : cosine / std::sqrt(squared);
+      arrival_.sent[i] += weight;
+      arrival_.arrived[i] += packet_.reach[i] < 0.0f ? 0.0f : weight;
     }
   }
 };
@@ -117,6 +140,8 @@ class AdaptiveTracer {
     truth_.standard_error.assign(pixels, 0.0f);
     truth_.unanimous.assign(pixels, 1);
     truth_.rays.assign(pixels, 0);
+    truth_.ratio.assign(pixels, 1.0f);
+    truth_.ratio_error.assign(pixels, 0.0f);
     for (int side = settings_.coarsest; side >= 1; side /= 2) trace_first_points(side);
     const std::vector<float> first = truth_.visibility;
     for_each_tile(kFirstPart, 1.0, [&](const TracedTile& tile) {
@@ -223,6 +248,7 @@ class AdaptiveTracer {
       if (settings_.stop.stop_requested()) throw TracingStopped();
       for (; traced < points; ++traced) tracer.trace(occluders_, offsets_of(fan, set, traced), settings_);
       const double error = conclude(pixel, tracer.lit(), points);
+      if (fan.weighs) conclude(pixel, tracer.arrival());
       if (points == most || (points >= least && foretold <= settings_.standard_error)) return;
       foretold = kGainOfDoubling * error;
     }
@@ -257,6 +283,24 @@ class AdaptiveTracer {
     truth_.unanimous[pixel] = unanimous ? 1 : 0;
     truth_.standard_error[pixel] = unanimous ? 0.0f : static_cast<float>(error);
     return error;
+  }
+
+  /// Stores the share that arrives, a ratio of sums, with the standard error of its linearisation over the scrambles
+  /// (Cochran 1977, Sampling Techniques, section 6.4). Where nothing was sent, nothing arrives.
+  void conclude(std::size_t pixel, const Arrival& arrival) {
+    const double sent = std::accumulate(arrival.sent.begin(), arrival.sent.end(), 0.0);
+    const double arrived = std::accumulate(arrival.arrived.begin(), arrival.arrived.end(), 0.0);
+    const double ratio = sent > 0.0 ? arrived / sent : 0.0;
+    double squares = 0.0;
+    for (std::size_t s = 0; s < kScrambles; ++s) {
+      const double deviation =
+          static_cast<double>(arrival.arrived[s]) - ratio * static_cast<double>(arrival.sent[s]);
+      squares += deviation * deviation;
+    }
+    const double mean = sent / kScrambles;
+    truth_.ratio[pixel] = static_cast<float>(ratio);
+    truth_.ratio_error[pixel] =
+        sent > 0.0 ? static_cast<float>(std::sqrt(squares / (kScrambles - 1) / kScrambles) / mean) : 0.0f;
   }
 };
 

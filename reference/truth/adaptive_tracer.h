@@ -15,6 +15,8 @@ struct RayFan {
   glm::vec3 direction_x{0.0f};
   glm::vec3 direction_y{0.0f};
   glm::vec3 normal{0.0f};       ///< rays below this plane are blocked
+  glm::vec3 light_axis{0.0f};   ///< of a flat light, unit length: its rays are weighed by what they would bring
+  bool weighs = false;          ///< rays are weighed; without an axis they are evenly spread over solid angle
   float reach = 0.0f;           ///< in units of a direction's length
   float cap = 0.0f;             ///< above 0: rays to a sphere, which fills a cone; 1 - cos of half its angle, below 1
   float scale = 0.0f;           ///< of the second samples, which are added to the first ones

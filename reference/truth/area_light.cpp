@@ -28,20 +28,23 @@ Tangents make_tangents(const glm::dvec3& axis) {
 AreaLight AreaLight::make_sun(const glm::dvec3& to_light, double angular_diameter_deg) {
   const Tangents tangents = make_tangents(to_light);
   const double radius = std::tan(0.5 * glm::radians(angular_diameter_deg));
-  return {Shape::kSun, glm::normalize(to_light), radius * tangents.u, radius * tangents.v};
+  const glm::dvec3 axis = glm::normalize(to_light);
+  return {Shape::kSun, axis, axis, radius * tangents.u, radius * tangents.v};
 }
 
 AreaLight AreaLight::make_disk(const glm::dvec3& centre_ws, const glm::dvec3& axis, double radius_m) {
   const Tangents tangents = make_tangents(axis);
-  return {Shape::kDisk, centre_ws, radius_m * tangents.u, radius_m * tangents.v};
+  return {Shape::kDisk, centre_ws, glm::normalize(axis), radius_m * tangents.u, radius_m * tangents.v};
 }
 
 AreaLight AreaLight::make_rectangle(const glm::dvec3& centre_ws, const glm::dvec3& half_u, const glm::dvec3& half_v) {
-  return {Shape::kRectangle, centre_ws, half_u, half_v};
+  const glm::dvec3 normal = glm::cross(half_u, half_v);
+  const double area = glm::length(normal);
+  return {Shape::kRectangle, centre_ws, area > 0.0 ? normal / area : glm::dvec3(0.0), half_u, half_v};
 }
 
 AreaLight AreaLight::make_sphere(const glm::dvec3& centre_ws, double radius_m) {
-  return {Shape::kSphere, centre_ws, {radius_m, 0.0, 0.0}, {0.0, radius_m, 0.0}};
+  return {Shape::kSphere, centre_ws, glm::dvec3(0.0), {radius_m, 0.0, 0.0}, {0.0, radius_m, 0.0}};
 }
 
 glm::dvec2 AreaLight::map_sample(const glm::dvec2& sample) const {

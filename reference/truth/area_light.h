@@ -39,6 +39,9 @@ class AreaLight {
   /// Where the rays from a point go.
   Aim aim(const glm::dvec3& from) const;
 
+  /// The axis of a flat light, unit length; of a sphere, and of a rectangle without an area, 0.
+  const glm::dvec3& axis() const { return axis_; }
+
   Shape shape() const { return shape_; }
   const glm::dvec3& half_u() const { return u_; }  ///< from the centre to the edge
   const glm::dvec3& half_v() const { return v_; }
@@ -47,11 +50,12 @@ class AreaLight {
   float reach() const;
 
  private:
-  AreaLight(Shape shape, const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v)
-      : shape_(shape), centre_(centre), u_(u), v_(v) {}
+  AreaLight(Shape shape, const glm::dvec3& centre, const glm::dvec3& axis, const glm::dvec3& u, const glm::dvec3& v)
+      : shape_(shape), centre_(centre), axis_(axis), u_(u), v_(v) {}
 
   Shape shape_;
   glm::dvec3 centre_;  ///< direction for the sun, else a point
+  glm::dvec3 axis_;
   glm::dvec3 u_;
   glm::dvec3 v_;
 };

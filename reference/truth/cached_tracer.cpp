@@ -12,7 +12,7 @@ namespace {
 /// version.
 constexpr const char* kVersion = SHADOWBENCH_TRUTH_SOURCES " Embree " RTC_VERSION_STRING;
 constexpr std::size_t kTracedLayers = 4;
-constexpr std::size_t kViewLayers = kTracedLayers + 2;
+constexpr std::size_t kViewLayers = kTracedLayers + 4;
 
 std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
   ContentHash hash;
@@ -96,13 +96,19 @@ ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLigh
                                        name_vector(light.centre_direction(glm::dvec3(0.0))),
                                        name_vector(light.half_u()), name_vector(light.half_v()));
   Layers layers = find_or_trace(receivers, what, kViewLayers, [&] {
-    Layers traced = to_layers(trace_area(occluders(), receivers, light, settings_, samples(light)));
+    const TracedVisibility area = trace_area(occluders(), receivers, light, settings_, samples(light));
+    Layers traced = to_layers(area);
+    traced.push_back(area.ratio);
+    traced.push_back(area.ratio_error);
     traced.push_back(trace_hard(occluders(), receivers, light, settings_.stop));
     traced.push_back(trace_first_blockers(occluders(), receivers, light, settings_.stop));
     return traced;
   });
-  std::vector<float> hard = std::move(layers[kTracedLayers]), blockers = std::move(layers[kTracedLayers + 1]);
-  return {from_layers(std::move(layers)), std::move(hard), std::move(blockers)};
+  std::vector<float> hard = std::move(layers[kViewLayers - 2]), blockers = std::move(layers[kViewLayers - 1]);
+  TracedVisibility area = from_layers(layers);
+  area.ratio = std::move(layers[kTracedLayers]);
+  area.ratio_error = std::move(layers[kTracedLayers + 1]);
+  return {std::move(area), std::move(hard), std::move(blockers)};
 }
 
 TracedVisibility CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::string& what,

@@ -100,6 +100,8 @@ TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& rec
         fan.direction_y = aim.v;
         fan.cap = aim.cap;
         fan.normal = point.normal_ws;
+        fan.light_axis = light.axis();
+        fan.weighs = true;
         fan.reach = light.reach();
         fan.origin_moves = false;
         if (aim.cap < 1.0f) return fan;

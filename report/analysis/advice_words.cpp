@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "report/analysis/cell_group.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -24,12 +25,26 @@ std::optional<double> worst_rmse(const Candidate& candidate) {
   return worst;
 }
 
-// What a tie hides: the one that is named second may be the more accurate.
+std::optional<Estimate> rmse_over_places(const Candidate& candidate) {
+  std::vector<Estimate> estimates;
+  for (const records::CellRecord* cell : candidate.configuration.cells) {
+    if (!cell->error.rmse) return std::nullopt;
+    estimates.push_back(estimate_rmse(*cell));
+  }
+  return list_error_measures().front().combine(estimates);
+}
+
+// What the order by cost hides: the one that is named second may be the more accurate.
 std::string compare_errors(const Candidate& first, const Candidate& second) {
-  const auto a = worst_rmse(first), b = worst_rmse(second);
-  if (!a || !b || *b >= *a) return "";
-  return fmt::format("; {} has the lower RMSE, {} against {} at worst", second.configuration.label,
-                     records::format_number(*b), records::format_number(*a));
+  const auto a = rmse_over_places(first), b = rmse_over_places(second);
+  if (!a || !b) return "";
+  const Estimate gap = subtract(*b, *a);
+  const std::string interval =
+      gap.low < gap.high
+          ? fmt::format(" [{}, {}]", records::format_number(gap.low), records::format_number(gap.high))
+          : "";
+  const char* tied = gap.low <= 0.0 && gap.high >= 0.0 ? ", which does not tell the two apart" : "";
+  return fmt::format("; its RMSE less that of the choice is {}{}{}", records::format_number(gap.value), interval, tied);
 }
 
 // Follows the order that advise() gives to equal costs.
@@ -53,9 +68,8 @@ std::string describe_tie(const Advice& advice, const CostGap& gap) {
     return fmt::format("not to be compared, for a ratio to 'none' under other settings is to another 'none': {} is {}",
                        name, smaller ? "named first for its smaller picture or map" : "standing first in the run");
   }
-  return fmt::format("a tie, for their {} overlap: {} is named first for its lower mean{}",
-                     gap.basis == Basis::kInterval ? "95 % intervals" : "quartiles", name,
-                     compare_errors(first, second));
+  return fmt::format("a tie, for their {} overlap: {} is named first for its lower mean",
+                     gap.basis == Basis::kInterval ? "95 % intervals" : "quartiles", name);
 }
 
 std::string count_ties(const Advice& advice) {
@@ -203,11 +217,13 @@ std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl
   assert(advice.keeping.size() > 1);
   const CostKind kind = advice.request.cheapest;
   const CostGap gap = compare_costs(advice.keeping[0], advice.keeping[1], kind);
-  if (gap.tied) return describe_tie(advice, gap) + count_ties(advice);
+  const std::string errors = compare_errors(advice.keeping[0], advice.keeping[1]);
+  if (gap.tied) return describe_tie(advice, gap) + errors + count_ties(advice);
   const char* apart = gap.basis == Basis::kExact      ? ""
                       : gap.basis == Basis::kInterval ? "; the 95 % intervals are apart"
                                                       : "; the quartiles are apart";
-  return fmt::format("dearer by {} ({:.0f} %){}", format_cost(gap.difference, kind, gl), 100.0 * gap.share, apart);
+  return fmt::format("dearer by {} ({:.0f} %){}{}", format_cost(gap.difference, kind, gl), 100.0 * gap.share, apart,
+                     errors);
 }
 
 std::string describe_closest(const Advice& advice) {

@@ -65,6 +65,11 @@ double find_rmse_reach(const records::CellRecord& cell) {
   return cell.rmse_ci95 ? 0.5 * (cell.rmse_ci95->high - cell.rmse_ci95->low) : truth_se(cell);
 }
 
+Estimate estimate_rmse(const records::CellRecord& cell) {
+  const double value = *cell.error.rmse, reach = find_rmse_reach(cell);
+  return {value, std::max(0.0, value - reach), value + reach, cell.rmse_replicates.value_or(std::vector<double>())};
+}
+
 std::optional<std::size_t> find_dominating_part(const records::PartShares& shares) {
   const auto order = order_parts(shares);
   const bool one_is = shares[order[0]] > kDominatingShare && shares[order[1]] <= kDominatingShare;

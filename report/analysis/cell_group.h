@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "report/analysis/front.h"
 #include "report/records/error_parts.h"
 #include "report/records/records.h"
 
@@ -31,6 +32,9 @@ std::string label_cell(const CellGroup& group, const records::CellRecord& cell);
 /// How far a cell's RMSE may be off: half the width of its 95 % interval over the phases of the map's grid, or the
 /// truth's standard error where the run has one phase; 0 where neither is known.
 double find_rmse_reach(const records::CellRecord& cell);
+
+/// A cell's RMSE with that reach and its groups of phases. Requires one.
+Estimate estimate_rmse(const records::CellRecord& cell);
 
 /// Finds the part that alone is more than half of an error, as an index into list_error_parts().
 std::optional<std::size_t> find_dominating_part(const records::PartShares& shares);

@@ -1,9 +1,13 @@
 #include "report/analysis/front.h"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <tuple>
+
+#include "reference/metrics/error_stats.h"
 
 namespace shadowbench::analysis {
 namespace {
@@ -30,9 +34,19 @@ std::optional<Placement> place_point(const std::vector<FrontPoint>& points, cons
 
 }  // namespace
 
-bool is_clearly_less_error(const Estimate& a, const Estimate& b) {
-  return b.value - a.value > std::max(a.high - a.value, b.high - b.value);
+Estimate subtract(const Estimate& a, const Estimate& b) {
+  const double difference = a.value - b.value;
+  double reach = std::max(a.high - a.value, b.high - b.value);
+  if (a.replicates.size() == b.replicates.size() && a.replicates.size() > 1) {
+    std::vector<double> differences;
+    std::ranges::transform(a.replicates, b.replicates, std::back_inserter(differences), std::minus());
+    const metrics::MeanInterval interval = *metrics::find_mean_interval(differences);
+    reach = interval.high - interval.mean;
+  }
+  return {difference, difference - reach, difference + reach};
 }
+
+bool is_clearly_less_error(const Estimate& a, const Estimate& b) { return subtract(b, a).low > 0.0; }
 
 bool is_clearly_less_cost(const Estimate& a, const Estimate& b) { return a.high < b.low; }
 

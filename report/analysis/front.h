@@ -11,7 +11,14 @@ struct Estimate {
   double value = 0.0;
   double low = 0.0;
   double high = 0.0;
+  /// What each group of phases found: `value` is about their mean. Two estimates of as many groups were made of the
+  /// same phases, and differ by less than each is uncertain. Empty: there are none.
+  std::vector<double> replicates = {};
 };
+
+/// How much one error is above another, with the 95 % interval of the difference: of that of each group of phases,
+/// where both have as many; else it reaches as far as the larger half-width of the two.
+Estimate subtract(const Estimate& a, const Estimate& b);
 
 /// One cell in the plane of the trade; less is better in both.
 struct FrontPoint {
@@ -34,9 +41,8 @@ struct Placement {
   std::size_t by = 0;
 };
 
-/// Whether one error is smaller than another by more than is uncertain. A difference
-/// counts where it exceeds the larger half-width of their intervals. Exact errors differ where they are not
-/// equal.
+/// Whether one error is smaller than another by more than is uncertain: the interval of subtract() is above 0. Exact
+/// errors differ where they are not equal.
 bool is_clearly_less_error(const Estimate& a, const Estimate& b);
 
 /// One cost below another, their intervals not touching?

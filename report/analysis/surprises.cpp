@@ -111,8 +111,7 @@ class Finder {
 
   /// By how much the first error is clearly the smaller one, as a ratio; 1 where they cannot be told apart.
   static double gain(const records::CellRecord& a, const records::CellRecord& b) {
-    const double reach = std::max(find_rmse_reach(a), find_rmse_reach(b));
-    return *b.error.rmse - *a.error.rmse > reach ? *b.error.rmse / *a.error.rmse : 1.0;
+    return is_clearly_less_error(estimate_rmse(a), estimate_rmse(b)) ? *b.error.rmse / *a.error.rmse : 1.0;
   }
 
   /// The sentences of a map's values, those with the largest numbers first.

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
+#include "reference/metrics/error_stats.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/configuration.h"
 #include "report/analysis/limits.h"
@@ -53,7 +55,19 @@ Estimate worst_of(const std::vector<Estimate>& estimates) {
   return exact(std::max_element(estimates.begin(), estimates.end(), less)->value);
 }
 
-// Each scene's standard error moves the result by its own share; scenes' truths are independent.
+// What the groups of phases found of several scenes together; nothing where the scenes do not have as many.
+std::vector<double> combine_replicates(const std::vector<Estimate>& estimates) {
+  std::vector<double> squares(estimates.front().replicates.size());
+  for (const Estimate& each : estimates) {
+    if (each.replicates.size() != squares.size()) return {};
+    for (std::size_t i = 0; i < squares.size(); ++i) squares[i] += each.replicates[i] * each.replicates[i];
+  }
+  for (double& square : squares) square = std::sqrt(square / static_cast<double>(estimates.size()));
+  return squares;
+}
+
+// With groups of phases the interval is theirs. Without, each scene's standard error moves the result by its own
+// share; scenes' truths are independent.
 Estimate root_mean_square(const std::vector<Estimate>& estimates) {
   double squares = 0.0, variance = 0.0;
   for (const Estimate& each : estimates) {
@@ -63,8 +77,10 @@ Estimate root_mean_square(const std::vector<Estimate>& estimates) {
   }
   const double count = static_cast<double>(estimates.size());
   const double rms = std::sqrt(squares / count);
-  const double se = rms > 0.0 ? std::sqrt(variance) / (count * rms) : 0.0;
-  return {rms, std::max(0.0, rms - se), rms + se};
+  double reach = rms > 0.0 ? std::sqrt(variance) / (count * rms) : 0.0;
+  std::vector<double> replicates = combine_replicates(estimates);
+  if (const auto interval = metrics::find_mean_interval(replicates)) reach = interval->high - interval->mean;
+  return {rms, std::max(0.0, rms - reach), rms + reach, std::move(replicates)};
 }
 
 // The distances of the intervals' ends add up in quadrature, as logarithms of independent measurements do.
@@ -187,10 +203,7 @@ std::string format_estimate(const Measure& measure, const Estimate& estimate) {
 Measured read_error(const records::CellRecord& cell, const Measure& measure) {
   const metrics::Metric& metric = *measure.metric;
   Measured error = read_metric(cell, metric);
-  if (error.estimate && metric.path == kRmse) {
-    const double value = error.estimate->value, reach = find_rmse_reach(cell);
-    error.estimate = Estimate{value, std::max(0.0, value - reach), value + reach};
-  }
+  if (error.estimate && metric.path == kRmse) error.estimate = estimate_rmse(cell);
   return error;
 }
 

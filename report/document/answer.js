@@ -62,9 +62,12 @@ const startAnswer = (holder) => {
     for (const { field, group, title } of limits) {
       const [a, b] = [best, second].map((index) => worstOf(index, field));
       if (group === "cost" || a.value === undefined || b.value === undefined) continue;
-      const reach = Math.max(cellAt(best, a.place).reach, cellAt(second, b.place).reach);
       const seen = group === "artefact" ? kSeen : 0.02 * Math.max(a.value, b.value);
-      if (Math.abs(b.value - a.value) <= (field === "error.rmse" ? reach : seen)) continue;
+      const isTied =
+        field === "error.rmse"
+          ? areErrorsTied(cellAt(best, a.place), cellAt(second, b.place))
+          : Math.abs(b.value - a.value) <= seen;
+      if (isTied) continue;
       const text = `${title} ${say(b.value, field)} instead of ${say(a.value, field)}`;
       found[b.value < a.value ? "lower" : "higher"].push(text);
     }

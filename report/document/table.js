@@ -50,10 +50,10 @@ const startTable = (holder) => {
       },
     ];
   };
-  const areTied = (cell, best, gap) => {
+  const areTied = (cell, best) => {
     const [own, least] = [cell, best].map(({ intervals }) => intervals[state.measure]);
     if (own && least) return own[0] <= least[1];
-    return state.measure === "error.rmse" && gap <= Math.max(cell.reach, best.reach);
+    return state.measure === "error.rmse" && areErrorsTied(cell, best);
   };
   // In a column: the best of each class of width under the same settings, if there are two to compare, and what cannot
   // be told from it, whether or not their rows are shown.
@@ -72,7 +72,7 @@ const startTable = (holder) => {
       const best = group.reduce((least, i) => (rank(i) < rank(least) ? i : least));
       for (const i of group) {
         if (rank(i) === rank(best)) marks.set(i, kMarks.best);
-        else if (areTied(cellAt(i, place), cellAt(best, place), rank(i) - rank(best))) marks.set(i, kMarks.tied);
+        else if (areTied(cellAt(i, place), cellAt(best, place))) marks.set(i, kMarks.tied);
       }
     }
     return marks;

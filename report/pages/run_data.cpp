@@ -7,6 +7,7 @@
 #include <map>
 
 #include "filters/kernel_width.h"
+#include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cell_group.h"
@@ -129,12 +130,15 @@ std::string find_cause(const records::CellRecord& cell) {
 
 json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place,
                const std::vector<std::string>& gpus, const analysis::CostKind& frame) {
+  const std::vector<double> replicates = cell.rmse_replicates.value_or(std::vector<double>());
   return {{"key", cell.key},
           {"configuration", configuration},
           {"place", place},
           {"status", cell.status == records::CellStatus::kOk ? "ok" : records::describe_status(cell)},
           {"values_of", list_values(cell, gpus, frame)},
           {"reach", analysis::find_rmse_reach(cell)},
+          {"replicates", replicates},
+          {"t", replicates.size() > 1 ? json(metrics::find_student_t(replicates.size())) : json()},
           {"intervals", list_intervals(cell, frame)},
           {"cause", find_cause(cell)},
           {"picture", path_of(cell.images.picture)},

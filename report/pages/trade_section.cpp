@@ -53,11 +53,9 @@ std::vector<std::string> explain_fronts(const std::vector<analysis::Measure>& co
           filters::describe_classes()),
       "A cell of the front beats another of its class, which is then dominated, where it costs no more, its error is "
       "not clearly larger, and one of the two is clearly less. A cell is tied with one of the front where neither is "
-      "clearly less. Clearly: errors that differ by more than half the wider 95 % interval over the phases of the "
-      "map's "
-      "grid, times whose 95 % intervals do not overlap, everything else where the numbers differ. Of several that beat "
-      "a "
-      "cell, the cheapest is named."};
+      "clearly less. Clearly: errors where the 95 % interval of their difference, which is taken group by group of "
+      "the phases that all cells share, does not hold 0; times whose 95 % intervals do not overlap; everything else "
+      "where the numbers differ. Of several that beat a cell, the cheapest is named."};
   const auto explain = [&](const analysis::Measure& measure) {
     sentences.push_back(
         fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));

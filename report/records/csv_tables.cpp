@@ -102,7 +102,7 @@ struct Column {
     return path.starts_with(group) && path.find('.') == (group.empty() ? path.npos : group.size());
   }
   bool is_time() const { return path == "machine" || is_in("time_ms") || is_in("ratio_to_none"); }
-  bool is_of_phases() const { return path == "phases" || path == "error.rmse_ci95"; }
+  bool is_of_phases() const { return path == "phases" || path.ends_with("_ci95"); }
   bool is_setting() const { return !is_metric && !is_time() && !is_of_phases() && path != "key"; }
 };
 

@@ -223,8 +223,20 @@ void visit_metrics(Is<CellRecord> auto& cell, auto&& visit) {
          .least = 1,
          .later = true,
          .column = "places of the map's grid that errors of visibility are means over"});
-  constexpr const char* kMean = "where the mean over as many other phases lies in 95 of 100 cases, by Student's t";
-  visit("error.rmse_ci95", cell.rmse_ci95, {.text = kMean, .later = true, .column = "rmse", .column_name = "rmse"});
+  visit("error.rmse_ci95", cell.rmse_ci95,
+        {.text = "95 % confidence interval of the mean over all places of the map's grid, by Student's t",
+         .later = true,
+         .column = "rmse",
+         .column_name = "rmse"});
+  visit("error.rmse_replicates", cell.rmse_replicates,
+        {.text = "means over groups of phases that are independent of each other, the same in every cell: two cells "
+                 "are compared by their differences, group by group",
+         .later = true});
+  visit("error.flicker_ci95", cell.flicker_ci95,
+        {.text = "95 % confidence interval, by the jackknife over the groups of phases",
+         .later = true,
+         .column = "flicker",
+         .column_name = "flicker"});
 }
 
 /// Visits the settings of a cell that its table shows.

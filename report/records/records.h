@@ -242,6 +242,9 @@ struct CellRecord : metrics::MetricValues {
   std::optional<std::int64_t>
       phases;  ///< places of the map's grid that the errors of visibility are means over; all else is of the first
   std::optional<Interval> rmse_ci95;  ///< of `error.rmse` over the phases
+  std::optional<std::vector<double>>
+      rmse_replicates;                   ///< means of the RMSE over groups of phases that are independent of each other
+  std::optional<Interval> flicker_ci95;  ///< of `error.flicker` over the phases
   TimeRecord time_ms;
   RatioRecord ratio_to_none;
   std::optional<std::vector<LightCountRecord>> lights;  ///< by ascending count

@@ -28,14 +28,13 @@ bool is_complete(const records::CellRecord& cell) {
 bool is_shared(const std::string& fit) { return fit.starts_with("tight") || fit.starts_with("sphere"); }
 
 MapUse make_use(const records::CellRecord& cell) {
-  const double rmse = *cell.error.rmse, reach = find_rmse_reach(cell);
   const double layer = static_cast<double>(*cell.cost.bytes_per_texel) * cell.map_size * cell.map_size;
   return {cell.fit,
           cell.map_size,
           static_cast<int>(std::lround(static_cast<double>(*cell.cost.map_bytes) / layer)),
           *cell.cost.map_bytes,
           is_shared(cell.fit),
-          {rmse, rmse - reach, rmse + reach},
+          estimate_rmse(cell),
           add_times(estimate_time(cell.time_ms.map), estimate_time(cell.time_ms.prefilter)),
           estimate_time(cell.time_ms.lookup),
           cell.time_ms.empty ? cell.time_ms.empty->median : 0.0};
