@@ -25,7 +25,8 @@ std::vector<glm::dvec2> list_phase_shifts(int count, std::uint32_t seed) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const std::size_t group = i / of_group;
     const double half = i % of_group == 0 ? 0.0 : 0.5;
-    const glm::dvec2 start = group == 0 ? glm::dvec2(0.0) : glm::dvec2(draw(seed, 2 * group), draw(seed, 2 * group + 1));
+    const glm::dvec2 start =
+        group == 0 ? glm::dvec2(0.0) : glm::dvec2(draw(seed, 2 * group), draw(seed, 2 * group + 1));
     shifts.emplace_back(wrap(std::fmod(start.x + half, 1.0)), wrap(std::fmod(start.y + half, 1.0)));
   }
   return shifts;

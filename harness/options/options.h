@@ -112,7 +112,7 @@ struct RunOptions {
   filters::FilterRequest reference;  ///< the filter that the others' times are ratios to
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;
-  bool truth = true;         ///< trace rays, and score every filter against them
+  bool truth = true;  ///< trace rays, and score every filter against them
   TruthWeight truth_weight = TruthWeight::kArea;
   bool attribution = true;   ///< split the errors into their four parts; needs truth
   bool stability = false;    ///< find where numbers break, per texel and per pixel

@@ -293,8 +293,7 @@ class AdaptiveTracer {
     const double ratio = sent > 0.0 ? arrived / sent : 0.0;
     double squares = 0.0;
     for (std::size_t s = 0; s < kScrambles; ++s) {
-      const double deviation =
-          static_cast<double>(arrival.arrived[s]) - ratio * static_cast<double>(arrival.sent[s]);
+      const double deviation = static_cast<double>(arrival.arrived[s]) - ratio * static_cast<double>(arrival.sent[s]);
       squares += deviation * deviation;
     }
     const double mean = sent / kScrambles;

@@ -103,8 +103,9 @@ struct TracedVisibility {
   std::vector<float> standard_error;    ///< of the mean over the scrambles; 0 where all rays agree, see `unanimous`
   std::vector<std::uint8_t> unanimous;  ///< all rays of this pixel agree; the truth lies within 3 / rays of them (95 %)
   std::vector<std::uint32_t> rays;      ///< traced for this pixel; 64: its neighbours agree with it too
-  /// Of an area light, shadowed over unshadowed light: the share of what it would bring that arrives, which weighs each of its points by the cosine at
-  /// the receiver, the cosine at the light and the inverse squared distance. Of kernels 1, or empty from the cache.
+  /// Of an area light, shadowed over unshadowed light: the share of what it would bring that arrives, which weighs each
+  /// of its points by the cosine at the receiver, the cosine at the light and the inverse squared distance. Of kernels
+  /// 1, or empty from the cache.
   std::vector<float> ratio = {};
   std::vector<float> ratio_error = {};  ///< its standard error
 };
@@ -117,8 +118,9 @@ inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
 /// Every pixel starts with 4 points from each of 16 Owen-scrambled Sobol sequences, and stops there when all its rays
 /// and those of its eight neighbours agree. The others go on with 16 points per sequence and double them until the
 /// spread of the scrambles at half the points foretells a standard error that is small enough, or `max_points` is
-/// reached. The part of the light below a receiver's own plane is blocked by it, and would bring nothing. The result depends on neither the
-/// number of threads nor the order of pixels. Cost: 64 rays for a pixel away from edges, up to 16 * max_points at one.
+/// reached. The part of the light below a receiver's own plane is blocked by it, and would bring nothing. The result
+/// depends on neither the number of threads nor the order of pixels. Cost: 64 rays for a pixel away from edges, up to
+/// 16 * max_points at one.
 TracedVisibility trace_area(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                             const TraceSettings& settings);
 

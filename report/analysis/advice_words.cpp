@@ -40,9 +40,8 @@ std::string compare_errors(const Candidate& first, const Candidate& second) {
   if (!a || !b) return "";
   const Estimate gap = subtract(*b, *a);
   const std::string interval =
-      gap.low < gap.high
-          ? fmt::format(" [{}, {}]", records::format_number(gap.low), records::format_number(gap.high))
-          : "";
+      gap.low < gap.high ? fmt::format(" [{}, {}]", records::format_number(gap.low), records::format_number(gap.high))
+                         : "";
   const char* tied = gap.low <= 0.0 && gap.high >= 0.0 ? ", which does not tell the two apart" : "";
   return fmt::format("; its RMSE less that of the choice is {}{}{}", records::format_number(gap.value), interval, tied);
 }

@@ -1,41 +1,56 @@
+#include "harness/measure/phases.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <set>
 
-#include "harness/measure/scene_measurement.h"
 #include "reference/metrics/error_stats.h"
 
 namespace shadowbench::measure {
 namespace {
 
-TEST(Phases, EachAxisIsStratified_AndTheFirstIsNotMoved) {
+TEST(Phases, TheFirstIsNotMoved_AndNoneIsMovedByMoreThanHalfATexel) {
   for (int count = 1; count <= 64; ++count) {
-    const std::vector<glm::dvec2> shifts = list_phase_shifts(count);
+    const std::vector<glm::dvec2> shifts = list_phase_shifts(count, 1);
     ASSERT_EQ(shifts.size(), static_cast<std::size_t>(count));
     EXPECT_EQ(shifts.front(), glm::dvec2(0.0));
-    std::set<long> parts[2];
     for (const glm::dvec2& shift : shifts) {
       for (const int axis : {0, 1}) {
         EXPECT_GE(shift[axis], -0.5);
         EXPECT_LT(shift[axis], 0.5);
-        parts[axis].insert(std::lround((shift[axis] + 1.0) * count) % count);
       }
     }
-    EXPECT_EQ(parts[0].size(), shifts.size()) << count;
-    EXPECT_EQ(parts[1].size(), shifts.size()) << count;
   }
 }
 
-TEST(Phases, FourAreNotOnOneLine) {
-  const std::vector<glm::dvec2> shifts = list_phase_shifts(4);
-  std::set<double> sums, differences;
-  for (const glm::dvec2& shift : shifts) {
-    sums.insert(std::fmod(shift.x + shift.y + 2.0, 1.0));
-    differences.insert(std::fmod(shift.x - shift.y + 2.0, 1.0));
+TEST(Phases, FromEightOn_TwoOfAGroupAreHalfATexelApart) {
+  for (const std::size_t count : {8u, 10u, 64u}) {
+    ASSERT_EQ(count_phases_of_group(count), 2u);
+    const std::vector<glm::dvec2> shifts = list_phase_shifts(static_cast<int>(count), 3);
+    for (std::size_t i = 0; i < count; i += 2)
+      for (const int axis : {0, 1})
+        EXPECT_NEAR(std::abs(shifts[i][axis] - shifts[i + 1][axis]), 0.5, 1e-12) << count << " " << i;
   }
-  EXPECT_GE(sums.size(), 3u) << "an edge along a diagonal of the map would look the same in all phases";
-  EXPECT_GE(differences.size(), 3u);
+  for (const std::size_t count : {1u, 2u, 4u, 7u, 9u}) EXPECT_EQ(count_phases_of_group(count), 1u);
+}
+
+TEST(Phases, MoreOfThem_BeginWithTheSame_AndOtherSeedsGiveOthers) {
+  const std::vector<glm::dvec2> eight = list_phase_shifts(8, 1), many = list_phase_shifts(64, 1),
+                                other = list_phase_shifts(8, 2);
+  for (std::size_t i = 0; i < eight.size(); ++i) EXPECT_EQ(eight[i], many[i]);
+  for (std::size_t i = 2; i < eight.size(); ++i) EXPECT_NE(eight[i], other[i]);
+}
+
+/// Groups begin anywhere: over many seeds, each quarter of a texel along each axis as often as the others.
+TEST(Phases, GroupsBeginAnywhere) {
+  int counts[2][4] = {};
+  constexpr int kSeeds = 1000;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    const glm::dvec2 shift = list_phase_shifts(4, seed)[2];
+    for (const int axis : {0, 1}) ++counts[axis][static_cast<int>(4.0 * (shift[axis] + 0.5))];
+  }
+  for (const auto& axis : counts)
+    for (const int count : axis) EXPECT_NEAR(count, kSeeds / 4, 60);
 }
 
 TEST(MeanInterval, IsStudents) {
@@ -43,7 +58,7 @@ TEST(MeanInterval, IsStudents) {
   const auto interval = metrics::find_mean_interval(std::vector{1.0, 2.0, 3.0, 4.0});
   ASSERT_TRUE(interval);
   EXPECT_DOUBLE_EQ(interval->mean, 2.5);
-  EXPECT_NEAR(interval->high - 2.5, 3.1824463 * std::sqrt(2.0 * 5.0 / 3.0 / 4.0), 1e-6);  // t of 3 degrees, 97.5 %
+  EXPECT_NEAR(interval->high - 2.5, 3.8960 * std::sqrt(5.0 / 3.0 / 4.0), 1e-4);  // t of 3 degrees, 98.5 %
   EXPECT_NEAR(2.5 - interval->low, interval->high - 2.5, 1e-12);
 }
 

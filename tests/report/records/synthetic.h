@@ -117,7 +117,7 @@ inline CellRecord make_attributed_cell(const std::string& filter, double rmse, c
   CellRecord cell = make_cell("cubes", filter, 4.0);
   cell.absent.erase("error");
   cell.error = {rmse, rmse / 4.0, 2.0 * rmse, 1.0, -rmse / 8.0, 0.02, rmse / 2.0, rmse / 3.0};
-  cell.truth = {0.001, 0.9};
+  cell.truth = {0.001, 0.9, 0.002};
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i)
     cell.attribution.*list_error_parts()[i].record = {std::abs(shares[i]) * rmse, shares[i]};
   return cell;
