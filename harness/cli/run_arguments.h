@@ -15,6 +15,7 @@ struct RunArguments : DrawingArguments {
   std::string experiment = kDefaultExperiment;
   std::vector<options::RunOption> told = options::list_run_options();
   bool strict = false;
+  std::string until_different;  ///< two filters; empty: phases are as they are told
   bool worker = false;
   std::string task;  ///< folder of the task of a sweep that is to be done
 

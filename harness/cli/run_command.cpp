@@ -9,6 +9,7 @@
 #include "harness/cli/run_arguments.h"
 #include "harness/gpu/facts_request.h"
 #include "harness/run/run_experiment.h"
+#include "harness/run/until_different.h"
 #include "harness/submit/sweep_jobs.h"
 #include "report/records/json_io.h"
 
@@ -17,7 +18,10 @@ namespace {
 
 void run_with_notes(const options::RunOptions& options, options::Progress& progress) {
   for (const std::string& note : options.notes) progress.note("note: " + note);
-  run::run_experiment(options, progress);
+  if (options.until_different.empty())
+    run::run_experiment(options, progress);
+  else
+    progress.note(run::run_until_different(options, progress));
 }
 
 /// What --strict asks of a report, whether it was written now or before. Throws Error(kLimit).

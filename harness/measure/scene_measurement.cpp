@@ -280,16 +280,16 @@ class SceneBench {
     record.time_ms.map = summarise({rounds.map.begin(), rounds.map.begin() + count});
     record.time_ms.lookup = summarise(times.lookup);
     record.time_ms.empty = summarise({empty.begin(), empty.begin() + count});
-    record.time_ms.static_light = bootstrap_difference(times.lookup, empty, options_.seed);
-    record.time_ms.moving = bootstrap_difference(moving, empty, options_.seed);
+    record.time_ms.static_light = find_difference(times.lookup, empty);
+    record.time_ms.moving = find_difference(moving, empty);
     record.time_ms.stopped = name_of(times.stopped);
     if (times.prefilter.empty())
       record.absent["time_ms.prefilter"] = "the filter reads the depth map itself";
     else
       record.time_ms.prefilter = summarise(times.prefilter);
-    record.ratio_to_none.lookup = bootstrap_ratio(times.lookup, unfiltered.lookup, options_.seed);
+    record.ratio_to_none.lookup = find_ratio(times.lookup, unfiltered.lookup);
     record.ratio_to_none.static_light = record.ratio_to_none.lookup;
-    record.ratio_to_none.moving = bootstrap_ratio(moving, add_moving(rounds.map, unfiltered), options_.seed);
+    record.ratio_to_none.moving = find_ratio(moving, add_moving(rounds.map, unfiltered));
   }
 };
 

@@ -246,8 +246,11 @@ constexpr const char* kConvention =
     "= i / size .. (i + 1) / size and v = 1 - (j + 1) / size .. 1 - j / size; layers stand side by side, the first on "
     "the left. depth_map holds linear depth, 1 where nothing is. A receiver is lit where its depth less its bias is "
     "not more than the map's. Bias: max(constant, slope * (1 - n.l)) + plane_texels * (|dD/du| + |dD/dv|), the latter "
-    "two along the receiver's plane for each texel, at most max_tangent * texel / range; before that, the receiver is "
-    "moved along its normal by normal_texels * texel * sin(n, l).";
+    "two along the receiver's plane for each texel, each at most max_tangent * t / range; before that, the receiver is "
+    "moved along its normal by normal_texels * t * sin(n, l). Here t is the size of a texel at the receiver, metres: "
+    "texel_m; under a lamp, where texels grow with the distance, texel_m * W / texel_reference_m; of a warped layer "
+    "and "
+    "of a paraboloid 1 / sqrt(|grad u x grad v|), with u and v in texels.";
 
 std::string write_rows(const glm::mat4& matrix) {
   const glm::mat4 rows = glm::transpose(matrix);
@@ -282,6 +285,7 @@ void describe_layer(images::Metadata& metadata, const scene::LightFrustum& frust
   metadata[name + "shape"] = describe_shape(frustum);
   metadata[name + "share"] = describe_share(frustum);
   metadata[name + "texel_m"] = frustum.texel_size_ws;
+  if (frustum.perspective) metadata[name + "texel_reference_m"] = frustum.perspective->beam.reference_m;
   metadata[name + "depth_range_m"] = frustum.depth_range_ws;
 }
 

@@ -51,9 +51,9 @@ std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<
   return stats;
 }
 
-double find_student_t(std::size_t count) {
+double find_student_t(std::size_t count, double below) {
   assert(count >= 2);
-  return gsl_cdf_tdist_Pinv(0.985, static_cast<double>(count - 1));
+  return gsl_cdf_tdist_Pinv(below, static_cast<double>(count - 1));
 }
 
 std::optional<MeanInterval> find_mean_interval(std::span<const double> values) {

@@ -33,8 +33,8 @@ struct MeanInterval {
 
 /// How many standard errors of a mean of `count` values are the half-width of its 95 % interval: Student's t, at 97 %
 /// because means over few places of a map's grid are not normal (reference/README.md has what was measured). Requires
-/// two values or more.
-double find_student_t(std::size_t count);
+/// two values or more. `below` is the share of errors below the upper end.
+double find_student_t(std::size_t count, double below = 0.985);
 
 /// The mean of independent values with its 95 % confidence interval by find_student_t(). Nothing for fewer than two
 /// values.

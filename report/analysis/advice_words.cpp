@@ -38,12 +38,15 @@ std::optional<Estimate> rmse_over_places(const Candidate& candidate) {
 std::string compare_errors(const Candidate& first, const Candidate& second) {
   const auto a = rmse_over_places(first), b = rmse_over_places(second);
   if (!a || !b) return "";
-  const Estimate gap = subtract(*b, *a);
-  const std::string interval =
-      gap.low < gap.high ? fmt::format(" [{}, {}]", records::format_number(gap.low), records::format_number(gap.high))
-                         : "";
-  const char* tied = gap.low <= 0.0 && gap.high >= 0.0 ? ", which does not tell the two apart" : "";
-  return fmt::format("; its RMSE less that of the choice is {}{}{}", records::format_number(gap.value), interval, tied);
+  const bool is_lower = b->value < a->value;
+  const Estimate gap = is_lower ? subtract(*a, *b) : subtract(*b, *a);
+  if (gap.value == 0.0) return "; it has the same RMSE";
+  const auto number = [](double value) { return records::format_number(value); };
+  if (gap.low <= 0.0)
+    return fmt::format("; its RMSE is {} by no more than is uncertain, {} [{}, {}]", is_lower ? "lower" : "higher",
+                       number(gap.value), number(gap.low), number(gap.high));
+  const std::string interval = gap.low < gap.high ? fmt::format(" [{}, {}]", number(gap.low), number(gap.high)) : "";
+  return fmt::format("; its RMSE is {} by {}{}", is_lower ? "lower" : "higher", number(gap.value), interval);
 }
 
 // Follows the order that advise() gives to equal costs.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "report/analysis/cell_group.h"
+#include "report/analysis/differences.h"
 #include "report/analysis/gpu/gpu_costs.h"
 #include "report/analysis/stability_words.h"
 #include "report/analysis/summary.h"
@@ -213,6 +214,8 @@ std::optional<document::Section> make_gpu_section(const records::RunRecord& run,
 
 document::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
   document::Section section{"evidence", "Behind the numbers", {}};
+  if (const std::string power = analysis::describe_power(cells); !power.empty())
+    section.blocks.emplace_back(document::Paragraph{power, true});
   add_groups(section.blocks, run, cells);
   if (const auto absences = analysis::count_absences(cells); !absences.empty()) {
     document::Sentences reasons;

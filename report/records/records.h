@@ -32,12 +32,12 @@ struct Interval {
   double high = 0.0;
 };
 
-/// The spread of per-round differences with the 95 % bootstrap interval of their median.
+/// The spread of per-round differences with the 95 % interval of their median.
 struct OwnTime : Quartiles {
   Interval ci95;
 };
 
-/// The median of per-round ratios with its 95 % bootstrap interval.
+/// The median of per-round ratios with its 95 % interval.
 struct Ratio {
   double median = 0.0;
   Interval ci95;

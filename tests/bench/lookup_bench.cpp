@@ -66,7 +66,7 @@ class LookupBench {
 void compare(benchmark::State& state, LookupBench& bench) {
   measure::RoundTimes times;
   for (auto _ : state) times = bench.time(41);
-  const records::Ratio ratio = measure::bootstrap_ratio(times.filters[0].lookup, times.filters[1].lookup, 1);
+  const records::Ratio ratio = measure::find_ratio(times.filters[0].lookup, times.filters[1].lookup);
   state.counters["ratio"] = ratio.median;
   state.counters["ratio_low"] = ratio.ci95.low;
   state.counters["ratio_high"] = ratio.ci95.high;

@@ -23,7 +23,7 @@ CASES = [("stack", []), ("lamp", []), ("lantern", []), ("avenue", ["--fit", "cas
          ("avenue", ["--fit", "lispsm"]), ("avenue", ["--fit", "logpsm"]), ("lantern", ["--fit", "paraboloid"])]
 SETTINGS = ["--filters", "none,pcf2x2", "--size", "160x90", "--map-size", "512", "--rounds", "1"]
 # A receiver may lie on the border of a texel, or within rounding of the map's depth; more than that is a mistake.
-MOST_DIFFERENT = 0.002
+MOST_DIFFERENT = 0.0005
 
 
 def read_tiff(path):
@@ -82,7 +82,8 @@ class Layer:
         numbers = [float(x) for x in get("uv_depth_from_world").split()]
         self.rows = [numbers[4 * i:4 * i + 4] for i in range(4)]
         self.shape, self.share = get("shape").split(), get("share").split()
-        self.range = float(get("depth_range_m"))
+        self.range, self.texel_m = float(get("depth_range_m")), float(get("texel_m"))
+        self.reference = metadata.get(f"shadowbench:map.layer{index}.texel_reference_m")
         if "shadowbench:light_position_ws" in metadata:
             self.lamp = [float(x) for x in metadata["shadowbench:light_position_ws"].split()]
         self.eye = [float(x) for x in metadata["shadowbench:camera_position_ws"].split()]
@@ -123,8 +124,20 @@ class Layer:
         axis = sizes.index(max(sizes))
         return float(2 * axis + (way[axis] < 0.0) == int(self.share[2]))
 
+    def texel(self, p, size):
+        """The size of a texel at a point, metres."""
+        if self.shape[0] == "parallel":
+            return self.texel_m
+        if self.shape[0] == "projective" and self.reference:
+            return self.texel_m * dot(self.rows[3], (*p, 1.0)) / float(self.reference)
+        axes = ((1e-4, 0.0, 0.0), (0.0, 1e-4, 0.0), (0.0, 0.0, 1e-4))
+        ends = [[self.find([a + sign * b for a, b in zip(p, axis)]) for sign in (1.0, -1.0)] for axis in axes]
+        along_u, along_v = ([size * (ahead[i] - behind[i]) / 2e-4 for ahead, behind in ends] for i in (0, 1))
+        across = cross(along_u, along_v)
+        return dot(across, across) ** -0.25
+
     def slopes(self, p, normal, size):
-        """|dD/du| + |dD/dv| along the receiver's plane, for each texel, by central differences."""
+        """|dD/du| and |dD/dv| along the receiver's plane, for each texel, by central differences."""
         least = min(range(3), key=lambda i: abs(normal[i]))
         side = cross(normal, [float(i == least) for i in range(3)])
         length = math.sqrt(dot(side, side))
@@ -136,13 +149,14 @@ class Layer:
         (u1, v1, d1), (u2, v2, d2) = steps
         area = u1 * v2 - u2 * v1
         along_u, along_v = (d1 * v2 - d2 * v1) / area, (u1 * d2 - u2 * d1) / area
-        return abs(along_u) / size + abs(along_v) / size
+        return abs(along_u) / size, abs(along_v) / size
 
     def bias(self, label, p, normal, size):
         words = self.metadata[f"shadowbench:bias.layer{self.index}.{label}"].split()
         amount = {words[i]: float(words[i + 1]) for i in range(0, 10, 2)}
         assert amount["slope"] == 0.0 and amount["normal_texels"] == 0.0, "the default bias has changed"
-        return amount["constant"] + amount["plane_texels"] * self.slopes(p, normal, size)
+        most = amount["max_tangent"] * self.texel(p, size) / self.range
+        return amount["constant"] + amount["plane_texels"] * sum(min(x, most) for x in self.slopes(p, normal, size))
 
 
 def compare(label, layer, place, depth, depth_map, size, layers):

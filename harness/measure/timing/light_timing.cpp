@@ -9,16 +9,15 @@
 namespace shadowbench::measure {
 namespace {
 
-records::LightCountRecord make_record(int count, const RoundTimes& times, std::size_t filter, const LightFrame& frame,
-                                      std::uint64_t seed) {
+records::LightCountRecord make_record(int count, const RoundTimes& times, std::size_t filter, const LightFrame& frame) {
   const FilterTimes &own = times.filters[filter], &reference = times.filters[frame.reference];
   const std::vector<double> moving = add_moving(times.map, own);
   records::LightCountRecord record;
   record.count = count;
   record.static_ms = summarise(own.lookup);
   record.moving_ms = summarise(moving);
-  record.static_ratio = bootstrap_ratio(own.lookup, reference.lookup, seed);
-  record.moving_ratio = bootstrap_ratio(moving, add_moving(times.map, reference), seed);
+  record.static_ratio = find_ratio(own.lookup, reference.lookup);
+  record.moving_ratio = find_ratio(moving, add_moving(times.map, reference));
   return record;
 }
 
@@ -102,7 +101,7 @@ LightMeasurement measure_lights(Renderer& renderer, const options::RunOptions& o
     timed += 1.0;
     result.spent_ms += times.spent_ms;
     for (std::size_t i = 0; i < frame.filters.size(); ++i)
-      result.filters[i].push_back(make_record(count, times, i, frame, options.seed));
+      result.filters[i].push_back(make_record(count, times, i, frame));
   }
   return result;
 }

@@ -5,12 +5,16 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <random>
+#include <numbers>
+#include <numeric>
+
+#include "reference/metrics/error_stats.h"
 
 namespace shadowbench::measure {
 namespace {
 
-constexpr int kResamples = 2000;
+constexpr double kConfidence = 0.95;
+constexpr std::size_t kFewestOrdered = 6;  // of fewer values, the least and the most hold the median less often
 
 double quantile(const std::vector<double>& sorted, double q) {
   const double position = q * static_cast<double>(sorted.size() - 1);
@@ -32,30 +36,45 @@ std::vector<double> divide(const std::vector<double>& numerator, const std::vect
   return ratios;
 }
 
-/// How many of `count` values may lie on one side of the interval: the most that fewer than 2.5 % of the throws
-/// of as many fair coins do not exceed.
-std::size_t count_outside(std::size_t count) {
-  double term = std::exp2(-static_cast<double>(count)), sum = term;  // no coin shows heads
-  std::size_t outside = 0;
-  while (sum <= 0.025) {
-    ++outside;
-    term *= static_cast<double>(count - outside + 1) / static_cast<double>(outside);
-    sum += term;
-  }
-  return outside;
+/// Half the width of the interval of a median of fewer values, as of normal ones, whose median is sqrt(pi / 2) as
+/// uncertain as their mean; 0 for one.
+double find_reach(const std::vector<double>& values) {
+  const double count = static_cast<double>(values.size());
+  if (values.size() < 2) return 0.0;
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const double of_mean = std::sqrt(squares / (count - 1.0) / count);
+  return metrics::find_student_t(values.size(), 0.975) * std::sqrt(0.5 * std::numbers::pi) * of_mean;
 }
 
-/// The 95 % percentile-bootstrap interval of the median.
-records::Interval bootstrap_median(const std::vector<double>& values, std::uint64_t seed) {
-  std::mt19937_64 generator(seed);
-  std::vector<double> medians;
-  std::vector<double> sample(values.size());
-  for (int i = 0; i < kResamples; ++i) {
-    for (double& value : sample) value = values[generator() % values.size()];
-    medians.push_back(median_of(sample));
+/// In how many cases of a hundred, as a share, the median lies between the `place`-th smallest and largest of `count`
+/// values.
+double cover(std::size_t count, std::size_t place) {
+  double term = std::exp2(-static_cast<double>(count)), sum = 0.0;  // of as many fair coins, `i` show heads
+  for (std::size_t i = 0; i < place; ++i) {
+    sum += term;
+    term *= static_cast<double>(count - i) / static_cast<double>(i + 1);
   }
-  std::ranges::sort(medians);
-  return {quantile(medians, 0.025), quantile(medians, 0.975)};
+  return 1.0 - 2.0 * sum;
+}
+
+/// The 95 % interval of the median.
+records::Interval find_interval(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t count = values.size();
+  if (count < kFewestOrdered) {
+    const double median = quantile(values, 0.5), reach = find_reach(values);
+    return {median - reach, median + reach};
+  }
+  std::size_t place = 1;
+  while (cover(count, place + 1) >= kConfidence) ++place;
+  const double wide = cover(count, place), narrow = cover(count, place + 1);
+  const double n = static_cast<double>(count), d = static_cast<double>(place);
+  const double excess = (wide - kConfidence) / (wide - narrow);
+  const double inward = (n - d) * excess / (d + (n - 2.0 * d) * excess);
+  return {std::lerp(values[place - 1], values[place], inward),
+          std::lerp(values[count - place], values[count - place - 1], inward)};
 }
 
 }  // namespace
@@ -66,26 +85,17 @@ records::Quartiles summarise(std::vector<double> values) {
   return {quantile(values, 0.5), quantile(values, 0.25), quantile(values, 0.75), static_cast<int>(values.size())};
 }
 
-records::Ratio bootstrap_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator,
-                               std::uint64_t seed) {
+records::Ratio find_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator) {
   const std::vector<double> ratios = divide(numerator, denominator);
-  return {median_of(ratios), bootstrap_median(ratios, seed)};
+  const records::Interval interval = find_interval(ratios);
+  return {median_of(ratios), {std::max(0.0, interval.low), interval.high}};
 }
 
-records::OwnTime bootstrap_difference(const std::vector<double>& minuend, const std::vector<double>& subtrahend,
-                                      std::uint64_t seed) {
+records::OwnTime find_difference(const std::vector<double>& minuend, const std::vector<double>& subtrahend) {
   assert(minuend.size() <= subtrahend.size());
   std::vector<double> differences;
   std::ranges::transform(minuend, subtrahend, std::back_inserter(differences), std::minus());
-  return {summarise(differences), bootstrap_median(differences, seed)};
-}
-
-records::Ratio order_ratio(const std::vector<double>& numerator, const std::vector<double>& denominator) {
-  std::vector<double> ratios = divide(numerator, denominator);
-  std::ranges::sort(ratios);
-  // With l values outside, the interval runs from the l-th smallest to the l-th largest value.
-  const std::size_t outside = std::max<std::size_t>(count_outside(ratios.size()), 1);
-  return {quantile(ratios, 0.5), {ratios[outside - 1], ratios[ratios.size() - outside]}};
+  return {summarise(differences), find_interval(differences)};
 }
 
 }  // namespace shadowbench::measure

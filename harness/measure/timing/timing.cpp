@@ -11,7 +11,8 @@ namespace shadowbench::measure {
 namespace {
 
 constexpr int kFewestOfAnyBudget = 3;
-/// A bootstrap takes as long as a small lookup: it looks again after an eighth more rounds.
+/// Looks at the intervals again after an eighth more rounds: every look is a chance to stop where one is narrow by
+/// chance.
 constexpr int kRoundsPerLook = 8;
 
 /// Fisher and Yates; std::shuffle differs between standard libraries.
@@ -128,11 +129,9 @@ class Rounds {
            is_narrow(add_moving(times_.map, times), add_moving(times_.map, reference));
   }
 
-  /// Order statistics are quick and sift out what the bootstrap, which is reported, would not call narrow.
   bool is_narrow(const std::vector<double>& numerator, const std::vector<double>& denominator) const {
-    const auto width = [](const records::Ratio& r) { return (r.ci95.high - r.ci95.low) / r.median; };
-    return width(order_ratio(numerator, denominator)) <= 1.5 * limits_.precision &&
-           width(bootstrap_ratio(numerator, denominator, plan_.seed)) <= limits_.precision;
+    const records::Ratio ratio = find_ratio(numerator, denominator);
+    return ratio.ci95.high - ratio.ci95.low <= limits_.precision * ratio.median;
   }
 };
 

@@ -62,7 +62,7 @@ class Phased {
                                                             .gbuffer = assets_.gbuffer(camera),
                                                             .timer = renderer_.timer},
                                                            {.limits = options::RoundLimits::exactly(40)});
-    return measure::bootstrap_difference(times.filters[0].lookup, times.empties[0], 1);
+    return measure::find_difference(times.filters[0].lookup, times.empties[0]);
   }
 
  private:

@@ -20,7 +20,7 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
   const measure::RoundTimes times =
       measure::time_rounds({.filters = pointers, .map = bench.map(), .gbuffer = bench.gbuffer(), .timer = timer},
                            {.limits = options::RoundLimits::exactly(31)});
-  const records::Ratio ratio = measure::bootstrap_ratio(times.filters[2].lookup, times.filters[1].lookup, 1);
+  const records::Ratio ratio = measure::find_ratio(times.filters[2].lookup, times.filters[1].lookup);
   std::printf("32 taps / 16 taps: %.2f [%.2f, %.2f] by %s\n", ratio.median, ratio.ci95.low, ratio.ci95.high,
               gl::timer_name(timer));
   EXPECT_EQ(times.map.size(), 31u);

@@ -78,9 +78,8 @@ TEST(Rounds, NoisyFilter_GoesOnUntilItsIntervalIsNarrow_WhileQuietOnesDropOut) {
   EXPECT_EQ(times.filters[0].lookup.size(), rounds) << "the reference stays";
   EXPECT_EQ(times.map.size(), rounds);
   EXPECT_EQ(times.filters[2].stopped, StopReason::kPrecise);
-  EXPECT_LE(width(bootstrap_ratio(times.filters[2].lookup, times.filters[0].lookup, 3)), 0.05);
-  EXPECT_LE(width(bootstrap_ratio(add_moving(times.map, times.filters[2]), add_moving(times.map, times.filters[0]), 3)),
-            0.05);
+  EXPECT_LE(width(find_ratio(times.filters[2].lookup, times.filters[0].lookup)), 0.05);
+  EXPECT_LE(width(find_ratio(add_moving(times.map, times.filters[2]), add_moving(times.map, times.filters[0]))), 0.05);
 }
 
 TEST(Rounds, BudgetIsSpent_AllStop_AndSaySo) {

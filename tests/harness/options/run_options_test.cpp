@@ -64,6 +64,7 @@ const std::map<std::string, std::vector<std::string>>& list_others() {
                                                                          {"cell_timeout", {"3"}},
                                                                          {"truth", {"false"}},
                                                                          {"attribution", {"false"}},
+                                                                         {"truth_weight", {"cosine"}},
                                                                          {"stability", {"true"}},
                                                                          {"uncertainty", {"true"}}};
   return others;

@@ -218,7 +218,8 @@ TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
   EXPECT_FALSE(gap.tied);
   EXPECT_NEAR(gap.difference, 0.2, 1e-12);
   EXPECT_NEAR(gap.share, 0.2 / 5.0, 1e-12);
-  EXPECT_EQ(describe_runner_up(advice, make_run().gl), "dearer by 0.2 ms (CPU) (4 %); the 95 % intervals are apart");
+  EXPECT_EQ(describe_runner_up(advice, make_run().gl),
+            "dearer by 0.2 ms (CPU) (4 %); the 95 % intervals are apart; it has the same RMSE");
   cells[1].ratio_to_none.moving->ci95.low *= 0.9;
   advice = advise_on(cells, {});
   EXPECT_TRUE(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).tied);
@@ -245,16 +246,14 @@ TEST(Advice, WithoutARatio_QuartilesTellCostsApart) {
   EXPECT_EQ(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).basis, Basis::kQuartiles);
 }
 
-TEST(Advice, ATie_NamesTheLowerMeanAndSaysWhoIsMoreAccurate) {
+TEST(Advice, ATie_NamesTheLowerMeanAndSaysByHowMuchErrorsDiffer) {
   std::vector<records::CellRecord> cells = {measure("cubes", "rough", 4.0, 0.03), measure("cubes", "fine", 4.02, 0.01),
                                             measure("cubes", "third", 4.03, 0.02),
                                             measure("cubes", "slow", 9.0, 0.001)};
   const Advice advice = advise_on(cells, {});
-  EXPECT_EQ(
-      describe_runner_up(advice, make_run().gl),
-      "a tie, for their 95 % intervals overlap: rough, map 1024 × 1024 d32f is named first for its lower mean; "
-      "fine, map 1024 × 1024 d32f has the lower RMSE, 0.01 against 0.03 at worst; tied with it too: third, map 1024 "
-      "× 1024 d32f");
+  EXPECT_EQ(describe_runner_up(advice, make_run().gl),
+            "a tie, for their 95 % intervals overlap: rough, map 1024 × 1024 d32f is named first for its lower mean; "
+            "its RMSE is lower by 0.02 [0.019, 0.021]; tied with it too: third, map 1024 × 1024 d32f");
 }
 
 TEST(Advice, EqualBytes_AreATieThatTimeOrders) {
@@ -265,7 +264,8 @@ TEST(Advice, EqualBytes_AreATieThatTimeOrders) {
   const Advice advice = advise(cells, request);
   EXPECT_THAT(labels(advice.keeping), ElementsAre("fast", "slow"));
   EXPECT_EQ(describe_runner_up(advice, make_run().gl),
-            "a tie, at the same cost: fast, map 1024 × 1024 d32f is named first for its shorter time");
+            "a tie, at the same cost: fast, map 1024 × 1024 d32f is named first for its shorter time; its RMSE is "
+            "lower by 0.02 [0.019, 0.021]");
 }
 
 TEST(Advice, RelaxedLimit_BuysEveryStepThatIsReallyCheaper) {

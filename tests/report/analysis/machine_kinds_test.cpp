@@ -120,7 +120,8 @@ TEST(MixedMachines, AdviceFollowsRatios) {
   const records::GlRecord gl = records::make_run().gl;
   EXPECT_EQ(format_cost(advice.keeping[1].cost.mean, advice.request.cheapest, gl), "2 × none");
   EXPECT_EQ(describe_choice(advice), "lowest ratio to 'none'");
-  EXPECT_EQ(describe_runner_up(advice, gl), "dearer by 1 × none (100 %); the 95 % intervals are apart");
+  EXPECT_EQ(describe_runner_up(advice, gl),
+            "dearer by 1 × none (100 %); the 95 % intervals are apart; its RMSE is lower by 0.05 [0.049, 0.051]");
   EXPECT_THAT(list_run_notes(advice, gl), ElementsAre(HasSubstr("their times do not compare")));
 }
 

@@ -73,7 +73,7 @@ CellRecord make_full_cell() {
   cell.cost.prefilter_texels = 2097152;
   cell.range = {"edge", false, false};
   cell.error = {0.1, 0.05, 0.2, 1.0, -0.01, 0.3, 0.04, 0.05};
-  cell.truth = {0.001, 0.9};
+  cell.truth = {0.001, 0.9, 0.002};
   cell.artefact = {0.1, 0.2, 0.3, 0.4};
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
   cell.images = {"a.png",   "b.png", "c.png", "d.png", "e.exr", "g.png", "h.png",
@@ -85,6 +85,8 @@ CellRecord make_full_cell() {
   cell.time_ms.stopped = "budget";
   cell.phases = 4;
   cell.rmse_ci95 = Interval{0.09, 0.11};
+  cell.rmse_replicates = {0.095, 0.1, 0.105};
+  cell.flicker_ci95 = Interval{0.03, 0.06};
   cell.time_ms.empty = Quartiles{1.0, 0.5, 1.5, 3};
   cell.time_ms.static_light = OwnTime{{-0.25, -0.5, 0.5, 3}, {-0.5, 0.5}};
   cell.time_ms.moving = OwnTime{{4.0, 3.5, 4.5, 3}, {3.5, 4.5}};
@@ -288,6 +290,8 @@ TEST(JsonIo, WhatWasMeasuredAfterReadingAgain_IsNoLongerAbsent) {
   CellRecord cell = make_full_cell();
   cell.error = {};
   cell.rmse_ci95.reset();
+  cell.rmse_replicates.reset();
+  cell.flicker_ci95.reset();
   cell.truth = {};
   CellRecord again = cell_from_json(to_json(cell), "test");
   ASSERT_EQ(again.absent.at("error"), "not measured");
