@@ -24,6 +24,7 @@
 namespace shadowbench::cli {
 namespace {
 
+using analysis::ErrorApart;
 using analysis::RatioApart;
 using records::CellRecord;
 
@@ -34,21 +35,39 @@ const std::optional<records::Ratio>& ratio_of(const CellRecord& cell, const std:
   return name == "lookup" ? ratios.lookup : name == "moving" ? ratios.moving : ratios.static_light;
 }
 
-std::string describe_apart(const RatioApart& apart) {
-  const CellRecord& cell = *apart.a;
-  return fmt::format("{} ({}), {}{}, map {}, picture {} x {}: {} {} against {}", cell.scene, cell.view, cell.filter,
+std::string describe_cell(const CellRecord& cell) {
+  return fmt::format("{} ({}), {}{}, map {}, picture {} x {}", cell.scene, cell.view, cell.filter,
                      cell.params.empty() ? "" : " (" + records::describe_params(cell.params) + ")", cell.map_size,
-                     cell.width, cell.height, apart.ratio, records::format_ratio(ratio_of(cell, apart.ratio)),
+                     cell.width, cell.height);
+}
+
+std::string describe_apart(const RatioApart& apart) {
+  return fmt::format("{}: {} {} against {}", describe_cell(*apart.a), apart.ratio,
+                     records::format_ratio(ratio_of(*apart.a, apart.ratio)),
                      records::format_ratio(ratio_of(*apart.b, apart.ratio)));
+}
+
+std::string describe_apart(const ErrorApart& apart) {
+  return fmt::format("{}: RMSE {} against {}, a difference of {}", describe_cell(*apart.a),
+                     records::format_number(apart.a->error.rmse), records::format_number(apart.b->error.rmse),
+                     records::format_interval(apart.gap.value, {apart.gap.low, apart.gap.high}));
+}
+
+void print_some(const auto& all) {
+  for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i) fmt::print("  {}\n", describe_apart(all[i]));
+  if (all.size() > kMostNamed) fmt::print("  and {} more\n", all.size() - kMostNamed);
 }
 
 void print_runs(const analysis::RepeatComparison& found) {
   fmt::print("cells        {} in both\n", *found.record.cells);
   fmt::print("overlapping  {} of {} 95 % intervals of ratios to none\n", *found.record.overlapping, *found.record.of);
   if (!found.apart.empty()) fmt::print("apart, the widest gap first:\n");
-  for (std::size_t i = 0; i < std::min(found.apart.size(), kMostNamed); ++i)
-    fmt::print("  {}\n", describe_apart(found.apart[i]));
-  if (found.apart.size() > kMostNamed) fmt::print("  and {} more\n", found.apart.size() - kMostNamed);
+  print_some(found.apart);
+  if (found.errors == 0) return;
+  fmt::print("errors       {} of {} RMSEs are not told apart\n",
+             found.errors - static_cast<int>(found.errors_apart.size()), found.errors);
+  if (!found.errors_apart.empty()) fmt::print("apart, the largest difference first:\n");
+  print_some(found.errors_apart);
 }
 
 void print_runs_json(const analysis::RepeatComparison& found) {
@@ -64,6 +83,18 @@ void print_runs_json(const analysis::RepeatComparison& found) {
                              {"a", records::value_json(*ratio_of(*apart.a, apart.ratio))},
                              {"b", records::value_json(*ratio_of(*apart.b, apart.ratio))},
                              {"gap", apart.gap}});
+  }
+  json["errors"] = found.errors;
+  json["errors_apart"] = nlohmann::ordered_json::array();
+  for (const ErrorApart& apart : found.errors_apart) {
+    json["errors_apart"].push_back({{"key", apart.a->key},
+                                    {"scene", apart.a->scene},
+                                    {"view", apart.a->view},
+                                    {"filter", apart.a->filter},
+                                    {"a", *apart.a->error.rmse},
+                                    {"b", *apart.b->error.rmse},
+                                    {"difference", apart.gap.value},
+                                    {"ci95", {apart.gap.low, apart.gap.high}}});
   }
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
@@ -87,13 +118,13 @@ bool is_run(const std::filesystem::path& argument) {
   return std::filesystem::is_directory(argument, ignored) || argument.extension() == ".json";
 }
 
-/// Compares the ratios to `none` of the cells that two runs have in common; prints how many repeat, and the ones that
-/// are farthest apart.
+/// Compares the ratios to `none` and the RMSEs of the cells that two runs have in common; prints how many repeat, and
+/// the ones that are farthest apart.
 /// Throws Error(kLimit) where some do not, Error(kInput) where there is nothing to compare or a file cannot be read.
 int diff_runs(const std::filesystem::path& a, const std::filesystem::path& b, bool json) {
   const records::Results first = records::read_results(find_results(a)),
                          second = records::read_results(find_results(b));
-  const analysis::RepeatComparison found = analysis::compare_times(first.cells, second.cells);
+  const analysis::RepeatComparison found = analysis::compare_runs(first.cells, second.cells);
   if (found.record.of == 0) {
     throw Error(
         ErrorKind::kInput,
@@ -107,6 +138,10 @@ int diff_runs(const std::filesystem::path& a, const std::filesystem::path& b, bo
     print_runs_json(found);
   else
     print_runs(found);
+  if (!found.errors_apart.empty()) {
+    throw Error(ErrorKind::kLimit, fmt::format("{} of {} RMSEs are told apart; the most: {}", found.errors_apart.size(),
+                                               found.errors, describe_apart(found.errors_apart.front())));
+  }
   if (found.apart.empty()) return 0;
   throw Error(ErrorKind::kLimit, fmt::format("{}; widest apart: {}", analysis::describe_overlap(found.record),
                                              describe_apart(found.apart.front())));

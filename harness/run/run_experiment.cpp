@@ -185,7 +185,7 @@ class Experiment {
   void compare_with(const std::vector<records::CellRecord>& replaced, const std::vector<std::string>& keys) {
     std::vector<records::CellRecord> cells;
     for (const std::string& key : keys) cells.push_back(records::read_cell(options_.out, key));
-    run_.repeat = analysis::compare_times(replaced, cells).record;
+    run_.repeat = analysis::compare_runs(replaced, cells).record;
     if (run_.repeat.of == 0) return;
     progress_.note(analysis::describe_overlap(run_.repeat) + " those of the run that this one replaces");
   }

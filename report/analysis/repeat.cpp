@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "report/analysis/cell_group.h"
+
 namespace shadowbench::analysis {
 namespace {
+
+constexpr double kLeastError = 1e-4;  // no picture of 8 bits shows less than forty times that
 
 using NamedRatio = std::pair<const char*, std::optional<records::Ratio> records::RatioRecord::*>;
 constexpr NamedRatio kRatios[] = {{"lookup", &records::RatioRecord::lookup},
@@ -33,8 +38,17 @@ double measure_gap(const records::Interval& a, const records::Interval& b) {
   return high <= low ? 0.0 : low > 0.0 ? high / low - 1.0 : high;
 }
 
+void add_error(RepeatComparison& comparison, const records::CellRecord& a, const records::CellRecord& b) {
+  if (!a.error.rmse || !b.error.rmse) return;
+  ++comparison.errors;
+  const Estimate gap = subtract(estimate_rmse(b), estimate_rmse(a));
+  const bool is_apart = gap.low > 0.0 || gap.high < 0.0;
+  if (is_apart && std::abs(gap.value) > kLeastError) comparison.errors_apart.push_back({&a, &b, gap});
+}
+
 void add_cell(RepeatComparison& comparison, const records::CellRecord& a, const records::CellRecord& b) {
   ++*comparison.record.cells;
+  add_error(comparison, a, b);
   for (const auto& [name, which] : kRatios) {
     const std::optional<records::Ratio>&x = a.ratio_to_none.*which, &y = b.ratio_to_none.*which;
     if (!x || !y || (is_own_reference(*x) && is_own_reference(*y))) continue;
@@ -50,15 +64,18 @@ void add_cell(RepeatComparison& comparison, const records::CellRecord& a, const 
 
 }  // namespace
 
-RepeatComparison compare_times(const std::vector<records::CellRecord>& a, const std::vector<records::CellRecord>& b) {
+RepeatComparison compare_runs(const std::vector<records::CellRecord>& a, const std::vector<records::CellRecord>& b) {
   std::map<std::string, const records::CellRecord*> others;
   for (const records::CellRecord& cell : b) others[cell.key] = &cell;
-  RepeatComparison comparison{{0, 0, 0}, {}};
+  RepeatComparison comparison;
+  comparison.record = {0, 0, 0};
   for (const records::CellRecord& cell : a) {
     const auto other = others.find(cell.key);
     if (other != others.end()) add_cell(comparison, cell, *other->second);
   }
   std::ranges::stable_sort(comparison.apart, std::greater(), &RatioApart::gap);
+  std::ranges::stable_sort(comparison.errors_apart, std::greater(),
+                           [](const ErrorApart& each) { return std::abs(each.gap.value); });
   return comparison;
 }
 
