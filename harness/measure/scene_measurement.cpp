@@ -14,7 +14,7 @@
 #include "harness/measure/receiver_pixels.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
-#include "harness/measure/timing/light_timing.h"
+#include "harness/measure/timing/many_lights_timing.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
 #include "harness/render/gbuffer.h"
