@@ -2,6 +2,8 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<Model> make_castano5_model() { return make_templated_model<SlidingPairs<1, 3, 4, 3, 1>::Filter>(); }
+std::unique_ptr<ScalarModel> make_castano5_model() {
+  return make_templated_model<SlidingPairs<1, 3, 4, 3, 1>::Filter>();
+}
 
 }  // namespace shadowbench::filters

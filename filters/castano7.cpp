@@ -2,7 +2,7 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<Model> make_castano7_model() {
+std::unique_ptr<ScalarModel> make_castano7_model() {
   return make_templated_model<SlidingPairs<1, 5, 12, 16, 12, 5, 1>::Filter>();
 }
 

@@ -26,9 +26,9 @@ Points spread_on_spiral(int count, unsigned seed) {
 /// A stream of places in the unit square, in 32-bit fractions: sums and distances of them wrap as the square does.
 class RandomPlaces {
  public:
-  using Place = glm::uvec2;
+  using Fractions = glm::uvec2;
   explicit RandomPlaces(unsigned seed) : state_(hash_bits(seed)) {}
-  Place next() {
+  Fractions next() {
     const std::uint32_t x = hash_bits(++state_);
     return {x, hash_bits(x + state_)};
   }
@@ -37,7 +37,7 @@ class RandomPlaces {
   std::uint32_t state_;
 };
 
-glm::dvec2 to_square(RandomPlaces::Place place) { return glm::dvec2(place) * 0x1p-32; }
+glm::dvec2 to_square(RandomPlaces::Fractions place) { return glm::dvec2(place) * 0x1p-32; }
 
 /// In rows of cells of equal area, as near to squares as the count allows.
 Points spread_in_cells(int count, unsigned seed) {
@@ -56,7 +56,7 @@ Points spread_in_cells(int count, unsigned seed) {
 }
 
 /// The squared distance on a square whose opposite edges are one.
-std::uint64_t wrapped_distance(RandomPlaces::Place a, RandomPlaces::Place b) {
+std::uint64_t wrapped_distance(RandomPlaces::Fractions a, RandomPlaces::Fractions b) {
   const auto part = [](std::uint32_t d) { return static_cast<std::uint64_t>(std::min(d, 0U - d)); };
   const std::uint64_t x = part(a.x - b.x), y = part(a.y - b.y);
   return x * x + y * y;
@@ -65,14 +65,14 @@ std::uint64_t wrapped_distance(RandomPlaces::Place a, RandomPlaces::Place b) {
 Points spread_by_distance(int count, unsigned seed) {
   constexpr int kCandidates = 64;
   RandomPlaces chance(seed);
-  std::vector<RandomPlaces::Place> chosen;
+  std::vector<RandomPlaces::Fractions> chosen;
   for (int i = 0; i < count; ++i) {
-    RandomPlaces::Place best{};
+    RandomPlaces::Fractions best{};
     std::uint64_t farthest = 0;
     for (int candidate = 0; candidate < kCandidates; ++candidate) {
-      const RandomPlaces::Place place = chance.next();
+      const RandomPlaces::Fractions place = chance.next();
       std::uint64_t nearest = std::numeric_limits<std::uint64_t>::max();
-      for (const RandomPlaces::Place& other : chosen) nearest = std::min(nearest, wrapped_distance(place, other));
+      for (const RandomPlaces::Fractions& other : chosen) nearest = std::min(nearest, wrapped_distance(place, other));
       if (nearest <= farthest) continue;
       farthest = nearest;
       best = place;
@@ -80,7 +80,7 @@ Points spread_by_distance(int count, unsigned seed) {
     chosen.push_back(best);
   }
   Points points;
-  for (const RandomPlaces::Place& place : chosen) points.push_back(map_to_disk(to_square(place)));
+  for (const RandomPlaces::Fractions& place : chosen) points.push_back(map_to_disk(to_square(place)));
   return points;
 }
 

@@ -71,6 +71,6 @@ class Dpcf {
 
 }  // namespace
 
-std::unique_ptr<Model> make_dpcf_model() { return make_templated_model<Dpcf>(); }
+std::unique_ptr<ScalarModel> make_dpcf_model() { return make_templated_model<Dpcf>(); }
 
 }  // namespace shadowbench::filters

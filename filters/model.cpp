@@ -4,13 +4,13 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<Model> make_model(const std::string& id) {
+std::unique_ptr<ScalarModel> make_model(const std::string& id) {
   for (const ModelEntry& entry : model_table())
     if (entry.id == id) return entry.make();
   return nullptr;
 }
 
-std::unique_ptr<Model> make_model(const FilterSpec& spec) {
+std::unique_ptr<ScalarModel> make_model(const FilterSpec& spec) {
   return make_model(spec.copy_of.empty() ? spec.id : spec.copy_of);
 }
 

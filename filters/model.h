@@ -38,7 +38,7 @@ class Lookup {
 };
 
 /// The scalar model of a filter: the same arithmetic as `<id>.glsl`, without a GL.
-struct Model {
+struct ScalarModel {
   /// Cost: one pass over the map for filters that encode, two more for the prefilter; none otherwise.
   std::unique_ptr<Lookup> (*prepare)(const ModelInput& input, Precision precision);
 
@@ -50,15 +50,15 @@ struct Model {
 /// Makes the model of a filter; CMake lists one for each `<id>.cpp` that stands beside its `<id>.glsl`.
 struct ModelEntry {
   std::string id;
-  std::unique_ptr<Model> (*make)();
+  std::unique_ptr<ScalarModel> (*make)();
 };
 const std::vector<ModelEntry>& model_table();
 
 /// The model of a built-in filter; null where there is none.
-std::unique_ptr<Model> make_model(const std::string& id);
+std::unique_ptr<ScalarModel> make_model(const std::string& id);
 
 /// A filter's model, that of the filter it copies included; null where it has none (a user's file).
-std::unique_ptr<Model> make_model(const FilterSpec& spec);
+std::unique_ptr<ScalarModel> make_model(const FilterSpec& spec);
 
 /// Why a filter without a model has none.
 inline constexpr const char* kNoModel = "the filter has no scalar model";
@@ -109,11 +109,11 @@ std::unique_ptr<Lookup> prepare_templated(const ModelInput& input, Precision pre
 }
 
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
-/// `static Kernel kernel(const ParamValues&)`, or an optional one, as a Model.
+/// `static Kernel kernel(const ParamValues&)`, or an optional one, as a ScalarModel.
 template <template <class> class Filter>
-std::unique_ptr<Model> make_templated_model() {
+std::unique_ptr<ScalarModel> make_templated_model() {
   const auto kernel = [](const ParamValues& values) -> std::optional<Kernel> { return Filter<double>::kernel(values); };
-  return std::make_unique<Model>(Model{&prepare_templated<Filter>, kernel});
+  return std::make_unique<ScalarModel>(ScalarModel{&prepare_templated<Filter>, kernel});
 }
 
 }  // namespace shadowbench::filters

@@ -2,6 +2,8 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<Model> make_msm_hamburger_model() { return make_templated_model<FourMoments<Depths::kAny>::Filter>(); }
+std::unique_ptr<ScalarModel> make_msm_hamburger_model() {
+  return make_templated_model<FourMoments<Depths::kAny>::Filter>();
+}
 
 }  // namespace shadowbench::filters

@@ -2,7 +2,7 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<Model> make_msm_hausdorff_model() {
+std::unique_ptr<ScalarModel> make_msm_hausdorff_model() {
   return make_templated_model<FourMoments<Depths::kInRange>::Filter>();
 }
 

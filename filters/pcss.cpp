@@ -81,6 +81,6 @@ class Pcss {
 
 }  // namespace
 
-std::unique_ptr<Model> make_pcss_model() { return make_templated_model<Pcss>(); }
+std::unique_ptr<ScalarModel> make_pcss_model() { return make_templated_model<Pcss>(); }
 
 }  // namespace shadowbench::filters

@@ -36,6 +36,6 @@ class Poisson {
 
 }  // namespace
 
-std::unique_ptr<Model> make_poisson_model() { return make_templated_model<Poisson>(); }
+std::unique_ptr<ScalarModel> make_poisson_model() { return make_templated_model<Poisson>(); }
 
 }  // namespace shadowbench::filters

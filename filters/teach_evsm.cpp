@@ -2,6 +2,8 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<Model> make_teach_evsm_model() { return make_templated_model<WarpedVariance<1, false>::Filter>(); }
+std::unique_ptr<ScalarModel> make_teach_evsm_model() {
+  return make_templated_model<WarpedVariance<1, false>::Filter>();
+}
 
 }  // namespace shadowbench::filters

@@ -33,6 +33,6 @@ class VsmSat {
 
 }  // namespace
 
-std::unique_ptr<Model> make_vsm_sat_model() { return make_templated_model<VsmSat>(); }
+std::unique_ptr<ScalarModel> make_vsm_sat_model() { return make_templated_model<VsmSat>(); }
 
 }  // namespace shadowbench::filters

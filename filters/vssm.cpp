@@ -77,6 +77,6 @@ class Vssm {
 
 }  // namespace
 
-std::unique_ptr<Model> make_vssm_model() { return make_templated_model<Vssm>(); }
+std::unique_ptr<ScalarModel> make_vssm_model() { return make_templated_model<Vssm>(); }
 
 }  // namespace shadowbench::filters

@@ -8,7 +8,7 @@
 #include "harness/cli/progress_bar.h"
 #include "harness/scene/load.h"
 #include "harness/tune/tune_filters.h"
-#include "harness/tune/tune_stage.h"
+#include "harness/tune/tune_scene.h"
 #include "harness/tune/tune_views.h"
 
 namespace shadowbench::cli {

@@ -191,13 +191,13 @@ struct Complaint {
 };
 
 /// What a line says by itself.
-struct Place {
+struct LogLine {
   int index = 0;
   int line = 0;
   std::size_t text_at = 0;
 };
 
-std::optional<Place> find_place(const std::string& line) {
+std::optional<LogLine> read_log_line(const std::string& line) {
   // Widths keep the numbers inside an int; a blank matches any blanks, or none.
   constexpr std::array kForms = {
       "%9d:%9d(%*9d): %n",     // Mesa      2:14(5): error: x
@@ -206,28 +206,29 @@ std::optional<Place> find_place(const std::string& line) {
       "WARNING: %9d:%9d: %n",  //
   };
   for (const char* form : kForms) {
-    Place place;
+    LogLine log_line;
     int end = 0;
-    if (std::sscanf(line.c_str(), form, &place.index, &place.line, &end) != 2 || end == 0) continue;
-    place.text_at = static_cast<std::size_t>(end);
-    return place;
+    if (std::sscanf(line.c_str(), form, &log_line.index, &log_line.line, &end) != 2 || end == 0) continue;
+    log_line.text_at = static_cast<std::size_t>(end);
+    return log_line;
   }
   return std::nullopt;
 }
 
 // Takes the file from the line number, or from the driver's index where the number says nothing.
-std::optional<std::string> locate(const Place& place, const std::vector<std::string>& files) {
-  if (place.index < 0 || place.line < 0) return std::nullopt;
-  const auto file = static_cast<std::size_t>(place.line >= kLinesPerFile ? place.line / kLinesPerFile : place.index);
+std::optional<std::string> locate(const LogLine& log_line, const std::vector<std::string>& files) {
+  if (log_line.index < 0 || log_line.line < 0) return std::nullopt;
+  const auto file =
+      static_cast<std::size_t>(log_line.line >= kLinesPerFile ? log_line.line / kLinesPerFile : log_line.index);
   if (file >= files.size()) return std::nullopt;
-  return fmt::format("{}:{}", files[file], place.line % kLinesPerFile);
+  return fmt::format("{}:{}", files[file], log_line.line % kLinesPerFile);
 }
 
 std::optional<Complaint> parse_line(const std::string& line, const std::vector<std::string>& files) {
-  const auto place = find_place(line);
-  const auto where = place ? locate(*place, files) : std::nullopt;
+  const auto log_line = read_log_line(line);
+  const auto where = log_line ? locate(*log_line, files) : std::nullopt;
   if (!where) return std::nullopt;
-  const std::string text = line.substr(place->text_at);
+  const std::string text = line.substr(log_line->text_at);
   const bool error = line.starts_with("ERROR") || text.starts_with("error") || text.starts_with("fatal error");
   return Complaint{*where, text, error};
 }

@@ -8,7 +8,7 @@
 
 #include "filters/catalogue.h"
 #include "harness/render/filter_passes.h"
-#include "reference/metrics/stability.h"
+#include "reference/metrics/map_stability.h"
 
 namespace shadowbench::measure {
 

@@ -197,7 +197,7 @@ class Traffic {
 std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
                                                      const std::vector<ModelLayer>& layers, const ModelView& view,
                                                      std::span<const CacheShape> caches) {
-  const std::unique_ptr<filters::Model> model = filters::make_model(request.spec);
+  const std::unique_ptr<filters::ScalarModel> model = filters::make_model(request.spec);
   if (!model) return std::nullopt;
   std::vector<TiledLayer> tiled;
   std::size_t receivers = 0;

@@ -36,7 +36,7 @@ void compare_disks(ModelImages& images, const ModelLayer& layer, const ModelView
 
 ModelImages evaluate_model(const filters::FilterRequest& request, const std::vector<ModelLayer>& layers,
                            const ModelView& view) {
-  const std::unique_ptr<filters::Model> model = filters::make_model(request.spec);
+  const std::unique_ptr<filters::ScalarModel> model = filters::make_model(request.spec);
   const auto kernel = filters::find_kernel(request.spec, request.values);
   const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   ModelImages images;

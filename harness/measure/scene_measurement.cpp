@@ -14,7 +14,7 @@
 #include "harness/measure/receiver_pixels.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
-#include "harness/measure/timing/light_timing.h"
+#include "harness/measure/timing/many_lights_timing.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
 #include "harness/render/gbuffer.h"
@@ -134,7 +134,7 @@ class SceneBench {
   }
 
   /// Bounds what the same computation in single precision may make of each pixel.
-  images::Image bound_rounding(const filters::Model& model, const render::FilterPasses& filter) {
+  images::Image bound_rounding(const filters::ScalarModel& model, const render::FilterPasses& filter) {
     images::Image image(options_.width, options_.height, 1);
     for (const render::LightSetup& layer : filter.light()) {
       const filters::DepthMap map = light_.map.read(layer.frustum.layer);

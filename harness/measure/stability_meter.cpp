@@ -39,7 +39,7 @@ void note_absent(records::CellRecord& record, std::initializer_list<const char*>
 }
 
 /// Why a filter is not compared with what it bounds; empty where it is.
-std::string explain_no_bound(const filters::FilterRequest& request, const filters::Model* model) {
+std::string explain_no_bound(const filters::FilterRequest& request, const filters::ScalarModel* model) {
   if (request.spec.kind != filters::FilterKind::kBound)
     return "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter";
   if (!filters::promises_bound(request.spec, request.values))
@@ -187,7 +187,7 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
 }
 
 /// Compares both at the depth that the filter itself compares with: another bias would be another bound.
-metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
+metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::ScalarModel& model,
                                                         const render::LightLayers& light) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const double plane_max_tangent = options_.bias.plane_max_tangent();

@@ -42,7 +42,7 @@ class StabilityMeter {
                             std::vector<float> (*of_layer)(const metrics::StoredMap&)) const;
   void compare_stores(MeasuredCell& cell);
   void check_bound(MeasuredCell& cell, render::FilterPasses& filter);
-  metrics::BoundCheck compare_with_closer(const MeasuredCell& cell, const filters::Model& model,
+  metrics::BoundCheck compare_with_closer(const MeasuredCell& cell, const filters::ScalarModel& model,
                                           const render::LightLayers& light);
 };
 

@@ -27,7 +27,7 @@ void suspect(MeasuredCell& cell, const std::string& sentence) {
 }
 
 /// The least and the largest finite value; in the wrong order where no value is finite.
-struct Range {
+struct ValueSpan {
   float least = std::numeric_limits<float>::max();
   float most = std::numeric_limits<float>::lowest();
 
@@ -45,14 +45,14 @@ void check_values(MeasuredCell& cell) {
                               "format of the map",
                               broken));
   }
-  Range range;
-  for (const float value : cell.visibility.texels) range.add(value);
-  if (range.least >= -kRounding && range.most <= 1.0f + kRounding) return;
-  if (range.least > range.most) return;
+  ValueSpan span;
+  for (const float value : cell.visibility.texels) span.add(value);
+  if (span.least >= -kRounding && span.most <= 1.0f + kRounding) return;
+  if (span.least > span.most) return;
   suspect(cell,
           fmt::format("its visibility lies between {} and {}, which should be 0 for blocked and 1 for lit; divide "
                       "by the sum of the weights, or clamp",
-                      format_number(static_cast<double>(range.least)), format_number(static_cast<double>(range.most))));
+                      format_number(static_cast<double>(span.least)), format_number(static_cast<double>(span.most))));
 }
 
 void check_reads(MeasuredCell& cell) {
@@ -102,11 +102,11 @@ void check_drawing(MeasuredCell& cell, gl::Context& context) {
 
 void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {
   if (!truth.absent.empty() || cell.visibility.empty()) return;
-  Range range;
+  ValueSpan span;
   int lit = 0, blocked = 0;
   for (std::size_t i = 0; i < truth.mask.size(); ++i) {
     if (!truth.mask[i]) continue;
-    range.add(cell.visibility.texels[i]);
+    span.add(cell.visibility.texels[i]);
     lit += truth.area.texels[i] == 1.0f;
     blocked += truth.area.texels[i] == 0.0f;
   }
@@ -115,12 +115,12 @@ void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {
         fmt::format("{}: no receiver in view sees the light: does it stand inside a caster, "
                     "or below the ground?",
                     cell.record.scene));
-  if (std::min(lit, blocked) < metrics::kFewestReceivers || range.least > range.most) return;
-  if (range.most - range.least > kRounding) return;
+  if (std::min(lit, blocked) < metrics::kFewestReceivers || span.least > span.most) return;
+  if (span.most - span.least > kRounding) return;
   suspect(cell, fmt::format("its visibility is {} at every receiver, though {} of them are wholly lit in truth and {} "
                             "wholly blocked; let it depend on how r.depth compares with the map, and check that --bias "
                             "is not larger than the scene",
-                            format_number(static_cast<double>(range.least)), lit, blocked));
+                            format_number(static_cast<double>(span.least)), lit, blocked));
 }
 
 }  // namespace shadowbench::measure

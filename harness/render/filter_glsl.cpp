@@ -1,3 +1,5 @@
+#include "harness/render/filter_glsl.h"
+
 #include <fmt/format.h>
 
 #include <cctype>
@@ -5,7 +7,6 @@
 #include "filters/disk_points.h"
 #include "filters/store_format.h"
 #include "harness/gl/pixel_format.h"
-#include "harness/render/prefilter.h"
 
 namespace shadowbench::render {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/render/gbuffer.h"
+#include "harness/render/map_passes.h"
 #include "harness/render/prefilter.h"
 
 namespace shadowbench::render {

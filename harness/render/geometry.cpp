@@ -97,7 +97,7 @@ void Geometry::set_material(gl::Program& program, const scene::Material& materia
   parts_->textures[static_cast<std::size_t>(material.base_color_texture)].bind(kBaseColorUnit);
 }
 
-bool Geometry::is_in(DrawSet set, const Range& range) {
+bool Geometry::is_in(DrawSet set, const VertexRange& range) {
   switch (set) {
     case DrawSet::kAll: return true;
     case DrawSet::kCasters: return range.casts;

@@ -33,7 +33,7 @@ class Geometry {
   std::int64_t triangle_count() const { return parts_->triangles; }
 
  private:
-  struct Range {
+  struct VertexRange {
     int first = 0;
     int count = 0;
     int material = 0;
@@ -41,7 +41,7 @@ class Geometry {
     bool may_cull_front = true;
   };
   struct Parts {
-    std::vector<Range> ranges;
+    std::vector<VertexRange> ranges;
     std::vector<scene::Material> materials;
     std::vector<gl::Texture> textures;
     std::vector<gl::Buffer> buffer;  // one; a vector because it is made after the vertices are
@@ -52,14 +52,14 @@ class Geometry {
 
   Defines variant(const scene::Material& material) const;
   void set_material(gl::Program& program, const scene::Material& material) const;
-  static bool is_in(DrawSet set, const Range& range);
+  static bool is_in(DrawSet set, const VertexRange& range);
 };
 
 template <class Prepare>
 void Geometry::draw(ShaderLibrary& shaders, const std::string& shader, DrawSet set, Prepare prepare,
                     const Defines& more) const {
   parts_->array.bind();
-  for (const Range& range : parts_->ranges) {
+  for (const VertexRange& range : parts_->ranges) {
     if (!is_in(set, range)) continue;
     const scene::Material& material = parts_->materials[static_cast<std::size_t>(range.material)];
     Defines defines = variant(material);

@@ -1,10 +1,12 @@
+#include "harness/render/map_passes.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 
 #include "base/error.h"
-#include "harness/render/prefilter.h"
+#include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "filters/kernel.h"
+#include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {
 namespace {

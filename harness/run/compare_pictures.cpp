@@ -152,14 +152,20 @@ MetricValue measure_flip(const Pair& pair, double pixels_per_degree) {
   return "a pixel is NaN or infinite, and FLIP would spread it over its neighbours";
 }
 
+/// Gives a metric of pixels that count, or why there is none.
+MetricValue measure_metric(const metrics::Metric& metric, const metrics::ErrorStats& stats, const Pair& pair,
+                           double pixels_per_degree) {
+  if (metric.statistic) return stats.*metric.statistic;
+  if (metric.path == "error.flip") return measure_flip(pair, pixels_per_degree);
+  return fmt::format("nothing measures {} of two pictures", metric.path);
+}
+
 void add_metrics(Comparison& result, const Pair& pair, const ComparisonOptions& options) {
   const auto stats = metrics::measure_error(pair.image.image.texels, pair.truth.image.texels,
                                             repeat(pair.mask, pair.image.image.channels));
   const std::string nothing = result.not_finite ? "no pixel is finite in both pictures" : "the mask is 0 everywhere";
   for (const metrics::Metric& metric : options.metrics) {
-    MetricValue value = nothing;
-    if (stats && metric.statistic) value = *stats.*metric.statistic;
-    if (stats && !metric.statistic) value = measure_flip(pair, options.pixels_per_degree);
+    const MetricValue value = stats ? measure_metric(metric, *stats, pair, options.pixels_per_degree) : nothing;
     const std::string name(metric.name());
     if (const auto* number = std::get_if<double>(&value))
       result.values[name] = *number;

@@ -21,6 +21,7 @@
 #include "harness/run/time_forecast.h"
 #include "harness/scene/mesh_tools.h"
 #include "reference/truth/occluders.h"
+#include "reference/truth/truth_cache.h"
 #include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"
 #include "report/files/folder_lock.h"
@@ -30,9 +31,6 @@
 
 namespace shadowbench::run {
 namespace {
-
-/// The cache may hold this much; the truths of a default run take some 15 MiB.
-constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
 
 /// A folder that cannot be written is better found before the work than after it.
 void require_writable(const std::filesystem::path& folder) { AtomicFile(folder / "cells" / "probe").write(""); }
@@ -119,7 +117,7 @@ class Experiment {
   }
 
   void finish(const RunPlan& plan, const std::vector<records::CellRecord>& replaced) {
-    cache_.prune(kMaxCacheBytes);
+    cache_.prune(truth::kMaxCacheBytes);
     steps_.begin_report();
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));

@@ -23,7 +23,7 @@ glm::vec3 normalize_or_keep_zero(const glm::dvec3& v) {
   return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
 }
 
-using Place = std::tuple<float, float, float>;
+using Position = std::tuple<float, float, float>;
 
 /// Where more faces meet, a tree sums their normals, since to compare each with each would take their square.
 constexpr std::size_t kFewFaces = 64;
@@ -60,11 +60,11 @@ struct Meeting {
 
 /// Numbers the places of a mesh's vertices, the same for vertices at the same place.
 std::vector<int> number_places(const Mesh& mesh) {
-  std::map<Place, int> numbers;
+  std::map<Position, int> numbers;
   std::vector<int> places;
   for (const Vertex& vertex : mesh.vertices) {
     const glm::vec3 p = vertex.position_ws + 0.0f;  // -0 becomes 0
-    places.push_back(numbers.emplace(Place(p.x, p.y, p.z), static_cast<int>(numbers.size())).first->second);
+    places.push_back(numbers.emplace(Position(p.x, p.y, p.z), static_cast<int>(numbers.size())).first->second);
   }
   return places;
 }
@@ -122,9 +122,9 @@ Mesh with_smooth_normals(const Mesh& mesh, double crease_deg) {
   const std::vector<FaceNormal> faces = face_normals(mesh);
   const auto position_of = [&](std::size_t corner) {
     const glm::vec3& p = mesh.vertices[mesh.indices[corner]].position_ws;
-    return Place(p.x, p.y, p.z);
+    return Position(p.x, p.y, p.z);
   };
-  std::map<Place, Meeting> meetings;
+  std::map<Position, Meeting> meetings;
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) meetings[position_of(i)].faces.push_back(i / 3);
 
   Mesh smooth = with_flat_normals(mesh);

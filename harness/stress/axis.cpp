@@ -32,14 +32,14 @@ double parse_end(const std::string& text, const std::string& range) {
   return value;
 }
 
-Range parse_ends(const std::string& ends, const std::string& range) {
+records::StressRange parse_ends(const std::string& ends, const std::string& range) {
   const std::size_t comma = ends.find(',');
   if (comma == std::string::npos)
     fail(fmt::format("--range: '{}' must be AXIS=LO,HI, as in --range esm-exponent=10,200", range));
   return {parse_end(ends.substr(0, comma), range), parse_end(ends.substr(comma + 1), range)};
 }
 
-void require_usable(Range range, const Axis& axis, const std::string& text) {
+void require_usable(records::StressRange range, const Axis& axis, const std::string& text) {
   if (range.low == range.high) fail(fmt::format("--range: '{}' is empty: the ends must differ", text));
   if (range.low > range.high)
     fail(fmt::format("--range: '{}' is reversed: write {}={},{}", text, axis.id, range.high, range.low));
@@ -76,7 +76,7 @@ void apply_range(std::vector<Axis>& axes, const std::string& text) {
   if (equals == std::string::npos)
     fail(fmt::format("--range: '{}' must be AXIS=LO,HI, as in --range esm-exponent=10,200", text));
   const Axis& known = find_axis(text.substr(0, equals), "--range");
-  const Range range = parse_ends(text.substr(equals + 1), text);
+  const records::StressRange range = parse_ends(text.substr(equals + 1), text);
   require_usable(range, known, text);
   const auto chosen = std::ranges::find(axes, known.id, &Axis::id);
   if (chosen == axes.end())

@@ -16,7 +16,6 @@
 namespace shadowbench::stress {
 
 using Exhibit = records::StressExhibit;
-using Range = records::StressRange;
 using Theory = records::StressTheory;
 using TheoryKind = records::StressTheoryKind;
 using Verdict = records::StressVerdict;
@@ -82,7 +81,7 @@ struct Case {
 /// One way to drive filters to where their numbers break. Each lives in axes/<id>.cpp as `Axis make_<id>_axis()`, where
 /// '-' in the id is written '_'. CMake finds it there, and axis_table() sets the id.
 struct Axis : records::StressAxisText {
-  Range limits;  ///< the widest that --range may ask for
+  records::StressRange limits;  ///< the widest that --range may ask for
   int coarse_samples = 25;
   bool whole = false;  ///< values are whole numbers
   SearchFrom from = SearchFrom::kLow;

@@ -17,13 +17,13 @@ constexpr double kNearlyNone = 1e-6;  // of a kernel: so much is lost where its 
 constexpr int kAcrossKernel = 31;     // receivers across an edge and a kernel: none falls on a texel's border
 
 /// A receiver's place across an edge.
-struct Place {
+struct EdgeOffset {
   double texels;  ///< from the edge
   double lit_share;
 };
 
-std::vector<Place> place_across(int radius) {
-  std::vector<Place> places;
+std::vector<EdgeOffset> place_across(int radius) {
+  std::vector<EdgeOffset> places;
   for (int i = 1; radius == 0 && i <= kBetweenTexels; ++i) {
     const double share = static_cast<double>(i) / (kBetweenTexels + 1);
     places.push_back({share - 0.5, share});
@@ -41,7 +41,7 @@ std::vector<Place> place_across(int radius) {
 }
 
 /// The share of the kernel's texels that lie right of the edge, every texel compared.
-std::vector<Place> place_across(const filters::Kernel& kernel) {
+std::vector<EdgeOffset> place_across(const filters::Kernel& kernel) {
   const double reach = kernel.half_width();
   const int middle = 2 * static_cast<int>(std::ceil(reach)) + 1;  // the farthest kernel stays inside
   SyntheticScene scene{2 * middle, make_split_depths(2 * middle, 0.0f, 1.0f), {}};
@@ -51,14 +51,14 @@ std::vector<Place> place_across(const filters::Kernel& kernel) {
     scene.receivers.push_back({static_cast<float>((middle + offsets.back()) / scene.size), scene.uv(middle), 0.5f});
   }
   const std::vector<double> shares = compare_whole_kernel(scene, kernel);
-  std::vector<Place> places;
+  std::vector<EdgeOffset> places;
   for (std::size_t i = 0; i < shares.size(); ++i)
     if (shares[i] > kNearlyNone && shares[i] < 1.0 - kNearlyNone) places.push_back({offsets[i], shares[i]});
   return places;
 }
 
-EdgeScene make_bands_of_edges(const std::vector<Place>& places, int reach_texels, const std::vector<EdgeDepths>& bands,
-                              int least_size) {
+EdgeScene make_bands_of_edges(const std::vector<EdgeOffset>& places, int reach_texels,
+                              const std::vector<EdgeDepths>& bands, int least_size) {
   const int count = static_cast<int>(bands.size());
   const int height = 2 * reach_texels + 2;  // of a band, so that no kernel leaves it
   EdgeScene edge;
@@ -66,7 +66,7 @@ EdgeScene make_bands_of_edges(const std::vector<Place>& places, int reach_texels
   edge.run = places.size();
   for (int b = 0; b < count; ++b) {
     const int middle = edge.scene.size * (2 * b + 1) / (2 * count);
-    for (const Place& place : places) {
+    for (const EdgeOffset& place : places) {
       const double x = (edge.scene.size / 2 + place.texels) / edge.scene.size;
       edge.scene.receivers.push_back({static_cast<float>(x), edge.scene.uv(middle), 0.0f});
       edge.lit_share.push_back(place.lit_share);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/stress/filter_stage.h"
+#include "harness/stress/filter_bench.h"
 
 namespace shadowbench::stress {
 namespace {

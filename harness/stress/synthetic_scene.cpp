@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "harness/stress/filter_stage.h"
+#include "harness/stress/filter_bench.h"
 
 namespace shadowbench::stress {
 namespace {
@@ -54,20 +54,20 @@ std::vector<float> make_split_depths(int size, float left, float right) {
 }
 
 SyntheticLookup make_gl_lookup(const AxisInputs& inputs, const filters::FilterRequest& request) {
-  const auto stage = std::make_shared<FilterStage>(inputs, request);
-  return [stage, seed = inputs.seed](const SyntheticScene& scene, const filters::ParamValues& values) -> LookupResult {
+  const auto bench = std::make_shared<FilterBench>(inputs, request);
+  return [bench, seed = inputs.seed](const SyntheticScene& scene, const filters::ParamValues& values) -> LookupResult {
     const scene::LightFrustum frustum = scene.frustum.value_or(make_axis_frustum(1.0, scene.size));
-    stage->resize({scene.size, static_cast<int>(scene.receivers.size())});
-    stage->map().upload(scene.depths);
-    stage->upload_receivers(scene.receivers, kFacingLight);
-    const std::vector<float> image = stage->look_up({frustum, 0.0, {}, seed, {}}, values);
-    return {{image.begin(), image.end()}, stage->count_broken_texels()};
+    bench->resize({scene.size, static_cast<int>(scene.receivers.size())});
+    bench->map().upload(scene.depths);
+    bench->upload_receivers(scene.receivers, kFacingLight);
+    const std::vector<float> image = bench->look_up({frustum, 0.0, {}, seed, {}}, values);
+    return {{image.begin(), image.end()}, bench->count_broken_texels()};
   };
 }
 
 SyntheticLookup make_model_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
                                   filters::Precision precision) {
-  const std::shared_ptr<filters::Model> model = filters::make_model(request.spec);
+  const std::shared_ptr<filters::ScalarModel> model = filters::make_model(request.spec);
   return [=, spec = request.spec, seed = inputs.seed](const SyntheticScene& scene, const filters::ParamValues& values) {
     const filters::DepthMap map{scene.size, scene.depths};
     const auto lookup = model->prepare({spec, values, map, {}, seed}, precision);

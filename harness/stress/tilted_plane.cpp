@@ -96,18 +96,18 @@ double TiltedPlane::rounding_m() const { return kRoundings * 0x1p-24 * find_dept
 
 void TiltedPlane::tilt(const PlaneTilt& tilt) {
   tilt_ = tilt;
-  stage_.resize({kPlaneMapTexels, kReceivers, kReceivers});
-  stage_.map().draw(stage_.shaders(), render::Geometry(make_plane_scene(tilt)), make_plane_frustum(tilt));
+  bench_.resize({kPlaneMapTexels, kReceivers, kReceivers});
+  bench_.map().draw(bench_.shaders(), render::Geometry(make_plane_scene(tilt)), make_plane_frustum(tilt));
   std::vector<glm::vec3> receivers;
   for (const glm::dvec2& place : place_receivers()) receivers.emplace_back(find_point(tilt, place));
-  stage_.upload_receivers(receivers, {0.0f, 1.0f, 0.0f});
+  bench_.upload_receivers(receivers, {0.0f, 1.0f, 0.0f});
 }
 
 Acne TiltedPlane::find_acne(double bias_m) {
   const scene::LightFrustum frustum = make_plane_frustum(tilt_);
   render::Bias bias;
   bias.constant_depth = bias_m / frustum.depth_range_ws;
-  return measure(stage_.look_up({frustum, 0.0, bias, seed_, {}}, stage_.request().values));
+  return measure(bench_.look_up({frustum, 0.0, bias, seed_, {}}, bench_.request().values));
 }
 
 std::optional<double> TiltedPlane::find_needed_bias(double theory_m) {

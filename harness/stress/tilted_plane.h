@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "harness/stress/filter_stage.h"
+#include "harness/stress/filter_bench.h"
 
 namespace shadowbench::stress {
 
@@ -31,7 +31,7 @@ class TiltedPlane {
  public:
   /// Requires inputs.renderer, which outlives the plane.
   TiltedPlane(const AxisInputs& inputs, filters::FilterRequest request)
-      : seed_(inputs.seed), stage_(inputs, std::move(request)) {}
+      : seed_(inputs.seed), bench_(inputs, std::move(request)) {}
 
   /// Draws the plane's map. Throws Error as render::FilterPasses and render::ShadowMap.
   void tilt(const PlaneTilt& tilt);
@@ -48,7 +48,7 @@ class TiltedPlane {
 
  private:
   std::uint32_t seed_;
-  FilterStage stage_;
+  FilterBench bench_;
   PlaneTilt tilt_;
 };
 

@@ -12,7 +12,7 @@
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
-#include "harness/tune/tune_stage.h"
+#include "harness/tune/tune_scene.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/tune_page.h"
 #include "report/pages/write_page.h"
@@ -25,7 +25,7 @@ namespace {
 constexpr double kLargestPaddingShare = 1.0 / 64.0;
 constexpr double kLeastPadding = 4.0;
 
-using StageList = std::vector<std::unique_ptr<TuneStage>>;
+using TuneSceneList = std::vector<std::unique_ptr<TuneScene>>;
 
 /// What is known of one filter between its search and its scoring.
 struct TunedFilter {
@@ -139,11 +139,11 @@ class Tuner {
     record_.unseen_views = describe_tune_views(false);
   }
 
-  std::unique_ptr<TuneStage> make_stage(const scene::Scene& scene, const std::vector<TuneView>& views) {
-    auto stage = std::make_unique<TuneStage>(renderer_, settings_, cache_, scene, views,
-                                             [this](const std::string& what) { progress_.show(done_, what); });
-    record_.notes.insert(record_.notes.end(), stage->left_out().begin(), stage->left_out().end());
-    return stage;
+  std::unique_ptr<TuneScene> make_tune_scene(const scene::Scene& scene, const std::vector<TuneView>& views) {
+    auto tune_scene = std::make_unique<TuneScene>(renderer_, settings_, cache_, scene, views,
+                                                  [this](const std::string& what) { progress_.show(done_, what); });
+    record_.notes.insert(record_.notes.end(), tune_scene->left_out().begin(), tune_scene->left_out().end());
+    return tune_scene;
   }
 
   /// Throws where a scene cannot be scored in any view of one kind: a mean over the others would not be of all scenes.
@@ -156,27 +156,27 @@ class Tuner {
   }
 
   /// Makes the training views of all scenes, and forgets the scenes that have none and may be skipped.
-  StageList make_training_stages() {
-    StageList stages;
+  TuneSceneList make_training_scenes() {
+    TuneSceneList tune_scenes;
     std::vector<scene::Scene> kept;
     for (const scene::Scene& scene : scenes_) {
-      std::unique_ptr<TuneStage> stage = make_stage(scene, select_views(true));
+      std::unique_ptr<TuneScene> tune_scene = make_tune_scene(scene, select_views(true));
       const bool last_hope = &scene == &scenes_.back() && kept.empty();
-      if (!options_.skip_scenes || last_hope) require_views(scene, stage->views().size(), "training");
-      if (stage->views().empty()) continue;
-      stages.push_back(std::move(stage));
+      if (!options_.skip_scenes || last_hope) require_views(scene, tune_scene->views().size(), "training");
+      if (tune_scene->views().empty()) continue;
+      tune_scenes.push_back(std::move(tune_scene));
       kept.push_back(scene);
       record_.scenes.push_back(scene.name);
     }
     scenes_ = std::move(kept);
-    return stages;
+    return tune_scenes;
   }
 
   void search_all() {
-    const StageList stages = make_training_stages();
+    const TuneSceneList tune_scenes = make_training_scenes();
     for (TunedFilter& filter : filters_) {
-      search(filter, stages);
-      for (const auto& stage : stages) score(filter, *stage, true);
+      search(filter, tune_scenes);
+      for (const auto& tune_scene : tune_scenes) score(filter, *tune_scene, true);
     }
   }
 
@@ -188,20 +188,21 @@ class Tuner {
   }
 
   /// The mean over all training views.
-  static double evaluate(const StageList& stages, render::FilterPasses& passes, const filters::ParamValues& values) {
+  static double evaluate(const TuneSceneList& tune_scenes, render::FilterPasses& passes,
+                         const filters::ParamValues& values) {
     std::vector<double> all;
-    for (const auto& stage : stages) {
-      const auto scores = stage->score(passes, values);
+    for (const auto& tune_scene : tune_scenes) {
+      const auto scores = tune_scene->score(passes, values);
       if (!scores) return kWorstError;
       all.insert(all.end(), scores->begin(), scores->end());
     }
     return mean(all);
   }
 
-  void search(TunedFilter& filter, const StageList& stages) {
+  void search(TunedFilter& filter, const TuneSceneList& tune_scenes) {
     const std::vector<SearchedParam> params = list_searched_params(filter.request);
     const std::vector<ParamScale> scales(params.begin(), params.end());
-    render::FilterPasses passes = stages.front()->make_passes(filter.request);
+    render::FilterPasses passes = tune_scenes.front()->make_passes(filter.request);
     const int before = done_;
     SearchSettings search;
     search.budget = options_.budget;
@@ -212,7 +213,7 @@ class Tuner {
       note_evaluation(filter.request.spec.id, params, evaluation);
     };
     const SearchResult result = search_parameters(scales, search, [&](const std::vector<double>& values) {
-      return evaluate(stages, passes, with_values(filter.request, params, values));
+      return evaluate(tune_scenes, passes, with_values(filter.request, params, values));
     });
     done_ = before + options_.budget;
     filter.found = with_values(filter.request, params, result.best);
@@ -243,27 +244,30 @@ class Tuner {
     }
   }
 
-  /// Notes what default and found parameters score in every view of a stage.
-  void score(TunedFilter& filter, TuneStage& stage, bool training) const {
-    render::FilterPasses passes = stage.make_passes(filter.request);
-    const std::vector<double> worst(stage.views().size(), kWorstError);
-    const std::vector<double> at_default = stage.score(passes, filter.request.values).value_or(worst);
-    const std::vector<double> tuned = stage.score(passes, filter.found).value_or(worst);
+  /// Notes what default and found parameters score in every view of a scene.
+  void score(TunedFilter& filter, TuneScene& tune_scene, bool training) const {
+    render::FilterPasses passes = tune_scene.make_passes(filter.request);
+    const std::vector<double> worst(tune_scene.views().size(), kWorstError);
+    const std::vector<double> at_default = tune_scene.score(passes, filter.request.values).value_or(worst);
+    const std::vector<double> tuned = tune_scene.score(passes, filter.found).value_or(worst);
     for (std::size_t i = 0; i < worst.size(); ++i) {
-      const TuneStage::View& view = stage.views()[i];
-      filter.record.views.push_back(
-          {stage.scene().name, view.camera->name, training, {at_default[i], tuned[i]}, view.truth->standard_error});
+      const TuneScene::View& view = tune_scene.views()[i];
+      filter.record.views.push_back({tune_scene.scene().name,
+                                     view.camera->name,
+                                     training,
+                                     {at_default[i], tuned[i]},
+                                     view.truth->standard_error});
     }
   }
 
-  /// One stage at a time: their truths need not stand in memory together.
+  /// One scene and light at a time: their truths need not stand in memory together.
   void score_unseen() {
     for (const scene::Scene& scene : scenes_) {
       std::size_t views = 0;
       for (const std::vector<TuneView>& group : group_by_light(select_views(false))) {
-        const std::unique_ptr<TuneStage> stage = make_stage(scene, group);
-        views += stage->views().size();
-        for (TunedFilter& filter : filters_) score(filter, *stage, false);
+        const std::unique_ptr<TuneScene> tune_scene = make_tune_scene(scene, group);
+        views += tune_scene->views().size();
+        for (TunedFilter& filter : filters_) score(filter, *tune_scene, false);
       }
       require_views(scene, views, "unseen");
     }

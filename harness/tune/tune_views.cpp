@@ -53,7 +53,7 @@ scene::Camera turn_camera(const scene::Camera& camera, const glm::vec3& pivot_ws
   return turned;
 }
 
-scene::Scene make_tune_scene(const scene::Scene& scene, const std::vector<TuneView>& views) {
+scene::Scene turn_scene(const scene::Scene& scene, const std::vector<TuneView>& views) {
   assert(!views.empty());
   scene::Scene turned = scene;
   const scene::Camera& camera = scene.cameras.front();

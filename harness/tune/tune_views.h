@@ -32,6 +32,6 @@ scene::Camera turn_camera(const scene::Camera& camera, const glm::vec3& pivot_ws
 
 /// The scene under its light turned, with one camera for each of the views, in their order, named for them.
 /// Requires that all views turn the light alike.
-scene::Scene make_tune_scene(const scene::Scene& scene, const std::vector<TuneView>& views);
+scene::Scene turn_scene(const scene::Scene& scene, const std::vector<TuneView>& views);
 
 }  // namespace shadowbench::tune

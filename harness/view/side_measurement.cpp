@@ -115,16 +115,16 @@ void SideMeasurement::start(const ViewState& state) {
   results_ = list_cells(state);
   worker_.emplace(list_arguments(state.options, folder_->path()), run::WorkerSetup{program_, kLowestPriority});
   text_ = "starting";
-  stage_ = Stage::kRunning;
+  state_ = State::kRunning;
 }
 
-SideMeasurement::Stage SideMeasurement::poll() {
+SideMeasurement::State SideMeasurement::poll() {
   if (worker_ && worker_->listen({})) end_worker();
   if (worker_) {
     if (std::string line = find_last_line(worker_->error_text()); !line.empty()) text_ = std::move(line);
   }
   if (reading_.valid() && reading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) finish_reading();
-  return stage_;
+  return state_;
 }
 
 void SideMeasurement::end_worker() {
@@ -137,7 +137,7 @@ void SideMeasurement::end_worker() {
     return;
   }
   text_ = explain(outcome);
-  stage_ = Stage::kFailed;
+  state_ = State::kFailed;
   remove_files();
 }
 
@@ -145,10 +145,10 @@ void SideMeasurement::finish_reading() {
   try {
     results_ = reading_.get();
     text_.clear();
-    stage_ = Stage::kFinished;
+    state_ = State::kFinished;
   } catch (const std::exception& error) {
     text_ = error.what();
-    stage_ = Stage::kFailed;
+    state_ = State::kFailed;
   }
   remove_files();
 }
@@ -169,7 +169,7 @@ void SideMeasurement::cancel() {
   remove_files();
   results_ = {};
   text_.clear();
-  stage_ = Stage::kIdle;
+  state_ = State::kIdle;
 }
 
 }  // namespace shadowbench::view

@@ -32,7 +32,7 @@ struct MeasuredSides {
 /// the window goes on. To be used from one thread, which must outlive the process: this ends with that thread.
 class SideMeasurement {
  public:
-  enum class Stage { kIdle, kRunning, kFailed, kFinished };
+  enum class State { kIdle, kRunning, kFailed, kFinished };
 
   /// `program` is what is started as `PROGRAM run ...`: this same program.
   explicit SideMeasurement(std::filesystem::path program = "/proc/self/exe") : program_(std::move(program)) {}
@@ -46,12 +46,12 @@ class SideMeasurement {
   void start(const ViewState& state);
 
   /// Looks how far it is; to be called once a frame. Cost: less than a millisecond; results are read by another thread.
-  Stage poll();
+  State poll();
 
   /// What it does at present, or why it failed, as the process says it.
   const std::string& text() const { return text_; }
 
-  /// What was found out. Requires Stage::kFinished.
+  /// What was found out. Requires State::kFinished.
   const MeasuredSides& results() const { return results_; }
 
   /// Kills the process with its children, and removes its files.
@@ -59,7 +59,7 @@ class SideMeasurement {
 
  private:
   std::filesystem::path program_;
-  Stage stage_ = Stage::kIdle;
+  State state_ = State::kIdle;
   std::string text_;
   MeasuredSides results_;
   std::optional<ScratchFolder> folder_;

@@ -123,7 +123,7 @@ std::string Workbench::explain_no_truth() const {
 }
 
 void Workbench::follow_measurement(double now_s) {
-  using State = SideMeasurement::Stage;
+  using State = SideMeasurement::State;
   const bool wanted = std::exchange(wants_measurement_, false);
   if (!wanted && measured_ == State::kRunning) measurement_.cancel();
   const State before = std::exchange(measured_, measurement_.poll());
@@ -141,12 +141,12 @@ void Workbench::follow_measurement(double now_s) {
 }
 
 const measure::MeasuredCell* Workbench::find_measured(std::size_t side) const {
-  return measured_ == SideMeasurement::Stage::kFinished ? measurement_.results().find_side(side) : nullptr;
+  return measured_ == SideMeasurement::State::kFinished ? measurement_.results().find_side(side) : nullptr;
 }
 
 std::string Workbench::explain_no_measurement(std::size_t side) const {
   if (state_.sides[side].truth) return "the truth is what is measured against";
-  if (measured_ == SideMeasurement::Stage::kFailed) return "cannot be measured: " + measurement_.text();
+  if (measured_ == SideMeasurement::State::kFailed) return "cannot be measured: " + measurement_.text();
   return measurement_.text().empty() ? "waits to be measured" : "is measured: " + measurement_.text();
 }
 
@@ -179,7 +179,7 @@ bool Workbench::draw() {
   was_changed_ = true;
   age_truth(changes);
   measurement_.cancel();
-  measured_ = SideMeasurement::Stage::kIdle;
+  measured_ = SideMeasurement::State::kIdle;
   try {
     stage_.draw(state_, changes);
     drawn_ = state_;

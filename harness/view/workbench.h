@@ -79,7 +79,7 @@ class Workbench {
   void say(std::string message) { message_ = std::move(message); }
 
   /// Whether work goes on beside the window, which would disturb times.
-  bool is_busy() const { return truth_is_old_ || truth_part() < 1.0 || measured_ == SideMeasurement::Stage::kRunning; }
+  bool is_busy() const { return truth_is_old_ || truth_part() < 1.0 || measured_ == SideMeasurement::State::kRunning; }
 
   /// What is traced of the truth; it starts anew when camera or light change.
   const BackgroundTruth::Shown& truth() const { return shown_truth_; }
@@ -122,7 +122,7 @@ class Workbench {
   bool truth_is_old_ = true;
   bool wants_coverage_ = false;
   SideMeasurement measurement_;
-  SideMeasurement::Stage measured_ = SideMeasurement::Stage::kIdle;
+  SideMeasurement::State measured_ = SideMeasurement::State::kIdle;
   bool wants_measurement_ = false;
   std::uint64_t drawings_ = 0;
 

@@ -12,6 +12,9 @@ namespace shadowbench::truth {
 /// What was traced for one view, as numbers of equal count for each layer.
 using Layers = std::vector<std::vector<float>>;
 
+/// What a run leaves of its cache, for prune(); the truths of a default run take some 15 MiB.
+inline constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
+
 /// Keeps what was traced between runs, one file each, named by all that the result depends on: geometry, receivers,
 /// light, settings and the code that traces. The files can be deleted at any time.
 class TruthCache {

@@ -1,3 +1,5 @@
+#include "harness/scene/lights/fit_rule.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,7 +9,6 @@
 
 #include "base/error.h"
 #include "base/split_list.h"
-#include "harness/scene/lights/light_fit.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -14,7 +14,7 @@
 
 namespace shadowbench::scene {
 
-/// The kinds of light: each has a file of its own, with the functions that light_kind.h names.
+/// The kinds of light: each has a file of its own, with the functions that every kind has.
 using LightKind = std::variant<Sun, Spot, PointLight>;
 
 /// A light's map that is not fitted to the scene: it may leave receivers outside.

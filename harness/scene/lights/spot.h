@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "harness/scene/lights/light_kind.h"
+#include "harness/scene/lights/light_parts.h"
 
 namespace shadowbench::scene {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "harness/scene/lights/light_kind.h"
+#include "harness/scene/lights/light_parts.h"
 
 namespace shadowbench::scene {
 

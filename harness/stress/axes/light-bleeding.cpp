@@ -14,7 +14,7 @@ constexpr double kBound = 0.1;  // of visibility, where truth is 0
 constexpr double kLit = 0.9;
 constexpr double kFirstGap = 0.1;  // of the depth range
 constexpr double kReceiver = 0.95;
-constexpr Range kRange{1e-4, 8.0};
+constexpr records::StressRange kRange{1e-4, 8.0};
 
 /// The visibility that a filter has by its own formula; `visibility` is null where no formula is known.
 struct ClosedForm {

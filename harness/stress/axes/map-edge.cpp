@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/stress/filter_stage.h"
+#include "harness/stress/filter_bench.h"
 #include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
@@ -17,16 +17,17 @@ constexpr std::size_t kSides = 4;
 constexpr double kEarlier = 0.25;  // texels: a receiver must not be darker than one that is so much nearer to the map
 
 /// A border, and what stands there.
-enum class Place { kFloor, kOccluders, kFarPlane, kBehindLight };
+enum class BorderKind { kFloor, kOccluders, kFarPlane, kBehindLight };
 
-constexpr Place kPlaces[] = {Place::kFloor, Place::kOccluders, Place::kFarPlane, Place::kBehindLight};
+constexpr BorderKind kBorderKinds[] = {BorderKind::kFloor, BorderKind::kOccluders, BorderKind::kFarPlane,
+                                       BorderKind::kBehindLight};
 
-const char* name_of_place(Place place) {
-  switch (place) {
-    case Place::kFloor: return "on a floor across the border";
-    case Place::kOccluders: return "beside occluders at the border";
-    case Place::kFarPlane: return "across the far plane";
-    case Place::kBehindLight: return "behind a perspective light";
+const char* name_of_border(BorderKind border) {
+  switch (border) {
+    case BorderKind::kFloor: return "on a floor across the border";
+    case BorderKind::kOccluders: return "beside occluders at the border";
+    case BorderKind::kFarPlane: return "across the far plane";
+    case BorderKind::kBehindLight: return "behind a perspective light";
   }
   return "";
 }
@@ -76,24 +77,24 @@ std::vector<glm::vec3> place_behind(double outside) {
   return receivers;
 }
 
-std::vector<glm::vec3> place(Place where, double outside) {
-  switch (where) {
-    case Place::kFloor: return place_beside(outside, kReceiver);
-    case Place::kOccluders: return place_beside(outside, kReceiver);
-    case Place::kFarPlane: return place_beyond(outside);
-    case Place::kBehindLight: return place_behind(outside);
+std::vector<glm::vec3> place(BorderKind border, double outside) {
+  switch (border) {
+    case BorderKind::kFloor: return place_beside(outside, kReceiver);
+    case BorderKind::kOccluders: return place_beside(outside, kReceiver);
+    case BorderKind::kFarPlane: return place_beyond(outside);
+    case BorderKind::kBehindLight: return place_behind(outside);
   }
   return {};
 }
 
 /// Whether receivers must be lit: where the map holds nothing that could shadow them, and on a floor, which does
 /// not shadow itself.
-bool must_be_lit(Place where, double outside, double reach) {
-  switch (where) {
-    case Place::kFloor: return true;
-    case Place::kOccluders: return outside > reach;
-    case Place::kFarPlane: return outside > 0.0;
-    case Place::kBehindLight: return outside >= 0.0;
+bool must_be_lit(BorderKind border, double outside, double reach) {
+  switch (border) {
+    case BorderKind::kFloor: return true;
+    case BorderKind::kOccluders: return outside > reach;
+    case BorderKind::kFarPlane: return outside > 0.0;
+    case BorderKind::kBehindLight: return outside >= 0.0;
   }
   return false;
 }
@@ -174,11 +175,11 @@ struct Looker {
   SyntheticLookup lookup;
   filters::FilterRequest request;
   std::shared_ptr<const WiderMap> wider;
-  Place where = Place::kFloor;
+  BorderKind border = BorderKind::kFloor;
   SyntheticScene scene = {};
 
   std::vector<double> look(double outside) {
-    scene.receivers = place(where, outside);
+    scene.receivers = place(border, outside);
     return lookup(scene, request.values).visibility;
   }
 
@@ -186,8 +187,8 @@ struct Looker {
     const std::vector<double> seen = look(outside);
     if (const auto not_finite = judge_not_finite(seen)) return *not_finite;
     const double reach = filters::radius_texels(request.spec, request.values) + 1.0;
-    if (must_be_lit(where, outside, reach)) return judge_line(1.0 - *std::ranges::min_element(seen), "too dark");
-    if (where != Place::kOccluders) return {};
+    if (must_be_lit(border, outside, reach)) return judge_line(1.0 - *std::ranges::min_element(seen), "too dark");
+    if (border != BorderKind::kOccluders) return {};
     // Beyond the last texels' centres a bilinear read takes the border itself, not what the blur made of it.
     const bool reads_texels = outside <= -0.5;
     const Observation blurred =
@@ -205,12 +206,12 @@ struct Looker {
   }
 };
 
-Looker make_looker(Looker looker, Place where) {
-  looker.where = where;
+Looker make_looker(Looker looker, BorderKind border) {
+  looker.border = border;
   looker.scene.size = kMapSize;
   looker.scene.depths.assign(static_cast<std::size_t>(kMapSize) * kMapSize,
-                             where == Place::kFloor ? kReceiver : kOccluder);
-  if (where == Place::kBehindLight) looker.scene.frustum = make_perspective();
+                             border == BorderKind::kFloor ? kReceiver : kOccluder);
+  if (border == BorderKind::kBehindLight) looker.scene.frustum = make_perspective();
   return looker;
 }
 
@@ -218,7 +219,7 @@ Observation observe_all(std::vector<Looker>& lookers, double outside) {
   Observation worst{Verdict::kOk, 0.0, {}};
   for (Looker& looker : lookers) {
     Observation seen = looker.observe(outside);
-    if (!seen.why.empty()) seen.why += fmt::format(", {}", name_of_place(looker.where));
+    if (!seen.why.empty()) seen.why += fmt::format(", {}", name_of_border(looker.border));
     worst = worse(worst, seen);
   }
   return worst;
@@ -238,8 +239,9 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request) 
   const SyntheticLookup orthographic = make_gl_lookup(inputs, request), perspective = make_gl_lookup(inputs, request);
   std::vector<Looker> lookers;
   const auto wider = std::make_shared<const WiderMap>(inputs, request);
-  for (const Place where : kPlaces)
-    lookers.push_back(make_looker({where == Place::kBehindLight ? perspective : orthographic, request, wider}, where));
+  for (const BorderKind border : kBorderKinds)
+    lookers.push_back(
+        make_looker({border == BorderKind::kBehindLight ? perspective : orthographic, request, wider}, border));
   item.observe = [lookers](double outside) mutable { return observe_all(lookers, outside); };
   return item;
 }

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "harness/stress/filter_stage.h"
+#include "harness/stress/filter_bench.h"
 #include "harness/stress/synthetic_scene.h"
 #include "report/records/text_table.h"
 
@@ -91,11 +91,11 @@ std::string look_once(const AxisInputs& inputs, int size) {
   scene::LightFrustum frustum = make_axis_frustum(2.0, size);  // clip space is the world
   frustum.uv_depth_from_world = {
       {0.5f, 0.0f, 0.0f, 0.0f}, {0.0f, 0.5f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f, 0.0f}, {0.5f, 0.5f, 0.0f, 1.0f}};
-  FilterStage stage(inputs, catalogue.parse_requests("none").front());
-  stage.resize({size, 2});
-  stage.map().draw(stage.shaders(), render::Geometry(square), frustum);
-  stage.upload_receivers({{-0.45f, -0.45f, kReceiver}, {0.5f, 0.5f, kReceiver}}, {0.0f, 0.0f, -1.0f});
-  const std::vector<float> seen = stage.look_up({frustum, 0.0, {}, inputs.seed, {}}, stage.request().values);
+  FilterBench bench(inputs, catalogue.parse_requests("none").front());
+  bench.resize({size, 2});
+  bench.map().draw(bench.shaders(), render::Geometry(square), frustum);
+  bench.upload_receivers({{-0.45f, -0.45f, kReceiver}, {0.5f, 0.5f, kReceiver}}, {0.0f, 0.0f, -1.0f});
+  const std::vector<float> seen = bench.look_up({frustum, 0.0, {}, inputs.seed, {}}, bench.request().values);
   return seen[0] == 0.0f && seen[1] == 1.0f
              ? "ok: dark behind an occluder, lit beside it"
              : fmt::format("wrong: {} behind an occluder, {} beside it", seen[0], seen[1]);

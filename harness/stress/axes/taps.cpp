@@ -9,7 +9,7 @@
 namespace shadowbench::stress {
 namespace taps {
 
-constexpr Range kRange{1.0, 128.0};
+constexpr records::StressRange kRange{1.0, 128.0};
 
 /// Lists the parameter that counts the points of a filter's disk; nothing where it has no disk.
 std::vector<filters::ParamSpec> list_count_params(const filters::FilterRequest& request) {

@@ -166,7 +166,7 @@ FootprintFinder::Prepared* FootprintFinder::prepare(std::size_t side, int layer)
   if (prepared) return prepared.get();
   const filters::FilterRequest& request = bench_.stage().passes(side)->request();
   const bool reads_depth = !request.spec.has_encode && request.spec.passes.empty();
-  std::unique_ptr<filters::Model> model = reads_depth ? filters::make_model(request.spec) : nullptr;
+  std::unique_ptr<filters::ScalarModel> model = reads_depth ? filters::make_model(request.spec) : nullptr;
   if (!model) return nullptr;
   prepared = std::make_unique<Prepared>(Prepared{request, map.read(layer), std::move(model), nullptr});
   const ViewState& state = bench_.state();

@@ -42,7 +42,7 @@ class FootprintFinder {
   struct Prepared {
     filters::FilterRequest request;
     filters::DepthMap map;
-    std::unique_ptr<filters::Model> model;
+    std::unique_ptr<filters::ScalarModel> model;
     std::unique_ptr<filters::Lookup> lookup;
   };
 

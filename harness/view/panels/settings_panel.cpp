@@ -24,8 +24,8 @@ std::size_t find_index(const std::vector<std::string>& names, const std::string&
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()) % names.size();
 }
 
-/// The range of a mode's amount, by the unit that it is given in.
-Widgets::Range bias_range(const std::string& key) {
+/// The limits of a mode's amount, by the unit that it is given in.
+Widgets::SliderLimits bias_limits(const std::string& key) {
   if (key == "depth") return {.min = 1e-6, .max = 0.1, .logarithmic = true, .unit = key};
   return {.max = 10.0, .unit = key};
 }
@@ -173,9 +173,9 @@ void SettingsPanel::show_bias() {
   const bool has_amount = mode != render::swept_modes().end() && !mode->key.empty();
   bool changed = other;
   if (has_amount) {
-    const Widgets::Range range = bias_range(mode->key);
-    if (other) bias_amount_ = range.logarithmic ? 1e-3 : 1.0;
-    changed |= widgets_.slide("bias.amount", mode->key, range, bias_amount_, mode->meaning);
+    const Widgets::SliderLimits limits = bias_limits(mode->key);
+    if (other) bias_amount_ = limits.logarithmic ? 1e-3 : 1.0;
+    changed |= widgets_.slide("bias.amount", mode->key, limits, bias_amount_, mode->meaning);
   }
   if (!changed) return;
   std::vector<std::string> wanted;

@@ -19,10 +19,10 @@ std::string label_of(const std::string& name, const std::string& label) { return
 void begin_widget() { ImGui::SetNextItemWidth(kWidgetWidth * ImGui::GetContentRegionAvail().x); }
 
 /// A unit as a format shows it: a percent sign would begin a number.
-std::string format_of(const Widgets::Range& range) {
-  std::string unit = range.unit.empty() ? "" : " " + range.unit;
+std::string format_of(const Widgets::SliderLimits& limits) {
+  std::string unit = limits.unit.empty() ? "" : " " + limits.unit;
   for (std::size_t i = unit.find('%'); i != std::string::npos; i = unit.find('%', i + 2)) unit.insert(i, "%");
-  return (range.integer ? "%.0f" : "%.4g") + unit;
+  return (limits.integer ? "%.0f" : "%.4g") + unit;
 }
 
 std::string describe(const filters::ParamSpec& spec) {
@@ -78,16 +78,16 @@ bool Widgets::choose(const std::string& name, const std::string& label, const st
   return changed;
 }
 
-bool Widgets::slide(const std::string& name, const std::string& label, const Range& range, double& value,
+bool Widgets::slide(const std::string& name, const std::string& label, const SliderLimits& limits, double& value,
                     const std::string& help) {
   double shown = value;
   ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
-  if (range.logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
+  if (limits.logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
   begin_widget();
-  bool changed = ImGui::SliderScalar(label_of(name, label).c_str(), ImGuiDataType_Double, &shown, &range.min,
-                                     &range.max, format_of(range).c_str(), flags);
+  bool changed = ImGui::SliderScalar(label_of(name, label).c_str(), ImGuiDataType_Double, &shown, &limits.min,
+                                     &limits.max, format_of(limits).c_str(), flags);
   finish(name, help);
-  if (range.integer) shown = std::round(shown);
+  if (limits.integer) shown = std::round(shown);
   changed = changed && shown != value;
   value = shown;
   return changed;

@@ -19,7 +19,7 @@ class Widgets {
   bool choose(const std::string& name, const std::string& label, const std::vector<std::string>& choices,
               std::size_t& chosen, const std::string& help = {});
 
-  struct Range {
+  struct SliderLimits {
     double min = 0.0;
     double max = 1.0;
     bool logarithmic = false;
@@ -27,8 +27,8 @@ class Widgets {
     std::string unit = {};
   };
 
-  /// A number within a range; one typed in (Ctrl and a click) stays within it.
-  bool slide(const std::string& name, const std::string& label, const Range& range, double& value,
+  /// A number within limits; one typed in (Ctrl and a click) stays within them.
+  bool slide(const std::string& name, const std::string& label, const SliderLimits& limits, double& value,
              const std::string& help = {});
 
   /// Any number.

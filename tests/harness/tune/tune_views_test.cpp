@@ -77,7 +77,7 @@ TEST(FindPivot, WithTheSceneBehindTheCamera_IsItsMiddle) {
 TEST(MakeTuneScene, TurnsTheLightInAzimuth_AndNamesItsCameras) {
   scene::Scene scene = load_scene("cubes");
   scene.light.kind = scene::Sun{glm::vec3(scene::light_direction(70.0, 40.0))};
-  const scene::Scene turned = make_tune_scene(scene, {{10.0, 15.0, false}, {0.0, 15.0, false}});
+  const scene::Scene turned = turn_scene(scene, {{10.0, 15.0, false}, {0.0, 15.0, false}});
   expect_near(-scene::to_light(turned.light, {}), glm::vec3(scene::light_direction(85.0, 40.0)));
   ASSERT_EQ(turned.cameras.size(), 2u);
   EXPECT_EQ(turned.cameras[0].name, "camera +10 light +15");
@@ -88,7 +88,7 @@ TEST(MakeTuneScene, TurnsTheLightInAzimuth_AndNamesItsCameras) {
 /// The view as it is, is the scene's own to the bit: its truth is that of 'run'.
 TEST(MakeTuneScene, WithoutATurn_ChangesNothing) {
   const scene::Scene scene = load_scene("fence");
-  const scene::Scene same = make_tune_scene(scene, {{0.0, 0.0, true}});
+  const scene::Scene same = turn_scene(scene, {{0.0, 0.0, true}});
   EXPECT_EQ(same.cameras.front().position_ws, scene.cameras.front().position_ws);
   EXPECT_EQ(same.cameras.front().forward_ws, scene.cameras.front().forward_ws);
   EXPECT_EQ(scene::to_light(same.light, {}), scene::to_light(scene.light, {}));

@@ -16,7 +16,7 @@ namespace shadowbench::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Stage = view::SideMeasurement::Stage;
+using State = view::SideMeasurement::State;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -55,15 +55,15 @@ class SideMeasurementTest : public ViewTest {
   }
 
   /// Waits for the end of what runs, two minutes at most; what it says meanwhile is noted.
-  Stage finish(view::SideMeasurement& measurement, std::vector<std::string>* said = nullptr) const {
+  State finish(view::SideMeasurement& measurement, std::vector<std::string>* said = nullptr) const {
     for (int i = 0; i < 12000; ++i) {
-      const Stage stage = measurement.poll();
-      if (stage != Stage::kRunning) return stage;
+      const State now = measurement.poll();
+      if (now != State::kRunning) return now;
       if (said != nullptr && (said->empty() || said->back() != measurement.text())) said->push_back(measurement.text());
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     ADD_FAILURE() << measurement.text();
-    return Stage::kRunning;
+    return State::kRunning;
   }
 
   /// Processes that were told of a file in the test's folder.
@@ -112,10 +112,10 @@ class SideMeasurementTest : public ViewTest {
 TEST_F(SideMeasurementTest, Finished_HasBothSides_WithPartsThatAddUpToTheError) {
   const view::ViewState state = make_state("cubes", "vsm:radius=6", "tent3x3");
   view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-  EXPECT_EQ(measurement.poll(), Stage::kIdle);
+  EXPECT_EQ(measurement.poll(), State::kIdle);
   measurement.start(state);
   std::vector<std::string> said;
-  ASSERT_EQ(finish(measurement, &said), Stage::kFinished) << measurement.text();
+  ASSERT_EQ(finish(measurement, &said), State::kFinished) << measurement.text();
   EXPECT_THAT(said, testing::Contains(HasSubstr("attribution of tent3x3")));
   const view::MeasuredSides& sides = measurement.results();
   for (std::size_t side = 0; side < view::kSides; ++side) {
@@ -141,19 +141,19 @@ TEST_F(SideMeasurementTest, StartedTwice_MeasuresTheSecond_WhateverTheFirstWasDo
   });
   view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
   measurement.start(first);
-  ASSERT_TRUE(wait_until([&] { return measurement.poll() != Stage::kRunning || measurement.text() != "starting"; }));
+  ASSERT_TRUE(wait_until([&] { return measurement.poll() != State::kRunning || measurement.text() != "starting"; }));
   measurement.start(second);
   ASSERT_TRUE(wait_until([&] { return !list_processes().empty(); }));
   EXPECT_EQ(list_processes().size(), 1u) << "the first is gone";
   EXPECT_EQ(getpriority(PRIO_PROCESS, static_cast<id_t>(std::stoi(list_processes().at(0)))), 19);
-  ASSERT_EQ(finish(measurement), Stage::kFinished) << measurement.text();
+  ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
   const view::MeasuredSides& sides = measurement.results();
   EXPECT_EQ(sides.find_side(0), nullptr) << "it shows the truth";
   ASSERT_NE(sides.find_side(1), nullptr);
   EXPECT_EQ(count_different(sides.find_side(1)->visibility, draw(second, 1)), 0u);
   expect_sum(sides, *sides.find_side(1));
   measurement.start(first);
-  ASSERT_EQ(finish(measurement), Stage::kFinished) << measurement.text();
+  ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
   EXPECT_EQ(count_different(measurement.results().find_side(0)->visibility, draw(first, 0)), 0u);
 }
 
@@ -165,7 +165,7 @@ TEST_F(SideMeasurementTest, NothingThatFacesTheLight_LeavesFieldsAbsentWithReaso
   });
   view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
   measurement.start(state);
-  ASSERT_EQ(finish(measurement), Stage::kFinished) << measurement.text();
+  ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
   const measure::MeasuredCell& cell = *measurement.results().find_side(0);
   EXPECT_FALSE(cell.record.error.rmse.has_value());
   EXPECT_FALSE(cell.record.absent.at("error").empty());
@@ -178,19 +178,19 @@ TEST_F(SideMeasurementTest, FilterWithBrokenGlsl_FailsWithItsFileAndLine) {
   change(state, [&](view::ViewSettings& settings) { settings.sides[0].filter = request("broken_glsl", file); });
   view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
   measurement.start(state);
-  EXPECT_EQ(finish(measurement), Stage::kFailed);
+  EXPECT_EQ(finish(measurement), State::kFailed);
   EXPECT_THAT(measurement.text(), HasSubstr("broken_glsl.glsl:"));
   EXPECT_THAT(measurement.text(), testing::Not(HasSubstr("\n0.0 %"))) << "nothing of what it said before";
   expect_nothing_left();
   change(state, [&](view::ViewSettings& settings) { settings.sides[0].filter = request("none"); });
   measurement.start(state);
-  EXPECT_EQ(finish(measurement), Stage::kFinished) << measurement.text();
+  EXPECT_EQ(finish(measurement), State::kFinished) << measurement.text();
 }
 
 TEST_F(SideMeasurementTest, ProgramThatIsNotThere_Fails) {
   view::SideMeasurement measurement(folder() / "none");
   measurement.start(make_state("cubes", "none", "tent3x3"));
-  EXPECT_EQ(finish(measurement), Stage::kFailed);
+  EXPECT_EQ(finish(measurement), State::kFailed);
   EXPECT_THAT(measurement.text(), HasSubstr("cannot be started"));
 }
 
@@ -205,7 +205,7 @@ TEST_F(SideMeasurementTest, Cancelled_IsKilledWithItsChildren_WithinATenthOfASec
     measurement.cancel();
     fastest_ms = std::min(fastest_ms, now_ms() - begin_ms);
     EXPECT_THAT(list_processes("/measured.toml"), IsEmpty()) << "the run itself, at once";
-    EXPECT_EQ(measurement.poll(), Stage::kIdle);
+    EXPECT_EQ(measurement.poll(), State::kIdle);
     expect_nothing_left();
   }
   std::printf("cancelled within %.1f ms\n", fastest_ms);
@@ -217,9 +217,9 @@ TEST_F(SideMeasurementTest, CancelledWhileResultsAreRead_WaitsForNoMoreThanOneIm
   change(state, [](view::ViewSettings& settings) { settings.options.width = 960, settings.options.height = 540; });
   view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
   measurement.start(state);
-  while (measurement.poll() == Stage::kRunning && measurement.text() != "reading the results")
+  while (measurement.poll() == State::kRunning && measurement.text() != "reading the results")
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  ASSERT_EQ(measurement.poll(), Stage::kRunning) << measurement.text();
+  ASSERT_EQ(measurement.poll(), State::kRunning) << measurement.text();
   const double begin_ms = now_ms();
   measurement.cancel();
   const double ms = now_ms() - begin_ms;
@@ -238,12 +238,12 @@ TEST_F(SideMeasurementTest, NeitherStartNorPoll_HoldsUpTheWindow) {
     times_ms.push_back(now_ms() - begin_ms);
   };
   time([&] { measurement.start(state); });
-  Stage stage = Stage::kRunning;
-  while (stage == Stage::kRunning) {
+  State now = State::kRunning;
+  while (now == State::kRunning) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    time([&] { stage = measurement.poll(); });
+    time([&] { now = measurement.poll(); });
   }
-  ASSERT_EQ(stage, Stage::kFinished) << measurement.text();
+  ASSERT_EQ(now, State::kFinished) << measurement.text();
   for (std::size_t side = 0; side < view::kSides; ++side)
     EXPECT_EQ(count_different(measurement.results().find_side(side)->visibility, draw(state, side)), 0u) << side;
   std::printf("start %.2f ms, ", times_ms.front());

@@ -1,20 +1,20 @@
-#include "harness/stress/filter_stage.h"
+#include "harness/stress/filter_bench.h"
 
 #include "harness/measure/map_limits.h"
 
 namespace shadowbench::stress {
 
-FilterStage::FilterStage(const AxisInputs& inputs, filters::FilterRequest request)
+FilterBench::FilterBench(const AxisInputs& inputs, filters::FilterRequest request)
     : shaders_(inputs.renderer->shaders), request_(std::move(request)) {}
 
-void FilterStage::resize(const StageSize& size) {
+void FilterBench::resize(const BenchSize& size) {
   if (surfaces_ && size == size_) return;
   if (size.map != size_.map) passes_.reset();
   surfaces_.emplace(size);
   size_ = size;
 }
 
-void FilterStage::upload_receivers(const std::vector<glm::vec3>& positions_ws, const glm::vec3& normal_ws) {
+void FilterBench::upload_receivers(const std::vector<glm::vec3>& positions_ws, const glm::vec3& normal_ws) {
   std::vector<float> positions, normals;
   for (const glm::vec3& p : positions_ws) {
     positions.insert(positions.end(), {p.x, p.y, p.z, 1.0f});  // a view depth of 1 marks a surface
@@ -23,7 +23,7 @@ void FilterStage::upload_receivers(const std::vector<glm::vec3>& positions_ws, c
   surfaces_->gbuffer.upload(positions, normals);
 }
 
-std::vector<float> FilterStage::look_up(const render::LightSetup& light, const filters::ParamValues& values) {
+std::vector<float> FilterBench::look_up(const render::LightSetup& light, const filters::ParamValues& values) {
   request_.values = values;
   if (passes_)
     passes_->retune(shaders_, values, light);
@@ -34,7 +34,7 @@ std::vector<float> FilterStage::look_up(const render::LightSetup& light, const f
   return surfaces_->target.texture().read_floats(1);
 }
 
-std::int64_t FilterStage::count_broken_texels() { return measure::count_broken_texels(*passes_, surfaces_->map); }
+std::int64_t FilterBench::count_broken_texels() { return measure::count_broken_texels(*passes_, surfaces_->map); }
 
 scene::LightFrustum make_axis_frustum(double width_ws, int map_texels) {
   scene::LightFrustum frustum;

@@ -1,4 +1,4 @@
-#include "harness/tune/tune_stage.h"
+#include "harness/tune/tune_scene.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,7 +42,7 @@ double score_statistic(const TuneMetric& metric, images::Image visibility, const
   return stats ? (*stats).*metric.statistic : kWorstError;
 }
 
-double score_shot(const TuneMetric& metric, const Shot& shot, const TuneStage::View& view) {
+double score_shot(const TuneMetric& metric, const Shot& shot, const TuneScene::View& view) {
   const metrics::ArtefactLimits& limits = metrics::kArtefactLimits;
   const std::vector<float>& image = shot.visibility.texels;
   switch (metric.kind) {
@@ -76,12 +76,12 @@ std::vector<std::string> list_tune_metrics() {
   return names;
 }
 
-TuneStage::TuneStage(measure::Renderer& renderer, const TuneSettings& settings, truth::TruthCache& cache,
+TuneScene::TuneScene(measure::Renderer& renderer, const TuneSettings& settings, truth::TruthCache& cache,
                      const scene::Scene& scene, const std::vector<TuneView>& views,
                      const std::function<void(const std::string&)>& on_view)
     : renderer_(renderer),
       settings_(settings),
-      scene_(make_tune_scene(scene, views)),
+      scene_(turn_scene(scene, views)),
       assets_(renderer, *settings.options, scene_, cache, settings.pad_texels),
       target_("visibility", GL_R32F, settings.options->width, settings.options->height) {
   light_ = &assets_.light_map(scene_.cameras.front(), settings.options->map_sizes.front());
@@ -102,7 +102,7 @@ TuneStage::TuneStage(measure::Renderer& renderer, const TuneSettings& settings, 
   }
 }
 
-std::string TuneStage::explain_absent(const View& view) const {
+std::string TuneScene::explain_absent(const View& view) const {
   if (!view.masks) return view.truth->absent;
   const bool acne = settings_.metric->kind == TuneMetricKind::kAcne;
   const std::vector<std::uint8_t>& mask = acne ? view.masks->acne : view.masks->leak;
@@ -112,15 +112,15 @@ std::string TuneStage::explain_absent(const View& view) const {
                      acne ? "lit" : "blocked", settings_.metric->name, metrics::kFewestReceivers);
 }
 
-render::LightLayers TuneStage::make_light(const filters::FilterRequest& request) const {
+render::LightLayers TuneScene::make_light(const filters::FilterRequest& request) const {
   return measure::make_filter_light(*settings_.options, scene_.light, light_->layers, request);
 }
 
-render::FilterPasses TuneStage::make_passes(const filters::FilterRequest& request) {
+render::FilterPasses TuneScene::make_passes(const filters::FilterRequest& request) {
   return render::FilterPasses(renderer_.shaders, request, light_->map, make_light(request));
 }
 
-std::optional<std::vector<double>> TuneStage::score(render::FilterPasses& passes, const filters::ParamValues& values) {
+std::optional<std::vector<double>> TuneScene::score(render::FilterPasses& passes, const filters::ParamValues& values) {
   filters::FilterRequest request = passes.request();
   request.values = values;
   passes.retune(renderer_.shaders, values, make_light(request));

@@ -1,4 +1,4 @@
-#include "harness/measure/timing/light_timing.h"
+#include "harness/measure/timing/many_lights_timing.h"
 #include "harness/scene/lights/light.h"
 #include "reference/truth/truth_cache.h"
 #include "tests/harness/render/bench_fixture.h"

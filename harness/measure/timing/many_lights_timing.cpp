@@ -1,4 +1,4 @@
-#include "harness/measure/timing/light_timing.h"
+#include "harness/measure/timing/many_lights_timing.h"
 
 #include <map>
 

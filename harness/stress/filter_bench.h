@@ -10,22 +10,22 @@
 namespace shadowbench::stress {
 
 /// Sizes of what a filter reads and writes.
-struct StageSize {
+struct BenchSize {
   int map = 0;  ///< texels per side
   int width = 0;
   int height = 1;
-  bool operator==(const StageSize&) const = default;
+  bool operator==(const BenchSize&) const = default;
 };
 
 /// One filter with the shadow map that it reads, the G-buffer of its receivers and the picture that it writes.
-class FilterStage {
+class FilterBench {
  public:
-  /// Requires inputs.renderer, which outlives the stage. Nothing is compiled or allocated before resize().
-  FilterStage(const AxisInputs& inputs, filters::FilterRequest request);
+  /// Requires inputs.renderer, which outlives the bench. Nothing is compiled or allocated before resize().
+  FilterBench(const AxisInputs& inputs, filters::FilterRequest request);
 
   /// Allocates map, G-buffer and picture; keeps those that have this size.
   /// Throws Error as render::ShadowMap.
-  void resize(const StageSize& size);
+  void resize(const BenchSize& size);
 
   render::ShadowMap& map() { return surfaces_->map; }
   render::GBuffer& gbuffer() { return surfaces_->gbuffer; }
@@ -44,7 +44,7 @@ class FilterStage {
 
  private:
   struct Surfaces {
-    explicit Surfaces(const StageSize& size)
+    explicit Surfaces(const BenchSize& size)
         : map(size.map),
           gbuffer(size.width, size.height),
           target("stress visibility", GL_R32F, size.width, size.height) {}
@@ -55,7 +55,7 @@ class FilterStage {
 
   render::ShaderLibrary& shaders_;
   filters::FilterRequest request_;
-  StageSize size_;
+  BenchSize size_;
   std::optional<Surfaces> surfaces_;
   std::optional<render::FilterPasses> passes_;
 };

@@ -1,4 +1,4 @@
-#include "reference/metrics/stability.h"
+#include "reference/metrics/map_stability.h"
 
 #include <gmock/gmock.h>
 

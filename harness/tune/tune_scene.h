@@ -44,14 +44,14 @@ struct TuneSettings {
 
 /// One scene under one light with some of its views, ready to score any setting of any filter. Draws the map and the
 /// views and traces their truth once; scoring draws the prefilter once and one lookup for each view, and times nothing.
-class TuneStage {
+class TuneScene {
  public:
   /// `on_view` hears of each view before it is traced. All but the scene must outlive this object.
-  TuneStage(measure::Renderer& renderer, const TuneSettings& settings, truth::TruthCache& cache,
+  TuneScene(measure::Renderer& renderer, const TuneSettings& settings, truth::TruthCache& cache,
             const scene::Scene& scene, const std::vector<TuneView>& views,
             const std::function<void(const std::string&)>& on_view);
-  TuneStage(const TuneStage&) = delete;
-  TuneStage& operator=(const TuneStage&) = delete;
+  TuneScene(const TuneScene&) = delete;
+  TuneScene& operator=(const TuneScene&) = delete;
 
   /// A view that the metric can be measured in.
   struct View {
@@ -66,7 +66,7 @@ class TuneStage {
 
   const scene::Scene& scene() const { return scene_; }
 
-  /// Compiles a filter, to be scored by this and all other stages of the same settings.
+  /// Compiles a filter, to be scored by this and all others of the same settings.
   render::FilterPasses make_passes(const filters::FilterRequest& request);
 
   /// Scores values of the filter's parameters in every view, in the order of views(). Gives nothing where the values
