@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/map_traffic.h"
 #include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"
 #include "report/records/absence.h"
@@ -166,16 +165,10 @@ ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const
   return made;
 }
 
-ModelImages CellAnalyser::evaluate(MeasuredCell& cell) {
+ModelImages CellAnalyser::evaluate(const MeasuredCell& cell) const {
   std::vector<ModelLayer> layers;
   for (const scene::LightFrustum& layer : light_.layers) layers.push_back(read_layer(cell.request, layer));
   const ModelView view{options_.width, options_.height, options_.seed, options_.bias.plane_max_tangent()};
-  std::vector<CacheShape> caches;
-  for (const gpu::Gpu& gpu : options_.gpus)
-    caches.push_back({.bytes = static_cast<std::int64_t>(gpu.cache_mib.value * 1024.0 * 1024.0),
-                      .line_bytes = static_cast<int>(gpu.line_bytes.value)});
-  if (!caches.empty())
-    cell.fetched_bytes = count_map_traffic(cell.request, layers, view, caches).value_or(std::vector<double>());
   return evaluate_model(cell.request, layers, view);
 }
 

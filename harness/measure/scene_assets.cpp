@@ -120,8 +120,12 @@ render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
   const auto found = gbuffers_.find(&camera);
   if (found != gbuffers_.end()) return found->second;
   render::GBuffer& kept = gbuffers_.try_emplace(&camera, options_.width, options_.height).first->second;
-  kept.draw(renderer_.shaders, geometry_, scene_, camera);
+  draw_view(kept, camera);
   return kept;
+}
+
+void SceneAssets::draw_view(render::GBuffer& gbuffer, const scene::Camera& camera) {
+  gbuffer.draw(renderer_.shaders, geometry_, scene_, camera);
 }
 
 const SceneTruth& SceneAssets::truth(const scene::Camera& camera) {

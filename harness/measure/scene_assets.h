@@ -54,6 +54,9 @@ class SceneAssets {
 
   render::GBuffer& gbuffer(const scene::Camera& camera);
 
+  /// Draws a view's receivers into a G-buffer of another size.
+  void draw_view(render::GBuffer& gbuffer, const scene::Camera& camera);
+
   /// The truth of a view, traced when it is first asked for.
   const SceneTruth& truth(const scene::Camera& camera);
 

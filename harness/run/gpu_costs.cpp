@@ -54,7 +54,11 @@ void GpuCosts::add_to(std::vector<measure::MeasuredCell>& cells) {
       if (cell.passes.empty()) continue;
       if (!cell.record.gpu) cell.record.gpu.emplace();
       records::GpuRecord& record = (*cell.record.gpu)[gpu.name] = make_record(gpu, cell);
-      if (!record.refused.empty()) cell.record.absent["gpu." + gpu.name] = record.refused;
+      if (!record.refused.empty())
+        cell.record.absent["gpu." + gpu.name] = record.refused;
+      else if (!record.estimate)
+        cell.record.absent["gpu." + gpu.name + ".estimate_us"] =
+            "the filter has no scalar model, so that what its reads bring from memory is not known";
     }
   }
   if (!options_.gpus.empty()) return;
@@ -166,7 +170,7 @@ records::GpuRecord GpuCosts::make_record(const gpu::Gpu& gpu, const measure::Mea
   work.reads = find_reads(cell.cost, work.lookup, work.empty);
   const auto place = std::ranges::find(options_.gpus, gpu.name, &gpu::Gpu::name) - options_.gpus.begin();
   if (!cell.fetched_bytes.empty()) work.memory_bytes = cell.fetched_bytes[static_cast<std::size_t>(place)];
-  record.estimate = gpu::estimate(gpu, work);
+  if (work.memory_bytes) record.estimate = gpu::estimate(gpu, work);
   return record;
 }
 

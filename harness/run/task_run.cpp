@@ -14,6 +14,7 @@
 #include "harness/measure/layer_truth.h"
 #include "harness/measure/map_coverage.h"
 #include "harness/measure/suspects.h"
+#include "harness/measure/traffic_meter.h"
 #include "harness/render/shade_pass.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
@@ -84,6 +85,7 @@ class TaskRun {
   options::StepListener steps_;
   std::optional<measure::CellAnalyser> analyser_;
   std::optional<measure::MapCoverage> coverage_;
+  std::optional<measure::TrafficMeter> traffic_;
 
   measure::SceneTask task_of(const Requests& requests) const {
     return {task_.scene, task_.camera, task_.map_size, requests};
@@ -106,6 +108,7 @@ class TaskRun {
     if (!options_.part.is_worker()) {
       score(measured);
       measure_coverage(measured);
+      count_traffic(measured);
     }
     begin(options::Work::kPictures, measured.cells.size(), "pictures");
     bench_.gpus.add_to(measured.cells);
@@ -175,6 +178,13 @@ class TaskRun {
       cell.record.coverage = coverage_->record;
       if (!coverage_->record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
     }
+  }
+
+  /// Counts what estimates of GPUs need of the map's reads.
+  void count_traffic(measure::SceneMeasurement& measured) {
+    if (options_.gpus.empty()) return;
+    if (!traffic_) traffic_.emplace(renderer_, options_, task_, assets_);
+    for (measure::MeasuredCell& cell : measured.cells) traffic_->measure(cell);
   }
 
   void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {

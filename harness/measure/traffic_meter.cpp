@@ -1,0 +1,44 @@
+#include "harness/measure/traffic_meter.h"
+
+#include <cmath>
+
+namespace shadowbench::measure {
+namespace {
+
+int count_columns(const options::RunOptions& options) {
+  return static_cast<int>(std::lround(static_cast<double>(kCountedRows) * options.width / options.height));
+}
+
+}  // namespace
+
+TrafficMeter::TrafficMeter(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
+                           SceneAssets& assets)
+    : renderer_(renderer),
+      options_(options),
+      task_(task),
+      light_(assets.light_map(*task.camera, task.map_size)),
+      gbuffer_(count_columns(options), kCountedRows) {
+  assets.draw_view(gbuffer_, *task.camera);
+  for (const gpu::Gpu& gpu : options_.gpus)
+    caches_.push_back({.bytes = static_cast<std::int64_t>(gpu.cache_mib.value * 1024.0 * 1024.0),
+                       .line_bytes = static_cast<int>(gpu.line_bytes.value)});
+  for (const scene::LightFrustum& layer : light_.layers) layers_.push_back({light_.map.read(layer.layer), {}, {}});
+}
+
+void TrafficMeter::measure(MeasuredCell& cell) {
+  if (cell.visibility.empty() || !filters::make_model(cell.request.spec)) return;
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    const scene::LightFrustum& layer = light_.layers[i];
+    const render::Bias bias = render::resolve_bias(options_.bias, layer, cell.request.spec, cell.request.values);
+    layers_[i].filter = render::read_receivers(
+        renderer_.shaders, gbuffer_,
+        render::make_light_setup(layer, task_.scene->light, bias, options_.seed, options_.range));
+  }
+  const ModelView view{gbuffer_.width(), gbuffer_.height(), options_.seed, options_.bias.plane_max_tangent()};
+  auto bytes = count_map_traffic(cell.request, layers_, view, caches_);
+  if (!bytes) return;
+  for (double& each : *bytes) each /= kReceiversOfOneCounted;
+  cell.fetched_bytes = std::move(*bytes);
+}
+
+}  // namespace shadowbench::measure
