@@ -48,7 +48,8 @@ class Finder {
 
   std::vector<std::string> find() const {
     std::vector<std::string> all;
-    for (const auto& more : {list_troubles(), list_wasted(), list_turnovers(), list_parts(), list_only()})
+    for (const auto& more :
+         {list_troubles(), list_wasted(), list_turnovers(), list_parts(), list_diluted(), list_only()})
       all.insert(all.end(), more.begin(),
                  more.begin() + static_cast<std::ptrdiff_t>(std::min(more.size(), kMostOfAKind)));
     all.resize(std::min(all.size(), kMostSurprises));
@@ -204,6 +205,27 @@ class Finder {
                       own.id, own.meaning, list_some(places), most.id, most.meaning));
     }
     return sentences;
+  }
+
+  /// Filters whose own error is much smaller than another's, and whose whole error is not: whoever expects of the whole
+  /// what a paper says of a bound.
+  std::vector<std::string> list_diluted() const {
+    constexpr double kWeighty = 0.5, kMuchSmaller = 0.6, kLess = 1.3;
+    std::map<std::pair<std::string_view, std::string_view>, std::pair<double, std::string>> sentences;
+    visit_pairs([&](const Configuration& a, const Configuration& b, const auto& pairs) {
+      for (const auto& [cell, other] : pairs) {
+        const auto own = cell->attribution.estimator.rms, of_other = other->attribution.estimator.rms;
+        if (!own || !of_other || *of_other < kWeighty * *other->error.rmse) continue;
+        const double part = *own / *of_other, whole = *cell->error.rmse / *other->error.rmse;
+        if (part > kMuchSmaller || whole >= 1.0 || whole < kLess * part) continue;
+        auto& known = sentences[{cell->filter, other->filter}];
+        if (known.first >= whole / part) continue;
+        known = {whole / part, fmt::format("The estimator's part of the error of {} is {} of that of {} on {}, but the "
+                                           "RMSE {}: the rest comes from the map and the kernel, which both share.",
+                                           a.name, number(part), b.name, name_place(*cell), number(whole))};
+      }
+    });
+    return sort_sentences(sentences);
   }
 
   /// The largest rate of a fault; nothing where a place has none, unless there was nothing to see.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "report/analysis/advice_words.h"
 #include "report/records/format.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr const char* kRmse = "error.rmse";
 constexpr double kAllowance = 1.25;  // of the least RMSE
+constexpr std::size_t kWidened = 3;  // configurations keep a limit that would be kept by one
 
 bool can_advise(const std::vector<records::CellRecord>& cells) {
   return std::ranges::any_of(
@@ -55,9 +57,13 @@ analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& c
   request.demands.push_back({&*spec, std::numeric_limits<double>::infinity(), {}});
   const std::vector<analysis::Candidate> judged = analysis::advise(cells, request).keeping;
   if (judged.empty()) return {};
-  const auto worst_of = [](const analysis::Candidate& each) { return *each.verdicts.front().worst; };
-  const double least = worst_of(*std::ranges::min_element(judged, {}, worst_of));
-  request.demands.front().most = std::stod(analysis::format_limit(kAllowance * least));
+  std::vector<double> worst;
+  for (const analysis::Candidate& each : judged) worst.push_back(*each.verdicts.front().worst);
+  std::ranges::sort(worst);
+  double most = kAllowance * worst.front();
+  // Of one that keeps it there is nothing to choose, and a limit that all keep is none.
+  if (worst.size() > 2 && worst[1] > most) most = worst[std::min(kWidened, worst.size() - 1) - 1];
+  request.demands.front().most = std::stod(analysis::format_limit(most));
   return request;
 }
 
@@ -80,7 +86,7 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
   if (!request.demands.empty())
     notes.items.insert(notes.items.begin(),
                        "The limit to begin with is a quarter above the least RMSE that a filter keeps to on every "
-                       "scene: move it to yours.");
+                       "scene, or as much as three filters keep to: move it to yours.");
   mount.blocks.emplace_back(std::move(notes));
   section.blocks.emplace_back(std::move(mount));
   return section;

@@ -9,7 +9,8 @@
 namespace shadowbench::pages {
 
 /// The limits that a run's page starts with: a moving light, and an RMSE of at most a quarter more than that of the
-/// filter whose worst scene is the least wrong, rounded up. No limit where no RMSE was measured.
+/// filter whose worst scene is the least wrong, or as much as three configurations keep to, rounded up. No limit where
+/// no RMSE was measured.
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells);
 
 /// Says which filter and map keep those limits at the least cost, why, what the runner-up would buy, and what the

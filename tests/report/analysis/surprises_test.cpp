@@ -36,6 +36,20 @@ TEST(Surprises, OrderThatTurnsOver_IsSaidOnceWithItsNumbers) {
                                                "0.03\\)\\."));
 }
 
+TEST(Surprises, ASmallerPartOfALargeError_IsSaidWithBothRatios) {
+  const auto measured = [](const std::string& filter, double rmse, double estimator) {
+    CellRecord cell = make_measured("stack", filter, rmse, 1.0);
+    cell.attribution.estimator = {estimator, 0.5};
+    return cell;
+  };
+  const auto said = list_surprises({measured("vsm", 0.04, 0.03), measured("evsm4", 0.03, 0.0135)});
+  EXPECT_THAT(said, Contains(HasSubstr("The estimator's part of the error of evsm4")));
+  EXPECT_THAT(said, Contains(HasSubstr("is 0.45 of that of vsm")));
+  EXPECT_THAT(said, Contains(HasSubstr("but the RMSE 0.75: the rest")));
+  const auto not_weighty = list_surprises({measured("vsm", 0.04, 0.01), measured("evsm4", 0.03, 0.0045)});
+  EXPECT_THAT(not_weighty, Not(Contains(HasSubstr("The estimator's part"))));
+}
+
 TEST(Surprises, OfOnePairOfFilters_TheStrongestTurnIsSaid) {
   std::vector<CellRecord> cells = {make_measured("cubes", "a", 0.01, 1.0), make_measured("stack", "a", 0.04, 1.0)};
   for (const double radius : {1.0, 7.0 / 6.0}) {

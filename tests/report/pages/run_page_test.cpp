@@ -1,5 +1,6 @@
 #include "report/pages/run_page.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -153,6 +154,21 @@ TEST(RunPage, BeginsWithTheChoice_ItsReasonAndTheRunnerUp) {
   EXPECT_EQ(advice["order"][0], nlohmann::json({{"index", 0}, {"tied", nlohmann::json::array()}}));
   EXPECT_TRUE(advice["unjudged"].empty());
   EXPECT_TRUE(data["advice"]["moving"].contains("medium")) << "as with --class";
+}
+
+TEST(RunPage, ALimitThatOneWouldKeep_IsWidenedUntilThreeDo) {
+  const auto limit_of = [](const std::vector<double>& rmses) {
+    std::vector<records::CellRecord> cells;
+    for (const double rmse : rmses) {
+      cells.push_back(make_attributed_cell(fmt::format("filter{}", cells.size()), rmse, {0.0, 0.1, 0.1, 0.8}));
+      cells.back().time_ms.moving = records::OwnTime{{1.0, 1.0, 1.0, 9}, {1.0, 1.0}};
+    }
+    return read_data(make_html(make_run(), cells))["limits"]["error.rmse"].get<double>();
+  };
+  EXPECT_EQ(limit_of({0.04, 0.06, 0.07, 0.08, 0.09}), 0.07);
+  EXPECT_EQ(limit_of({0.04, 0.05, 0.07, 0.08, 0.09}), 0.05) << "two keep it";
+  EXPECT_EQ(limit_of({0.04, 0.06, 0.07}), 0.06) << "a limit that all keep is none";
+  EXPECT_EQ(limit_of({0.04, 0.06}), 0.05);
 }
 
 TEST(RunPage, WithoutErrorsOrTimes_SaysWhatCanBeSaid) {
