@@ -5,10 +5,6 @@ const startAnswer = (holder) => {
   const kSteps = 60;
   const kTime = "time_ms";
   const kSeen = 0.001;
-  const kLights = [
-    ["moving", "moving: map and prefilter in every frame"],
-    ["static", "static: the lookup alone"],
-  ];
   const places = run.places.map(({ title }) => title);
   const state = { wide: "", limits: { ...run.limits } };
   const nameLimit = (measure) =>
@@ -17,19 +13,22 @@ const startAnswer = (holder) => {
       : { ...measure, field: measure.id };
   const limits = run.measures.filter(({ id, option }) => option && id !== `${kTime}.static`).map(nameLimit);
   const limitOf = (field) => limits.find((limit) => limit.field === field);
+  const canLimit = (field) => limitOf(field) && !(field === kTime && costChoice().isEstimate);
   const titleOf = (field) => limitOf(field).title;
-  const fieldOf = (field) => (field === kTime ? `${kTime}.${shadowbench.light}` : field);
+  const fieldOf = (field) => (field === kTime ? costChoice().field : field);
 
   // The worst value of a configuration, or a text that says why there is none.
   const worstOf = (index, field) => run.configurations[index].worst[fieldOf(field)];
-  const costOf = (index) => run.configurations[index][fieldOf(kTime)];
+  const costOf = (index) => run.configurations[index][costChoice().field];
   // Of mixed machines, costs are ratios to `none`, which under other settings is another one.
   const areComparable = (a, b) =>
-    !run.ratios || run.configurations[a.index].surroundings === run.configurations[b.index].surroundings;
+    !run.ratios ||
+    costChoice().isEstimate ||
+    run.configurations[a.index].surroundings === run.configurations[b.index].surroundings;
   // Whether the cost of one cannot be told from that of another, which ranks behind it.
   const areTied = ({ tied }, { rank }) => tied.some(([from, end]) => from <= rank && rank < end);
   const judge = () => {
-    const { order, unjudged } = run.advice[shadowbench.light][state.wide];
+    const { order, unjudged } = run.advice[shadowbench.cost][state.wide];
     const judged = { keeping: [], failing: [], unjudged: [...unjudged] };
     const fields = Object.keys(state.limits);
     for (const [rank, { index, tied }] of order.entries()) {
@@ -45,7 +44,7 @@ const startAnswer = (holder) => {
   const say = (value, field) => format(value, limitOf(field).unit);
   const sayWorst = (index, field) =>
     `${say(worstOf(index, field).value, field)} on ${places[worstOf(index, field).place]}`;
-  const costText = (index) => `${format(costOf(index))} ${run.unit}`;
+  const costText = (index) => `${format(costOf(index))} ${costChoice().unit}`;
   const list = (texts) => (texts.length > 1 ? `${texts.slice(0, -1).join(", ")} and ${texts.at(-1)}` : texts.join());
   const writeCommand = () => {
     const asked = limits.filter(({ field }) => field in state.limits);
@@ -53,7 +52,7 @@ const startAnswer = (holder) => {
       "shadowbench advise RUN",
       ...asked.map(({ option, field }) => `${option} ${state.limits[field]}`),
       ...(state.wide ? [`--class ${state.wide}`] : []),
-      ...(shadowbench.light === "static" ? ["--light-motion static"] : []),
+      ...(costChoice().option ? [costChoice().option] : []),
     ].join(" ");
   };
   // How the worst of what can be limited differs between the choice and the runner-up.
@@ -152,7 +151,7 @@ const startAnswer = (holder) => {
       element(headline, "bdi", {}, labelOf(index));
     }
     if (tied.length > 0) headline.append(": their costs cannot be told apart");
-    headline.append(`. ${tied.length > 0 ? "About " : ""}${costText(best)} a frame with a ${shadowbench.light} light.`);
+    headline.append(`. ${tied.length > 0 ? "About " : ""}${costText(best)} ${costChoice().said}.`);
   };
   const explainSecond = (best, second) => {
     if (!second) return explain("Runner-up:", "no other keeps the limits.");
@@ -172,7 +171,7 @@ const startAnswer = (holder) => {
     showHeadline(best, tied);
     const smallest = keeping.every((other) => areComparable(best, other)) ? "" : ", on the smallest picture and map,";
     const cheapest = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
-    const lead = run.ratios ? `it has the lowest ratio to 'none'${smallest}` : cheapest;
+    const lead = run.ratios && !costChoice().isEstimate ? `it has the lowest ratio to 'none'${smallest}` : cheapest;
     const bounds = describeBounds(best.index);
     const judged = Object.keys(state.limits).length > 0 ? "that keep the limits" : "that can be judged";
     explain("Why:", `${lead} of ${keeping.length} ${judged}${bounds.length > 0 ? ": " : ""}${bounds.join("; ")}.`);
@@ -228,7 +227,7 @@ const startAnswer = (holder) => {
 
   // A slider's steps are the worst values of the run: each step lets one more configuration through.
   const listSteps = (field) => {
-    const { order } = run.advice[shadowbench.light][""];
+    const { order } = run.advice[shadowbench.cost][""];
     const values = order.map(({ index }) => worstOf(index, field).limit).filter((limit) => limit !== undefined);
     if (field in state.limits) values.push(state.limits[field]);
     const steps = [...new Set(values)].sort((a, b) => a - b);
@@ -257,11 +256,11 @@ const startAnswer = (holder) => {
   };
   const showSliders = () => {
     sliders.replaceChildren();
-    limits.forEach(addSlider);
+    limits.filter(({ field }) => canLimit(field)).forEach(addSlider);
   };
   const change = () => {
     const asked = Object.entries(state.limits).map((limit) => limit.join(":"));
-    writeLink("limits", [shadowbench.light, state.wide, ...asked]);
+    writeLink("limits", [shadowbench.cost, state.wide, ...asked]);
     show();
   };
   const choose = (changes) => {
@@ -269,21 +268,23 @@ const startAnswer = (holder) => {
     showSliders();
     change();
   };
-  const light = addSelect(controls, "Light", kLights, { name: "light" }, (value) => {
-    shadowbench.light = value;
+  const costs = run.costs.map(({ id, title }) => [id, title]);
+  const cost = addSelect(controls, "Cost", costs, { name: "cost" }, (value) => {
+    shadowbench.cost = value;
     delete state.limits[kTime];
     choose({});
     shadowbench.drawTable?.();
   });
+  cost.value = shadowbench.cost;
   const classes = [["", "of any width"], ...run.classes.map((name) => [name, name])];
   const wide = addSelect(controls, "Kernel", classes, { name: "class" }, (value) => choose({ wide: value }));
   const sliders = element(controls, "div", { className: "sliders" });
   const openLink = () => {
-    const [motion, width, ...asked] = readLink("limits") ?? [];
-    if (motion === undefined) return;
-    if (kLights.some(([name]) => name === motion)) shadowbench.light = light.value = motion;
+    const [id, width, ...asked] = readLink("limits") ?? [];
+    if (id === undefined) return;
+    if (run.costs.some((each) => each.id === id)) shadowbench.cost = cost.value = id;
     if (width === "" || run.classes.includes(width)) state.wide = wide.value = width;
-    const isKnown = ([field, most]) => limitOf(field) && most && Number.isFinite(Number(most));
+    const isKnown = ([field, most]) => canLimit(field) && most && Number.isFinite(Number(most));
     const known = asked.map((text) => text.split(":")).filter(isKnown);
     state.limits = Object.fromEntries(known.map(([field, most]) => [field, Number(most)]));
     showSliders();

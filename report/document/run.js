@@ -4,7 +4,8 @@ const run = JSON.parse(block.textContent);
 const kTruth = -1;
 const kOfTruth = { visibility: "area", uncertainty: "standard_error" };
 const kOtherNames = { uncertainty: "rounding" };
-shadowbench.light = "moving"; // of which the answer and the table say the cost
+shadowbench.cost = run.cost; // which of the costs the answer and the table have
+const costChoice = () => run.costs.find(({ id }) => id === shadowbench.cost);
 
 const cells = new Map(run.cells.map((cell) => [`${cell.configuration} ${cell.place}`, cell]));
 const cellAt = (who, place) => cells.get(`${who} ${place}`);

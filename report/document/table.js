@@ -19,7 +19,7 @@ const startTable = (holder) => {
     const values = run.places.map((_, place) => valueOf(index, place)).filter((value) => value !== null);
     return values.length > 0 ? values.reduce((worst, value) => (rankOf(value) > rankOf(worst) ? value : worst)) : null;
   };
-  const timeOf = () => `time_ms.${shadowbench.light}`;
+  const timeOf = () => costChoice().field;
 
   // Texts stand at the left, and numbers, which have a unit, at the right.
   const listColumns = () => {
@@ -39,7 +39,7 @@ const startTable = (holder) => {
     return [
       { id: "filter", title: "filter", text: filter, of: of("label") },
       { id: "class", title: "width", text: width, of: (index) => of("class")(index) || "–", key: of("sigma") },
-      { id: "cost", title: `${shadowbench.light} light, ${run.unit}`, text: cost, of: of(timeOf()), unit: "" },
+      { id: "cost", title: `${costChoice().title}, ${costChoice().unit}`, text: cost, of: of(timeOf()), unit: "" },
       ...places,
       {
         id: "worst",

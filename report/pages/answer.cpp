@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "report/analysis/advice_words.h"
+#include "report/analysis/trade_measures.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -36,8 +39,9 @@ std::string describe_margin(const analysis::Advice& advice, const analysis::Cand
 document::Sentences describe_choice(const records::RunRecord& run, const analysis::Advice& advice) {
   const analysis::Candidate& best = advice.keeping.front();
   const bool has_limits = !advice.request.demands.empty();
-  document::Sentences answer{fmt::format("{}: {} a frame with a moving light.", best.configuration.label,
-                                         analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl)),
+  document::Sentences answer{fmt::format("{}: {}{}.", best.configuration.label,
+                                         analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),
+                                         advice.request.cheapest.is_of_frame() ? " a frame with a moving light" : ""),
                              {}};
   answer.items.push_back(fmt::format("Why: the {} of {}{}{}.", analysis::describe_choice(advice), advice.keeping.size(),
                                      has_limits ? " that keep the limits" : " that can be judged",
@@ -48,15 +52,30 @@ document::Sentences describe_choice(const records::RunRecord& run, const analysi
   return answer;
 }
 
+/// The GPU whose estimates decide at first: where a software rasteriser drew everything, since its times say nothing of
+/// a GPU, the first of which there is an estimate.
+std::optional<std::string> choose_gpu(const std::vector<records::CellRecord>& cells) {
+  const auto is_of_cpu = [](const records::CellRecord& cell) { return cell.machine && cell.machine->software; };
+  if (!std::ranges::all_of(cells, is_of_cpu)) return std::nullopt;
+  for (const std::string& gpu : analysis::list_gpus(analysis::point_to(cells)))
+    if (std::ranges::any_of(cells, [&](const auto& cell) { return cell.gpu && cell.gpu->at(gpu).estimate; }))
+      return gpu;
+  return std::nullopt;
+}
+
 }  // namespace
 
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells) {
   analysis::AdviceRequest request;
   if (!can_advise(cells)) return request;
+  if (const auto gpu = choose_gpu(cells)) request.cheapest = {analysis::CostKind::kGpu, *gpu};
   const auto spec = std::ranges::find(analysis::limit_table(), kRmse, &analysis::LimitSpec::field);
   request.demands.push_back({&*spec, std::numeric_limits<double>::infinity(), {}});
   const std::vector<analysis::Candidate> judged = analysis::advise(cells, request).keeping;
-  if (judged.empty()) return {};
+  if (judged.empty()) {
+    request.demands.clear();
+    return request;
+  }
   std::vector<double> worst;
   for (const analysis::Candidate& each : judged) worst.push_back(*each.verdicts.front().worst);
   std::ranges::sort(worst);
@@ -83,6 +102,11 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
   else
     mount.blocks.emplace_back(describe_choice(run, advice));
   document::Sentences notes{{}, analysis::list_run_notes(advice, run.gl)};
+  if (request.cheapest.kind == analysis::CostKind::kGpu)
+    notes.items.push_back(fmt::format(
+        "A software rasteriser drew the run, so that its times say nothing of a GPU: the costs are estimates "
+        "for {}, which was not there. Choose another under Cost, or this CPU's times.",
+        request.cheapest.gpu));
   if (!request.demands.empty())
     notes.items.insert(notes.items.begin(),
                        "The limit to begin with is a quarter above the least RMSE that a filter keeps to on every "

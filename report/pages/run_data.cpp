@@ -192,19 +192,47 @@ json list_ties(const analysis::Advice& advice, std::size_t rank) {
   return ranges;
 }
 
-/// What advise() says without limits, by light and class of width: configurations in the order of their costs, with
+/// A cost that a reader may ask for.
+struct CostChoice {
+  std::string id;     ///< in the page's data and its links
+  std::string field;  ///< of a configuration's and a cell's value
+  std::string title, unit;
+  std::string said;    ///< behind a number: "a frame with a moving light"
+  std::string option;  ///< of `advise`
+  analysis::CostKind kind;
+  analysis::LightMotion light = analysis::LightMotion::kMoving;
+};
+
+std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const std::vector<std::string>& gpus,
+                                          const analysis::CostKind& frame) {
+  const bool is_ratio = frame == analysis::CostKind::kRatio;
+  const std::string unit = is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl);
+  const std::string where = is_ratio ? "" : run.gl.software ? ", this CPU" : ", this GPU";
+  std::vector<CostChoice> choices = {
+      {"moving", kMoving, "moving light" + where, unit, "a frame with a moving light", "", frame},
+      {"static", kStatic, "static light" + where, unit, "a frame with a static light", "--light-motion static", frame,
+       analysis::LightMotion::kStatic}};
+  for (const std::string& gpu : gpus)
+    choices.push_back({"gpu." + gpu, "gpu." + gpu + ".estimate_us", "estimate, " + gpu, "us",
+                       "estimated on " + gpu + ", for one map's prefilter and a million receivers",
+                       "--cheapest gpu:" + gpu, analysis::CostKind(analysis::CostKind::kGpu, gpu)});
+  return choices;
+}
+
+/// What advise() says without limits, by cost and class of width: configurations in the order of their costs, with
 /// their ties, and why others are not judged.
 json list_advice(const std::vector<records::CellRecord>& cells, const json& classes,
-                 const std::vector<analysis::Configuration>& configurations) {
+                 const std::vector<CostChoice>& choices, const std::vector<analysis::Configuration>& configurations) {
   std::map<const records::CellRecord*, std::size_t> indices;
   for (std::size_t i = 0; i < configurations.size(); ++i)
     for (const records::CellRecord* cell : configurations[i].cells) indices[cell] = i;
   const auto index_of = [&](const auto& each) { return indices.at(each.configuration.cells.front()); };
   json all = json::object();
-  for (const auto& [name, light] : kLights) {
+  for (const CostChoice& choice : choices) {
     for (const std::string wide : classes) {
       analysis::AdviceRequest request;
-      request.light = light;
+      request.light = choice.light;
+      if (choice.kind.kind == analysis::CostKind::kGpu) request.cheapest = choice.kind;
       request.width_class = wide;
       const analysis::Advice advice = analysis::advise(cells, request);
       json order = json::array(), unjudged = json::array();
@@ -212,7 +240,7 @@ json list_advice(const std::vector<records::CellRecord>& cells, const json& clas
         order.push_back({{"index", index_of(advice.keeping[rank])}, {"tied", list_ties(advice, rank)}});
       for (const analysis::Unjudged& each : advice.unjudged)
         unjudged.push_back({{"index", index_of(each)}, {"gap", each.reason}});
-      all[name][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
+      all[choice.id][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
     }
   }
   return all;
@@ -226,25 +254,25 @@ json describe_cost(const analysis::Configuration& configuration, const analysis:
 }
 
 json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters,
-                        const std::vector<analysis::Place>& places, const analysis::CostKind& frame) {
+                        const std::vector<analysis::Place>& places, const std::vector<CostChoice>& choices) {
   const records::CellRecord& cell = *configuration.cells.front();
   const document::ChartStyle style =
       document::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
-  return {{"label", configuration.name},
-          {"full", configuration.label},
-          {"filter", cell.filter},
-          {"params", records::describe_params(cell.params)},
-          {"class", analysis::name_class(analysis::find_class(cell))},
-          {"kernel", records::describe_kernel(cell.kernel)},
-          {"sigma", value_of(cell.kernel.sigma_texels)},
-          {"map", cell.map_size},
-          {"pixels", cell.width * cell.height},
-          {"teaching", cell.teaching.value_or(false)},
-          {"surroundings", configuration.surroundings},
-          {"color", style.color},
-          {"worst", list_worst(configuration, places, frame)},
-          {kMoving, describe_cost(configuration, frame, analysis::LightMotion::kMoving)},
-          {kStatic, describe_cost(configuration, frame, analysis::LightMotion::kStatic)}};
+  json made = {{"label", configuration.name},
+               {"full", configuration.label},
+               {"filter", cell.filter},
+               {"params", records::describe_params(cell.params)},
+               {"class", analysis::name_class(analysis::find_class(cell))},
+               {"kernel", records::describe_kernel(cell.kernel)},
+               {"sigma", value_of(cell.kernel.sigma_texels)},
+               {"map", cell.map_size},
+               {"pixels", cell.width * cell.height},
+               {"teaching", cell.teaching.value_or(false)},
+               {"surroundings", configuration.surroundings},
+               {"color", style.color},
+               {"worst", list_worst(configuration, places, choices.front().kind)}};
+  for (const CostChoice& choice : choices) made[choice.field] = describe_cost(configuration, choice.kind, choice.light);
+  return made;
 }
 
 }  // namespace
@@ -260,12 +288,23 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   json data{{"unit", is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl)},
             {"ratios", is_ratio},
             {"measures", list_measures(run, gpus, frame)},
+            {"costs", json::array()},
+            {"cost", request.cheapest.kind == analysis::CostKind::kGpu ? "gpu." + request.cheapest.gpu : "moving"},
             {"classes", json::array()},
             {"limits", json::object()},
             {"places", json::array()},
             {"truths", json::array()},
             {"configurations", json::array()},
             {"cells", json::array()}};
+  const std::vector<CostChoice> choices = list_cost_choices(run, gpus, frame);
+  for (const CostChoice& choice : choices)
+    data["costs"].push_back({{"id", choice.id},
+                             {"field", choice.field},
+                             {"title", choice.title},
+                             {"unit", choice.unit},
+                             {"said", choice.said},
+                             {"option", choice.option},
+                             {"isEstimate", choice.kind.kind == analysis::CostKind::kGpu}});
   for (const auto& each : filters::width_classes())
     if (std::ranges::any_of(cells, [&](const records::CellRecord& cell) {
           return is_advised(cell) && cell.kernel.width_class == each.name;
@@ -284,12 +323,12 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   for (const analysis::Configuration& configuration : configurations) {
     for (const records::CellRecord* cell : configuration.cells)
       data["cells"].push_back(make_cell(*cell, data["configurations"].size(), find_index(places, *cell), gpus, frame));
-    data["configurations"].push_back(make_configuration(configuration, filters, places, frame));
+    data["configurations"].push_back(make_configuration(configuration, filters, places, choices));
   }
   if (std::ranges::any_of(cells, is_advised)) {
     json classes = data["classes"];
     classes.push_back("");
-    data["advice"] = list_advice(cells, classes, configurations);
+    data["advice"] = list_advice(cells, classes, choices, configurations);
   }
   return data;
 }

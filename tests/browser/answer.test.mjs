@@ -35,7 +35,7 @@ const compare = async (page, run) => {
   }
   assert.equal(judged.best, findConfiguration(run, data, advice.advised.settings), command);
   assert.ok(headline.startsWith(labelOf(advice.advised)), `${command}: ${headline}`);
-  const cost = advice.advised.cost.mean, [, shown] = /([-\d.e]+) (?:ms \(CPU\)|× none) a frame/.exec(headline);
+  const cost = advice.advised.cost.mean, [, shown] = /([-\d.e]+) (?:(?:ms \(CPU\)|× none) a frame|us estimated)/.exec(headline);
   assert.ok(Math.abs(shown - cost) <= 0.005 * Math.abs(cost), `${command}: ${headline}, not ${cost}`);
   if (advice.runner_up) assert.ok(reasons.includes(`Runner-up: ${labelOf(advice.runner_up)},`), `${command}: ${reasons}`);
   const { tied = false, basis } = advice.runner_up?.lost_by ?? {}, apart = basis === "none";
@@ -71,7 +71,7 @@ for (const run of ["several", "mixed"]) {
       }
       await move(page, slider, slider.max);
     }
-    for (const name of ["light", "class"]) {
+    for (const name of ["cost", "class"]) {
       for (const option of (await listOptions(page, name)).reverse()) {
         await choose(page, name, option);
         exits.add(await compare(page, run));
@@ -95,7 +95,7 @@ test("AtRandomPositions_TheAnswerIsThatOfTheProgram", async () => {
   const { page, messages, close } = await openRun("several"), random = makeRandom(7);
   const exits = [0, 0], pick = (list) => list[Math.floor(random() * list.length)];
   for (let i = 0; i < kRandomPositions; ++i) {
-    await choose(page, "light", pick(await listOptions(page, "light")));
+    await choose(page, "cost", pick(await listOptions(page, "cost")));
     await choose(page, "class", pick(await listOptions(page, "class")));
     // Every other slider sets no limit: else nothing would ever be left.
     for (const slider of await listSliders(page)) await move(page, slider, random() < 0.5 ? slider.max : Math.round(slider.max * random()));
@@ -121,7 +121,7 @@ test("LookCloser_OpensTheViewerAtTheWorstPlace", async () => {
 
 test("ALink_OpensTheSameAnswerAndTable", async () => {
   const { page, close } = await openRun("several");
-  await choose(page, "light", "static");
+  await choose(page, "cost", "static");
   await choose(page, "class", "medium");
   await move(page, { name: "error.flip" }, 2);
   await page.locator('.numbers select[name="measure"]').selectOption("error.mean");
