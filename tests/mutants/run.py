@@ -72,7 +72,7 @@ class Tests:
 
     def make_root(self, folder, replaced):
         """Lays the program's folders out with copies of the filters, of which some are replaced."""
-        for name in ("shaders", "harness"):
+        for name in ("shaders", "data"):
             (folder / name).symlink_to(self.source / name)
         (folder / "filters").mkdir()
         for path in sorted((self.source / "filters").glob("*.glsl")):
