@@ -34,7 +34,8 @@ void add_engine_options(Command& command, SubmitArguments& a) {
 }
 
 /// Options of a run that make no sense of a sweep, whose tasks go on where they were.
-constexpr const char* kNotOfSweeps[] = {"--shard", "--fresh", "--yes", "--strict", "--worker", "--task"};
+constexpr const char* kNotOfSweeps[] = {"--shard", "--fresh",          "--yes", "--strict", "--worker",
+                                        "--task",  "--until-different"};
 /// Options that every task is given anew.
 constexpr const char* kOfEveryTask[] = {"--out", "--cache", "--no-cache", "--grids", "--no-grids"};
 

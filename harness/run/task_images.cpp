@@ -238,19 +238,18 @@ void write_shown(const options::RunOptions& options, const std::string& stem, me
 }
 
 constexpr const char* kConvention =
-    "A point p of the world, metres, has (U, V, D, W) = uv_depth_from_world * (p, 1), rows first. u = U / W and v = V "
-    "/ "
-    "W where the layer is projective, else U and V; depth is D, 0 near and 1 far. A logarithmic layer has v = scale * "
-    "log(W) + offset. A paraboloid has u, v = center + radius * (d.x, d.y) / (1 - d.z) and depth = (distance - near) / "
-    "range, where (d, distance) is the direction and length of (U, V, D). Texel (i, j) of the part depth_map covers u "
-    "= i / size .. (i + 1) / size and v = 1 - (j + 1) / size .. 1 - j / size; layers stand side by side, the first on "
-    "the left. depth_map holds linear depth, 1 where nothing is. A receiver is lit where its depth less its bias is "
-    "not more than the map's. Bias: max(constant, slope * (1 - n.l)) + plane_texels * (|dD/du| + |dD/dv|), the latter "
-    "two along the receiver's plane for each texel, each at most max_tangent * t / range; before that, the receiver is "
-    "moved along its normal by normal_texels * t * sin(n, l). Here t is the size of a texel at the receiver, metres: "
-    "texel_m; under a lamp, where texels grow with the distance, texel_m * W / texel_reference_m; of a warped layer "
-    "and "
-    "of a paraboloid 1 / sqrt(|grad u x grad v|), with u and v in texels.";
+    "A point p of the world, metres, has (U, V, D, W) = uv_depth_from_world * (p, 1), rows first. u = U / W and v "
+    "= V / W where the layer is projective, else U and V; depth is D, 0 near and 1 far. A logarithmic layer has v "
+    "= scale * log(W) + offset. A paraboloid has u, v = center + radius * (d.x, d.y) / (1 - d.z) and depth = "
+    "(distance - near) / range, where (d, distance) is the direction and length of (U, V, D). Texel (i, j) of the "
+    "part depth_map covers u = i / size .. (i + 1) / size and v = 1 - (j + 1) / size .. 1 - j / size; layers stand "
+    "side by side, the first on the left. depth_map holds linear depth, 1 where nothing is. A receiver is lit "
+    "where its depth less its bias is not more than the map's. Bias: max(constant, slope * (1 - n.l)) + "
+    "plane_texels * (|dD/du| + |dD/dv|), the latter two along the receiver's plane for each texel, each at most "
+    "max_tangent * t / range; before that, the receiver is moved along its normal by normal_texels * t * sin(n, "
+    "l). Here t is the size of a texel at the receiver, metres: texel_m; under a lamp, where texels grow with the "
+    "distance, texel_m * W / texel_reference_m; of a warped layer and of a paraboloid 1 / sqrt(|grad u x grad v|), "
+    "with u and v in texels.";
 
 std::string write_rows(const glm::mat4& matrix) {
   const glm::mat4 rows = glm::transpose(matrix);

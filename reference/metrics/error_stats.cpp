@@ -13,6 +13,10 @@ namespace {
 
 using Parts = std::array<double, kErrorParts>;
 
+double find_mean(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 Parts split(const AttributionStations& s, std::size_t i) {
   const double image = static_cast<double>(s.image[i]), kernel = static_cast<double>(s.kernel[i]);
   const double model = s.model.empty() ? image : s.model[i];
@@ -56,13 +60,17 @@ double find_student_t(std::size_t count, double below) {
   return gsl_cdf_tdist_Pinv(below, static_cast<double>(count - 1));
 }
 
-std::optional<MeanInterval> find_mean_interval(std::span<const double> values) {
-  if (values.size() < 2) return std::nullopt;
-  const double count = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+double find_standard_error(std::span<const double> values) {
+  assert(values.size() >= 2);
+  const double count = static_cast<double>(values.size()), mean = find_mean(values);
   double squares = 0.0;
   for (const double value : values) squares += (value - mean) * (value - mean);
-  const double reach = find_student_t(values.size()) * std::sqrt(squares / (count - 1.0) / count);
+  return std::sqrt(squares / (count - 1.0) / count);
+}
+
+std::optional<MeanInterval> find_mean_interval(std::span<const double> values) {
+  if (values.size() < 2) return std::nullopt;
+  const double mean = find_mean(values), reach = find_student_t(values.size()) * find_standard_error(values);
   return MeanInterval{mean, mean - reach, mean + reach};
 }
 

@@ -36,6 +36,9 @@ struct MeanInterval {
 /// two values or more. `below` is the share of errors below the upper end.
 double find_student_t(std::size_t count, double below = 0.985);
 
+/// The standard error of the mean of independent values, from their spread. Requires two values or more.
+double find_standard_error(std::span<const double> values);
+
 /// The mean of independent values with its 95 % confidence interval by find_student_t(). Nothing for fewer than two
 /// values.
 std::optional<MeanInterval> find_mean_interval(std::span<const double> values);

@@ -16,21 +16,23 @@ bool has_replicates(const records::CellRecord& cell) {
   return cell.status == records::CellStatus::kOk && cell.error.rmse && cell.rmse_replicates;
 }
 
-/// The standard errors of the differences of every two cells of one class, in the places of all groups.
-std::vector<double> list_standard_errors(const std::vector<records::CellRecord>& cells) {
-  std::vector<double> errors;
+/// The differences that are found in four of five runs, for every two cells of one class, in the places of all groups.
+std::vector<double> list_least_differences(const std::vector<records::CellRecord>& cells) {
+  std::vector<double> differences;
   for (const CellGroup& group : group_cells(cells)) {
     for (std::size_t i = 0; i < group.cells.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
         const records::CellRecord &a = group.cells[i], &b = group.cells[k];
         if (!has_replicates(a) || !has_replicates(b) || !find_class(a) || find_class(a) != find_class(b)) continue;
-        if (a.rmse_replicates->size() != b.rmse_replicates->size()) continue;
+        const std::size_t count = a.rmse_replicates->size();
+        if (count != b.rmse_replicates->size()) continue;
         const Estimate gap = subtract(estimate_rmse(a), estimate_rmse(b));
-        errors.push_back((gap.high - gap.value) / metrics::find_student_t(a.rmse_replicates->size()));
+        const double power = metrics::find_student_t(count, 0.8) / metrics::find_student_t(count);
+        differences.push_back((gap.high - gap.value) * (1.0 + power));
       }
     }
   }
-  return errors;
+  return differences;
 }
 
 }  // namespace
@@ -54,20 +56,18 @@ std::optional<Estimate> find_difference(const std::vector<records::CellRecord>& 
 }
 
 std::string describe_power(const std::vector<records::CellRecord>& cells) {
-  std::vector<double> errors = list_standard_errors(cells);
-  if (errors.empty()) return {};
-  std::ranges::sort(errors);
-  const auto cell = std::ranges::find_if(cells, has_replicates);
-  const std::size_t groups = cell->rmse_replicates->size();
-  const double seen = metrics::find_student_t(groups) + metrics::find_student_t(groups, 0.8);
+  std::vector<double> differences = list_least_differences(cells);
+  if (differences.empty()) return {};
+  std::ranges::sort(differences);
   const auto at = [&](double share) {
-    return records::format_number(seen * errors[static_cast<std::size_t>(share * static_cast<double>(errors.size()))]);
+    const auto place = static_cast<std::size_t>(share * static_cast<double>(differences.size()));
+    return records::format_number(differences[place]);
   };
   return fmt::format(
       "With {} phases of the map's grid, RMSEs of two filters of one class on one scene are told apart where they "
       "differ by {} (half of the {} pairs) or {} (nine tenths of them): such a difference is found in four of five "
       "runs, at 95 % confidence. More phases, or 'run --until-different A,B', find smaller ones.",
-      cell->phases.value_or(0), at(0.5), errors.size(), at(0.9));
+      std::ranges::find_if(cells, has_replicates)->phases.value_or(0), at(0.5), differences.size(), at(0.9));
 }
 
 }  // namespace shadowbench::analysis

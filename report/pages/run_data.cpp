@@ -285,8 +285,7 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   const std::vector<std::string> gpus = analysis::list_gpus(all);
   const analysis::CostKind frame = analysis::frame_cost_kind(cells);
   const bool is_ratio = frame == analysis::CostKind::kRatio;
-  json data{{"unit", is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl)},
-            {"ratios", is_ratio},
+  json data{{"ratios", is_ratio},
             {"measures", list_measures(run, gpus, frame)},
             {"costs", json::array()},
             {"cost", request.cheapest.kind == analysis::CostKind::kGpu ? "gpu." + request.cheapest.gpu : "moving"},

@@ -6,7 +6,6 @@
 #include <functional>
 #include <iterator>
 #include <numbers>
-#include <numeric>
 
 #include "reference/metrics/error_stats.h"
 
@@ -39,13 +38,9 @@ std::vector<double> divide(const std::vector<double>& numerator, const std::vect
 /// Half the width of the interval of a median of fewer values, as of normal ones, whose median is sqrt(pi / 2) as
 /// uncertain as their mean; 0 for one.
 double find_reach(const std::vector<double>& values) {
-  const double count = static_cast<double>(values.size());
   if (values.size() < 2) return 0.0;
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
-  double squares = 0.0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  const double of_mean = std::sqrt(squares / (count - 1.0) / count);
-  return metrics::find_student_t(values.size(), 0.975) * std::sqrt(0.5 * std::numbers::pi) * of_mean;
+  const double t = metrics::find_student_t(values.size(), 0.975);
+  return t * std::sqrt(0.5 * std::numbers::pi) * metrics::find_standard_error(values);
 }
 
 /// In how many cases of a hundred, as a share, the median lies between the `place`-th smallest and largest of `count`

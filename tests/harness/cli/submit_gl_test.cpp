@@ -161,6 +161,7 @@ TEST_F(Submit, BadWords_AreRefused) {
   expect_refusal("submit e.toml --engine slurm --tasks 0 --out out", 2, {"--tasks", "'0'"});
   expect_refusal("submit e.toml --engine slurm --grids --out out", 2, {"--grids"});
   expect_refusal("submit e.toml --engine slurm --shard 1/2 --out out", 2, {"--shard"});
+  expect_refusal("submit e.toml --engine slurm --until-different none,vsm --out out", 2, {"--until-different"});
   expect_refusal("submit e.toml --engine slurm --out out -- --array=1-9%4", 2, {"--array", "arraytaskthrottle"});
   expect_refusal("submit e.toml --engine slurm --out out -- -a1-9", 2, {"-a", "arraytaskthrottle"});
   expect_refusal("submit e.toml --engine parallel --time 3 --out out", 2, {"--time", "--engine slurm"});

@@ -68,7 +68,6 @@ TEST(MixedMachines, ThePagesScriptsReadRatios) {
   const std::vector<CellRecord> cells = make_mixed_cells();
   const document::Page page = make_run_page(make_run(), cells, make_trade(cells));
   const nlohmann::json& data = page.data;
-  EXPECT_EQ(data["unit"], "× none");
   EXPECT_EQ(data["ratios"], true);
   EXPECT_EQ(data["measures"][0]["unit"], "× none");
   EXPECT_EQ(data["measures"][0]["option"], "");
