@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kTileSideLog2 = 3;
 constexpr std::size_t kTilePixels = 1 << (2 * kTileSideLog2);
-constexpr std::size_t kIdleReceivers = 16, kIdleReads = 256;  // in a row, that bring no new line
+constexpr std::size_t kIdleReceivers = 8, kIdleReads = 128;  // in a row, that bring no new line
 
 /// Numbers the lines that the texels of maps lie in.
 class LineNumbers {

@@ -27,7 +27,7 @@ struct CacheShape {
 /// Of the layers' receivers those of the filter are asked.
 /// Nothing where the filter has no scalar model, or no layer a receiver.
 /// Cost: the model's prefilter in single precision, and some of its lookups. The receivers of a tile are asked in an
-/// order that spreads them over it, until 16 in a row, with 256 reads, bring no new line: all of them where a filter
+/// order that spreads them over it, until 8 in a row, with 128 reads, bring no new line: all of them where a filter
 /// reads no more than four texels. The README says how little that misses.
 std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
                                                      const std::vector<ModelLayer>& layers, const ModelView& view,

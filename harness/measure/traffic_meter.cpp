@@ -5,19 +5,29 @@
 namespace shadowbench::measure {
 namespace {
 
-int count_columns(const options::RunOptions& options) {
-  return static_cast<int>(std::lround(static_cast<double>(kCountedRows) * options.width / options.height));
+constexpr int kFrameRows = 1080;
+constexpr double kMostTexels = 1.5;  ///< of the map, under a pixel of half the rows: more, and lines are missed
+
+/// Every how many rows and columns of the frame are asked.
+int choose_step(const options::RunOptions& options, std::optional<double> texels_per_pixel) {
+  const double rows = static_cast<double>(options.height) / (kFrameRows / 2);
+  return texels_per_pixel && *texels_per_pixel * rows * rows <= kMostTexels ? 2 : 1;
+}
+
+int count_columns(const options::RunOptions& options, int rows) {
+  return static_cast<int>(std::lround(static_cast<double>(rows) * options.width / options.height));
 }
 
 }  // namespace
 
 TrafficMeter::TrafficMeter(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
-                           SceneAssets& assets)
+                           SceneAssets& assets, std::optional<double> texels_per_pixel)
     : renderer_(renderer),
       options_(options),
       task_(task),
       light_(assets.light_map(*task.camera, task.map_size)),
-      gbuffer_(count_columns(options), kCountedRows) {
+      step_(choose_step(options, texels_per_pixel)),
+      gbuffer_(count_columns(options, kFrameRows / step_), kFrameRows / step_) {
   assets.draw_view(gbuffer_, *task.camera);
   for (const gpu::Gpu& gpu : options_.gpus)
     caches_.push_back({.bytes = static_cast<std::int64_t>(gpu.cache_mib.value * 1024.0 * 1024.0),
@@ -37,7 +47,7 @@ void TrafficMeter::measure(MeasuredCell& cell) {
   const ModelView view{gbuffer_.width(), gbuffer_.height(), options_.seed, options_.bias.plane_max_tangent()};
   auto bytes = count_map_traffic(cell.request, layers_, view, caches_);
   if (!bytes) return;
-  for (double& each : *bytes) each /= kReceiversOfOneCounted;
+  for (double& each : *bytes) each /= step_ * step_;
   cell.fetched_bytes = std::move(*bytes);
 }
 

@@ -1,5 +1,7 @@
 #include "harness/render/gbuffer.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
@@ -234,13 +236,16 @@ std::vector<float> read_layer_shares(ShaderLibrary& shaders, const GBuffer& gbuf
 std::vector<filters::Receiver> read_receivers(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
   const ReceiverTexels texels = draw_receivers(shaders, gbuffer, light);
   const std::vector<float> positions = gbuffer.position().read_floats(4), normals = gbuffer.normal().read_floats(4);
-  std::vector<filters::Receiver> receivers;
-  for (std::size_t i = 0; i < texels.pixels(); ++i) {
-    if (!texels.is_asked_about(i)) continue;
-    receivers.push_back(make_receiver(texels, i, light));
-    receivers.back().position_ws = {positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]};
-    receivers.back().normal_ws = {normals[4 * i], normals[4 * i + 1], normals[4 * i + 2]};
-  }
+  std::vector<std::size_t> asked;
+  for (std::size_t i = 0; i < texels.pixels(); ++i)
+    if (texels.is_asked_about(i)) asked.push_back(i);
+  std::vector<filters::Receiver> receivers(asked.size());
+  tbb::parallel_for(std::size_t{0}, asked.size(), [&](std::size_t k) {
+    const std::size_t i = asked[k];
+    receivers[k] = make_receiver(texels, i, light);
+    receivers[k].position_ws = {positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]};
+    receivers[k].normal_ws = {normals[4 * i], normals[4 * i + 1], normals[4 * i + 2]};
+  });
   return receivers;
 }
 

@@ -47,9 +47,14 @@ gpu::Reads find_reads(const render::FilterCost& cost, const records::ShaderFacts
 
 }  // namespace
 
+bool GpuCosts::compile(const std::vector<measure::MeasuredCell>& cells) {
+  for (const gpu::Gpu& gpu : options_.gpus)
+    if (!refused_.contains(gpu.name)) compile(gpu, cells);
+  return refused_.size() < options_.gpus.size();
+}
+
 void GpuCosts::add_to(std::vector<measure::MeasuredCell>& cells) {
   for (const gpu::Gpu& gpu : options_.gpus) {
-    if (!refused_.contains(gpu.name)) compile(gpu, cells);
     for (measure::MeasuredCell& cell : cells) {
       if (cell.passes.empty()) continue;
       if (!cell.record.gpu) cell.record.gpu.emplace();

@@ -25,7 +25,11 @@ class GpuCosts {
   GpuCosts(const options::RunOptions& options, const std::function<void(const std::string&)>& note)
       : options_(options), note_(note) {}
 
-  /// Fills the records' `gpu`. Cells that have no passes keep what they have: a user's filter brings its own.
+  /// Compiles the passes of cells. Says whether any GPU compiles at all.
+  bool compile(const std::vector<measure::MeasuredCell>& cells);
+
+  /// Fills the records' `gpu`. Requires that their passes were compiled. Cells that have no passes keep what they have:
+  /// a user's filter brings its own.
   void add_to(std::vector<measure::MeasuredCell>& cells);
 
  private:

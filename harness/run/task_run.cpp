@@ -108,8 +108,8 @@ class TaskRun {
     if (!options_.part.is_worker()) {
       score(measured);
       measure_coverage(measured);
-      count_traffic(measured);
     }
+    if (bench_.gpus.compile(measured.cells) && !options_.part.is_worker()) count_traffic(measured);
     begin(options::Work::kPictures, measured.cells.size(), "pictures");
     bench_.gpus.add_to(measured.cells);
     write_images(task_of(all), measured);
@@ -182,8 +182,7 @@ class TaskRun {
 
   /// Counts what estimates of GPUs need of the map's reads.
   void count_traffic(measure::SceneMeasurement& measured) {
-    if (options_.gpus.empty()) return;
-    if (!traffic_) traffic_.emplace(renderer_, options_, task_, assets_);
+    if (!traffic_) traffic_.emplace(renderer_, options_, task_, assets_, coverage_->record.texels_per_pixel);
     for (measure::MeasuredCell& cell : measured.cells) traffic_->measure(cell);
   }
 

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-constexpr const char* kGpuRun = "run --out out --fresh --scene cubes --map-size 128 --rounds 1 --phases 1 --size ";
+constexpr const char* kGpuRun = "run --out out --fresh --scene cubes --rounds 1 --phases 1 --map-size ";
 
 /// A filter without weights: the mean of so many hardware fetches along a side.
 std::string plain_pcf(int side) {
@@ -29,7 +29,7 @@ class Gpus : public ProgramTest {
  protected:
   /// The cells of a run by filter; skips the test where there is no compiler.
   std::map<std::string, json> measure(const std::string& arguments, const std::string& environment = "",
-                                      const std::string& size = "96x54 ") {
+                                      const std::string& size = "128 --size 96x54 ") {
     const Outcome outcome = run(kGpuRun + size + arguments, environment);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     messages_ = outcome.err;
@@ -126,13 +126,25 @@ TEST_F(Gpus, EstimatesDoNotDependOnThePicturesSize) {
   const std::string filters = "--gpu navi21 --no-attribution --filters none,tent5x5,pcss,vsm ";
   const auto small = measure(filters);
   if (has_no_compiler()) GTEST_SKIP() << messages_;
-  const auto large = measure(filters, "", "480x270 ");
+  const auto large = measure(filters, "", "128 --size 480x270 ");
   for (const auto& [filter, cell] : small) {
     const double a = cell["gpu"]["navi21"]["estimate_us"], b = large.at(filter)["gpu"]["navi21"]["estimate_us"];
     std::printf("%s: %.3g us at 96x54, %.3g us at 480x270\n", filter.c_str(), a, b);
     EXPECT_NEAR(a / b, 1.0, 0.1) << filter;
     EXPECT_EQ(cell["gpu"]["navi21"]["parts_us"]["memory"], large.at(filter)["gpu"]["navi21"]["parts_us"]["memory"]);
   }
+}
+
+/// The pixels of a frame of 1080 rows lie about two texels of such a map apart: a lookup that reads one texel brings
+/// nearly every line that one of 25 brings. Pixels twice as far apart would bring seven tenths of them.
+TEST_F(Gpus, OfLargeMaps_NarrowLookupsBringNearlyTheSameLines) {
+  const auto cells = measure("--gpu navi21 --no-attribution --filters none,tent5x5", "", "4096 --size 96x54 ");
+  if (has_no_compiler()) GTEST_SKIP() << messages_;
+  const auto memory = [&](const char* filter) {
+    return cells.at(filter)["gpu"]["navi21"]["parts_us"]["memory"].get<double>();
+  };
+  EXPECT_GT(memory("none"), 0.9 * memory("tent5x5"));
+  EXPECT_LT(memory("none"), memory("tent5x5"));
 }
 
 TEST_F(Gpus, WithNone_NothingIsCompiled) {
@@ -146,8 +158,9 @@ TEST_F(Gpus, WithNone_NothingIsCompiled) {
 }
 
 TEST_F(Gpus, AreRefusedByName) {
-  expect_refusal(kGpuRun + std::string("96x54 --gpu navi22"), 2, {"--gpu", "'navi22'", "did you mean 'navi2"});
-  expect_refusal(kGpuRun + std::string("96x54 --gpu ''"), 2, {"--gpu"});
+  expect_refusal(kGpuRun + std::string("128 --size 96x54 --gpu navi22"), 2,
+                 {"--gpu", "'navi22'", "did you mean 'navi2"});
+  expect_refusal(kGpuRun + std::string("128 --size 96x54 --gpu ''"), 2, {"--gpu"});
 }
 
 TEST_F(Gpus, WhatVulkanRefuses_IsSaid_AndTheRunGoesOn) {
