@@ -9,6 +9,7 @@
 #include "harness/measure/phases.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/flicker.h"
+#include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -143,6 +144,8 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
     flip.texels = metrics::measure_flip(*seen, *truth.area_seen);
   }
   record.error.flip = find_mean(flip.texels, {});
+  const images::Rect tile = images::find_hardest_tile(flip);
+  record.images.hardest = {1.0 * tile.x, 1.0 * tile.y, 1.0 * tile.width, 1.0 * tile.height};
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.truth = {truth.standard_error, truth.unanimous, truth.weight_rmse};
   if (truth.weight_rmse > kTellingWeight) record.warnings.push_back(warn_of_weight(record, truth.weight_rmse));

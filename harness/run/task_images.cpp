@@ -18,6 +18,7 @@
 #include "report/images/grid.h"
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"
+#include "report/records/cell_names.h"
 #include "report/records/format.h"
 
 namespace shadowbench::run {
@@ -329,7 +330,8 @@ std::string task_stem(const options::RunOptions& options, const measure::SceneTa
   std::string name = task.scene->name;
   if (task.scene->cameras.size() > 1) name += "." + task.camera->name;
   if (options.map_sizes.size() > 1) name += fmt::format(".map{}", task.map_size);
-  if (options.fits.size() > 1) name += "." + scene::describe_fit(options.fit);
+  if (options.fits.size() > 1)
+    name += "." + records::make_fit_stem(scene::describe_fit(options.fit), scene::describe_fits(options.fits));
   if (options.sizes.size() > 1) name += fmt::format(".{}x{}", options.width, options.height);
   return files::make_file_stem(name);
 }

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "report/analysis/cell_group.h"
+#include "report/analysis/gains.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
@@ -57,9 +58,16 @@ void require_claim(const std::vector<records::CellRecord>& cells, const AdviceRe
                      did_you_mean(wanted, {known.begin(), known.end()}), fmt::join(known, ", ")));
 }
 
-// The cells that are asked about. Those of filters for teaching are named in `teaching` instead.
+// The cells that are asked about, but for those where the choice does not matter.
+std::vector<const records::CellRecord*> drop_idle(std::vector<const records::CellRecord*> chosen, Advice& advice) {
+  advice.idle = list_idle_places(chosen);
+  std::erase_if(chosen, [&](const auto* cell) { return std::ranges::count(advice.idle, place_of(*cell)) > 0; });
+  return chosen;
+}
+
+// The cells that are asked about, of every class. Those of filters for teaching are named in `teaching` instead.
 std::vector<const records::CellRecord*> choose_cells(const std::vector<records::CellRecord>& cells,
-                                                     const AdviceRequest& request, std::set<std::string>& teaching) {
+                                                     const AdviceRequest& request, Advice& advice) {
   if (cells.empty()) throw Error(ErrorKind::kInput, "the run holds no cell: nothing can be advised; run it again");
   require_scenes(cells, request.scenes);
   if (request.size) require_size(cells, *request.size);
@@ -67,20 +75,38 @@ std::vector<const records::CellRecord*> choose_cells(const std::vector<records::
   for (const records::CellRecord& cell : cells) {
     const bool scene_fits = request.scenes.empty() || std::ranges::count(request.scenes, cell.scene) > 0;
     const bool size_fits = !request.size || std::pair(cell.width, cell.height) == *request.size;
-    const bool class_fits = request.width_class.empty() || cell.kernel.width_class == request.width_class;
-    if (!scene_fits || !size_fits || !class_fits) continue;
+    if (!scene_fits || !size_fits) continue;
     if (cell.teaching.value_or(false))
-      teaching.insert(cell.filter);
+      advice.teaching.insert(cell.filter);
     else
       chosen.push_back(&cell);
   }
-  if (chosen.empty() && !request.width_class.empty())
-    refuse(fmt::format("--class: the run has no {} kernel; its tables say of each filter which it has",
-                       request.width_class));
-  if (chosen.empty() && !teaching.empty())
-    refuse(
-        fmt::format("the run has filters for teaching alone ({}), which are not advised", fmt::join(teaching, ", ")));
-  return chosen;
+  if (chosen.empty() && !advice.teaching.empty())
+    refuse(fmt::format("the run has filters for teaching alone ({}), which are not advised",
+                       fmt::join(advice.teaching, ", ")));
+  return drop_idle(std::move(chosen), advice);
+}
+
+std::vector<const records::CellRecord*> choose_class(std::vector<const records::CellRecord*> cells,
+                                                     const std::string& width_class) {
+  if (width_class.empty()) return cells;
+  std::erase_if(cells, [&](const records::CellRecord* cell) { return cell->kernel.width_class != width_class; });
+  if (cells.empty())
+    refuse(fmt::format("--class: the run has no {} kernel; its tables say of each filter which it has", width_class));
+  return cells;
+}
+
+// Where nothing that is seen is limited, the cheapest is often no better than no filter.
+void set_aside_no_gain(Advice& advice, const std::vector<const records::CellRecord*>& cells) {
+  std::vector<Configuration> configurations;
+  for (const Candidate& each : advice.keeping) configurations.push_back(each.configuration);
+  const std::vector<std::optional<bool>> gains = find_gains(configurations, cells);
+  advice.compares_with_none = std::ranges::count(gains, std::optional(true)) > 0;
+  if (!advice.compares_with_none) return;
+  std::vector<Candidate> gaining;
+  for (std::size_t i = 0; i < gains.size(); ++i)
+    (gains[i].value_or(true) ? gaining : advice.no_gain).push_back(std::move(advice.keeping[i]));
+  advice.keeping = std::move(gaining);
 }
 
 // Says why a value cannot be had; empty where it can.
@@ -139,7 +165,7 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
   const AdviceRequest& request = advice.request;
   if (std::string gap = find_missing_cell(configuration, advice.places); !gap.empty())
     return Unjudged{configuration, std::move(gap), {}};
-  Candidate candidate{configuration, {}, {}};
+  Candidate candidate{configuration, {}, {}, combine_rmse(configuration.cells)};
   for (const Demand& demand : request.demands) {
     Verdict verdict = demand.spec ? judge_limit(configuration, demand, request.light, advice.places)
                                   : judge_claim(configuration, demand.claim, request);
@@ -243,6 +269,12 @@ std::optional<records::Interval> find_interval(const records::CellRecord& cell, 
 
 }  // namespace
 
+bool limits_what_is_seen(const AdviceRequest& request) {
+  return std::ranges::any_of(
+      request.demands,
+      [](const Demand& each) { return each.spec && each.spec->metric && each.spec->metric->group() != "cost"; });
+}
+
 Verdict judge_limit(const Configuration& configuration, const Demand& demand, LightMotion light,
                     const std::vector<Place>& places) {
   Verdict verdict;
@@ -317,7 +349,8 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
     refuse_mixed_times(request);
     if (request.cheapest == CostKind::kTime) advice.request.cheapest = CostKind::kRatio;
   }
-  const std::vector<const records::CellRecord*> chosen = choose_cells(cells, request, advice.teaching);
+  const std::vector<const records::CellRecord*> asked = choose_cells(cells, request, advice),
+                                                chosen = choose_class(asked, request.width_class);
   advice.places = list_places(chosen);
   for (const Configuration& configuration : list_configurations(chosen)) {
     auto verdict = judge(configuration, advice);
@@ -329,6 +362,7 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
     (list_failed(candidate).empty() ? advice.keeping : advice.failing).push_back(std::move(candidate));
   }
   sort_by_cost(advice.keeping, advice.request);
+  if (!request.gainless && !limits_what_is_seen(request)) set_aside_no_gain(advice, asked);
   sort_by_cost(advice.failing, advice.request);
   for (std::size_t i = 0; i < request.demands.size(); ++i) advice.obstacles.push_back(find_obstacle(advice, i));
   advice.closest = find_closest(advice);

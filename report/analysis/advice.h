@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "report/analysis/configuration.h"
+#include "report/analysis/front.h"
 #include "report/analysis/limits.h"
 #include "report/records/records.h"
 
@@ -22,6 +23,7 @@ struct AdviceRequest {
   std::vector<std::string> scenes;                         ///< empty: all of the run
   std::string width_class;                                 ///< of the kernel; empty: any
   std::optional<std::pair<int, int>> size;                 ///< of the picture, pixels; empty: all of the run
+  bool gainless = false;                                   ///< keep those that are no better than `none`, too
   std::map<std::string, std::vector<std::string>> claims;  ///< by filter id, for cells whose records do not hold theirs
 };
 
@@ -58,7 +60,11 @@ struct Candidate {
   Configuration configuration;
   Cost cost;
   std::vector<Verdict> verdicts;  ///< one per demand
+  std::optional<Estimate> rmse;   ///< over the places; empty where one has none
 };
+
+/// Whether a limit is set on an error or on a fault that people see.
+bool limits_what_is_seen(const AdviceRequest& request);
 
 /// A configuration that cannot be said to keep the limits.
 struct Unjudged {
@@ -103,9 +109,12 @@ struct Obstacle {
 struct Advice {
   AdviceRequest request;
   std::vector<Place> places;
-  std::set<std::string> teaching;  ///< filters of the run that show a mistake, and are left out
-  std::vector<Candidate> keeping;  ///< all demands, cheapest first: the first is advised, the second the runner-up
-  std::vector<Candidate> failing;  ///< cheapest first
+  std::set<std::string> teaching;   ///< filters of the run that show a mistake, and are left out
+  std::vector<Place> idle;          ///< left out: the choice does not matter there
+  std::vector<Candidate> keeping;   ///< all demands, cheapest first: the first is advised, the second the runner-up
+  std::vector<Candidate> no_gain;   ///< likewise, but no better than `none`, where nothing that is seen is limited
+  bool compares_with_none = false;  ///< whether some were found to be better than `none`
+  std::vector<Candidate> failing;   ///< cheapest first
   std::vector<Unjudged> unjudged;
   std::vector<Obstacle> obstacles;     ///< one per demand
   std::optional<std::size_t> closest;  ///< index into `failing`: fails the fewest demands, among those by the least
@@ -115,11 +124,12 @@ struct Advice {
 /// the same cost are ordered by time, then RMSE. Where several kinds of machine measured the cells, their ratio to
 /// `none` stands for their time, smaller pictures and maps come first, and `cells` are those of
 /// withhold_mixed_times().
-/// Filters for teaching are left out, and with a class of width those of others. A configuration that was not measured
-/// in a place, did not finish there, or lacks a value there is not judged. A value that has nothing to be measured on
-/// in some places, as is_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells`
-/// outlive what is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have,
-/// or a claim that no filter makes, or a limit on times of mixed machines; Error(kInput) where there is no cell.
+/// Where nothing that is seen is limited, those that are no better than `none` do not count as keeping, unless all are
+/// so. Filters for teaching are left out, and with a class of width those of others. A configuration that was not
+/// measured in a place, did not finish there, or lacks a value there is not judged. A value that has nothing to be
+/// measured on in some places, as is_nothing_to_see() says, is judged on the others, if there are any. Requires that
+/// `cells` outlive what is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not
+/// have, or a claim that no filter makes, or a limit on times of mixed machines; Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
 
 }  // namespace shadowbench::analysis

@@ -25,18 +25,9 @@ std::optional<double> worst_rmse(const Candidate& candidate) {
   return worst;
 }
 
-std::optional<Estimate> rmse_over_places(const Candidate& candidate) {
-  std::vector<Estimate> estimates;
-  for (const records::CellRecord* cell : candidate.configuration.cells) {
-    if (!cell->error.rmse) return std::nullopt;
-    estimates.push_back(estimate_rmse(*cell));
-  }
-  return list_error_measures().front().combine(estimates);
-}
-
 // What the order by cost hides: the one that is named second may be the more accurate.
 std::string compare_errors(const Candidate& first, const Candidate& second) {
-  const auto a = rmse_over_places(first), b = rmse_over_places(second);
+  const std::optional<Estimate>&a = first.rmse, &b = second.rmse;
   if (!a || !b) return "";
   const bool is_lower = b->value < a->value;
   const Estimate gap = is_lower ? subtract(*a, *b) : subtract(*b, *a);
@@ -60,7 +51,7 @@ std::string explain_order(const Candidate& first, const Candidate& second, Light
 
 std::string describe_tie(const Advice& advice, const CostGap& gap) {
   const Candidate &first = advice.keeping[0], &second = advice.keeping[1];
-  const std::string& name = first.configuration.label;
+  const std::string& name = first.configuration.name;
   if (gap.basis == Basis::kExact) {
     return fmt::format("a tie, at the same cost: {} is named first for {}", name,
                        explain_order(first, second, advice.request.light));
@@ -79,7 +70,7 @@ std::string count_ties(const Advice& advice) {
   for (std::size_t i = 2; i < advice.keeping.size(); ++i) {
     const CostGap gap = compare_costs(advice.keeping[0], advice.keeping[i], advice.request.cheapest);
     if (!gap.tied || gap.basis == Basis::kNone) continue;
-    labels.push_back(advice.keeping[i].configuration.label);
+    labels.push_back(advice.keeping[i].configuration.name);
   }
   if (labels.empty()) return "";
   if (labels.size() > 3) return fmt::format("; {} more are tied with it", labels.size());
@@ -92,7 +83,7 @@ std::string describe_obstacle(const Advice& advice, std::size_t i) {
   const auto worst = nearest.verdicts[i].worst;
   const std::string way = worst ? format_limit(*worst) + " would let" : "without it there is";
   return fmt::format("{} ({} {} it alone; {} {}{})", describe_demand(advice.request.demands[i]), obstacle.alone.size(),
-                     obstacle.alone.size() > 1 ? "fail" : "fails", way, nearest.configuration.label,
+                     obstacle.alone.size() > 1 ? "fail" : "fails", way, nearest.configuration.name,
                      worst ? " through" : "");
 }
 
@@ -237,7 +228,7 @@ std::string describe_closest(const Advice& advice) {
     const auto worst = closest.verdicts[i].worst;
     broken.push_back(describe_demand(advice.request.demands[i]) + (worst ? " with " + format_limit(*worst) : ""));
   }
-  return fmt::format("{} comes closest, and breaks {}", closest.configuration.label, fmt::join(broken, " and "));
+  return fmt::format("{} comes closest, and breaks {}", closest.configuration.name, fmt::join(broken, " and "));
 }
 
 std::string describe_failure(const Advice& advice) {
@@ -267,9 +258,17 @@ std::vector<std::string> list_run_notes(const Advice& advice, const records::GlR
 
 std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl) {
   std::vector<std::string> notes;
-  if (advice.request.demands.empty()) {
-    notes.emplace_back(
-        "No limit was given: what does least is then the cheapest; --max-rmse or another limit asks for more.");
+  if (!advice.no_gain.empty()) {
+    std::vector<std::string> names;
+    for (const Candidate& each : advice.no_gain) names.push_back(each.configuration.name);
+    notes.push_back(fmt::format("No error is limited: what is not clearly better than 'none' is left out ({}).",
+                                fmt::join(names, ", ")));
+  }
+  if (!advice.idle.empty()) {
+    std::vector<std::string> names;
+    for (const Place& place : advice.idle) names.push_back(describe_place(place, advice.idle));
+    notes.push_back(fmt::format("The choice does not matter on {}: every filter's FLIP is below 0.001 there.",
+                                fmt::join(names, ", ")));
   }
   for (std::string& note : list_run_notes(advice, gl)) notes.push_back(std::move(note));
   add_notes_of_nothing_to_see(notes, advice);

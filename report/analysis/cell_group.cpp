@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "filters/kernel_width.h"
+#include "report/analysis/configuration.h"
 #include "report/records/cell_key.h"
-#include "report/records/format.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::analysis {
@@ -39,6 +39,7 @@ std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells
     if (is_new) groups.push_back({cell.scene, {}});
     groups[place->second].cells.push_back(cell);
   }
+  for (CellGroup& group : groups) group.names = records::CellNames(point_to(group.cells));
   return groups;
 }
 
@@ -52,13 +53,6 @@ std::optional<std::size_t> find_class(const records::CellRecord& cell) {
 
 std::string_view name_class(std::optional<std::size_t> width_class) {
   return width_class ? filters::width_classes()[*width_class].name : std::string_view();
-}
-
-std::string label_cell(const CellGroup& group, const records::CellRecord& cell) {
-  const auto count = std::count_if(group.cells.begin(), group.cells.end(),
-                                   [&](const records::CellRecord& other) { return other.filter == cell.filter; });
-  return count > 1 && !cell.params.empty() ? fmt::format("{} ({})", cell.filter, records::describe_params(cell.params))
-                                           : cell.filter;
 }
 
 double find_rmse_reach(const records::CellRecord& cell) {

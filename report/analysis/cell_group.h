@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "report/analysis/front.h"
+#include "report/records/cell_names.h"
 #include "report/records/error_parts.h"
 #include "report/records/records.h"
 
@@ -15,6 +16,7 @@ namespace shadowbench::analysis {
 struct CellGroup {
   std::string scene;
   std::vector<records::CellRecord> cells;
+  records::CellNames names = records::CellNames({});  ///< of the cells
 };
 
 /// Groups cells by what may be compared, in the order in which each group first appears.
@@ -25,9 +27,6 @@ std::optional<std::size_t> find_class(const records::CellRecord& cell);
 
 /// The name of a class; empty without one.
 std::string_view name_class(std::optional<std::size_t> width_class);
-
-/// Names a cell of a group: its filter, with its parameters where the group holds that filter more than once.
-std::string label_cell(const CellGroup& group, const records::CellRecord& cell);
 
 /// How far a cell's RMSE may be off: half the width of its 95 % interval over the phases of the map's grid, or the
 /// truth's standard error where the run has one phase; 0 where neither is known.

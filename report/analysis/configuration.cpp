@@ -3,76 +3,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
-#include "base/split_list.h"
 #include "report/records/cell_key.h"
-#include "report/records/format.h"
+#include "report/records/cell_names.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::analysis {
 namespace {
 
-constexpr std::string_view kSeparator = " · ";  // of records::describe_settings()
-
-// What is true of every scene: without the view, and without lengths in the units of one scene's map.
-std::vector<std::string> describe_parts(records::CellRecord cell) {
-  cell.map_scale = {};
-  std::vector<std::string> parts = split_list(records::describe_settings(cell), kSeparator);
-  parts.erase(parts.begin());
-  return parts;
-}
-
-// Counts how many configurations share what a label may name.
-struct Census {
-  std::map<std::string, std::size_t> filters;
-  std::map<std::string, std::size_t> params;    ///< by param_key()
-  std::map<std::string, std::size_t> settings;  ///< by the text of describe_parts()
-};
-
-std::string param_key(const records::CellRecord& cell, const std::string& name) {
-  return fmt::format("{} {}", cell.filter, records::describe_params({{name, cell.params.at(name)}}));
-}
-
-Census take_census(const std::vector<Configuration>& all) {
-  Census census;
-  for (const Configuration& configuration : all) {
-    const records::CellRecord& cell = *configuration.cells.front();
-    ++census.filters[cell.filter];
-    for (const auto& [name, value] : cell.params) ++census.params[param_key(cell, name)];
-    for (const std::string& part : describe_parts(cell)) ++census.settings[part];
-  }
-  return census;
-}
-
-// Settings are named only where not every configuration has them; with `always_map` the map always is.
-std::string make_label(const records::CellRecord& cell, const Census& census, std::size_t configurations,
-                       bool always_map) {
-  records::ParamMap varying;
-  for (const auto& [name, value] : cell.params)
-    if (census.params.at(param_key(cell, name)) < census.filters.at(cell.filter)) varying[name] = value;
-  std::string label = cell.filter;
-  if (!varying.empty()) label += fmt::format(" ({})", records::describe_params(varying));
-  const std::vector<std::string> parts = describe_parts(cell);
-  for (const std::string& part : parts)
-    if ((always_map && part == parts.front()) || census.settings.at(part) < configurations) label += ", " + part;
-  return label;
-}
-
-void set_labels(std::vector<Configuration>& all) {
-  const Census census = take_census(all);
+void set_names(std::vector<Configuration>& all) {
+  const auto first = [](const Configuration& each) { return each.cells.front(); };
+  std::vector<const records::CellRecord*> cells;
+  std::ranges::transform(all, std::back_inserter(cells), first);
+  const records::CellNames names(cells);
   std::map<std::string, int> uses;
   for (Configuration& configuration : all) {
-    configuration.label = make_label(*configuration.cells.front(), census, all.size(), true);
-    configuration.name = make_label(*configuration.cells.front(), census, all.size(), false);
-    ++uses[configuration.label];
+    configuration.name = names.name(*first(configuration));
+    ++uses[configuration.name];
   }
   for (Configuration& configuration : all)
-    if (uses[configuration.label] > 1)
-      for (std::string* text : {&configuration.label, &configuration.name})
-        *text += ", as cell " + configuration.cells.front()->key;
+    if (uses[configuration.name] > 1) configuration.name += ", as cell " + first(configuration)->key;
 }
 
 }  // namespace
@@ -92,6 +45,10 @@ std::vector<Place> list_places(const std::vector<const records::CellRecord*>& ce
   return places;
 }
 
+std::size_t find_place(const std::vector<Place>& places, const records::CellRecord& cell) {
+  return static_cast<std::size_t>(std::ranges::find(places, place_of(cell)) - places.begin());
+}
+
 std::string describe_place(const Place& place, const std::vector<Place>& places) {
   const auto views =
       std::count_if(places.begin(), places.end(), [&](const Place& p) { return p.scene == place.scene; });
@@ -109,11 +66,11 @@ std::vector<Configuration> list_configurations(const std::vector<const records::
     if (is_new) {
       settings.erase("filter");
       settings.erase("params");
-      configurations.push_back({"", "", records::dump_line(settings), {}});
+      configurations.push_back({"", records::dump_line(settings), {}});
     }
     configurations[index->second].cells.push_back(cell);
   }
-  set_labels(configurations);
+  set_names(configurations);
   return configurations;
 }
 

@@ -23,18 +23,20 @@ Place place_of(const records::CellRecord& cell);
 /// Lists where cells were measured, each place once, in the order in which they appear.
 std::vector<Place> list_places(const std::vector<const records::CellRecord*>& cells);
 
+/// The index of a cell's place; their number where it is none of them.
+std::size_t find_place(const std::vector<Place>& places, const records::CellRecord& cell);
+
 /// Names a place for people: its scene, and its view where the scene has several.
 std::string describe_place(const Place& place, const std::vector<Place>& places);
 
 /// The cells that differ in nothing but scene and view: what a renderer would choose as a whole.
 struct Configuration {
-  std::string label;                              ///< filter and map, and all else in which the configurations differ
-  std::string name;                               ///< the same without what all configurations have in common
+  std::string name;                               ///< by records::CellNames
   std::string surroundings;                       ///< canonical settings without filter and parameters
   std::vector<const records::CellRecord*> cells;  ///< in the order of the run; never empty
 };
 
-/// Groups cells into configurations, in the order in which each first appears; no two have one label.
+/// Groups cells into configurations, in the order in which each first appears; no two have one name.
 /// Requires that the cells outlive what is returned.
 std::vector<Configuration> list_configurations(const std::vector<const records::CellRecord*>& cells);
 

@@ -73,7 +73,7 @@ std::vector<CostCurve> make_light_curves(const TradeScope& scope, int map_size,
     timed.push_back(each);
     if (is_reference(cell)) reference = &cell;
   }
-  label_configurations(timed);
+  label_configurations(timed, cells);
   std::vector<CostCurve> curves;
   for (const TradeConfiguration& each : timed) {
     CostCurve& curve = curves.emplace_back(CostCurve{each.filter, each.label, {}});

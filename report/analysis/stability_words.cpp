@@ -76,11 +76,9 @@ std::vector<std::string> list_troubles(const records::CellRecord& cell) {
 
 std::vector<std::string> describe_stability(const CellGroup& group) {
   std::vector<std::string> sentences;
-  for (const records::CellRecord& cell : group.cells) {
-    const std::string label =
-        cell.params.empty() ? cell.filter : fmt::format("{} ({})", cell.filter, records::describe_params(cell.params));
-    for (const std::string& trouble : list_troubles(cell)) sentences.push_back(fmt::format("{}: {}.", label, trouble));
-  }
+  for (const records::CellRecord& cell : group.cells)
+    for (const std::string& trouble : list_troubles(cell))
+      sentences.push_back(fmt::format("{}: {}.", group.names.name(cell), trouble));
   return sentences;
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kDearer = 1.5;          // times as dear: worth a sentence
 constexpr double kNoFault = 0.001;       // below this rate a fault is not seen
-constexpr std::size_t kMostOfAKind = 3;  // sentences
+constexpr std::size_t kMostOfAKind = 2;  // sentences, and names in one
 constexpr double kMajority = 2.0 / 3.0;  // of the cells: what "most" means
 
 using Cells = std::vector<records::CellRecord>;
@@ -91,7 +91,7 @@ class Finder {
       peers[common(sound_[i])].push_back(i);
       at[i].resize(places_.size());
       for (const records::CellRecord* cell : sound_[i].cells)
-        if (cell->error.rmse) at[i][find_place(*cell)] = cell;
+        if (cell->error.rmse) at[i][find_place(places_, *cell)] = cell;
     }
     std::vector<std::array<const records::CellRecord*, 2>> pairs;
     for (std::size_t a = 0; a < sound_.size(); ++a) {
@@ -104,10 +104,6 @@ class Finder {
         if (!pairs.empty()) visit(sound_[a], sound_[b], pairs);
       }
     }
-  }
-
-  std::size_t find_place(const records::CellRecord& cell) const {
-    return static_cast<std::size_t>(std::ranges::find(places_, place_of(cell)) - places_.begin());
   }
 
   /// By how much the first error is clearly the smaller one, as a ratio; 1 where they cannot be told apart.

@@ -8,7 +8,7 @@
 namespace shadowbench::analysis {
 
 /// At most so many sentences are said of a run.
-inline constexpr std::size_t kMostSurprises = 10;
+inline constexpr std::size_t kMostSurprises = 5;
 
 /// Says what a reader of the numbers would not expect, in at most kMostSurprises sentences: filters that are suspect or
 /// did not finish; of equally wide kernels, those whose order turns over between scenes, and those that cost more for

@@ -10,6 +10,7 @@
 #include "report/analysis/cell_group.h"
 #include "report/files/file_name.h"
 #include "report/records/cell_key.h"
+#include "report/records/cell_names.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
 
@@ -173,20 +174,12 @@ std::optional<std::size_t> find_group(const TradeConfiguration& own, const Measu
 
 }  // namespace
 
-void label_configurations(std::vector<TradeConfiguration>& configurations) {
-  std::map<std::pair<std::string, std::string>, std::set<std::string>> values;
-  std::set<int> map_sizes;
-  for (const TradeConfiguration& each : configurations) {
-    map_sizes.insert(each.map_size);
-    for (const auto& [name, value] : each.params)
-      values[{each.filter, name}].insert(records::describe_params({{name, value}}));
-  }
-  for (TradeConfiguration& each : configurations) {
-    records::ParamMap telling = each.params;
-    std::erase_if(telling, [&](const auto& param) { return values[{each.filter, param.first}].size() < 2; });
-    each.label = each.filter + (telling.empty() ? "" : " (" + records::describe_params(telling) + ")");
-    if (map_sizes.size() > 1) each.label += fmt::format(" · map {}", each.map_size);
-  }
+void label_configurations(std::vector<TradeConfiguration>& configurations,
+                          const std::vector<records::CellRecord>& cells) {
+  std::vector<const records::CellRecord*> firsts;
+  for (const TradeConfiguration& each : configurations) firsts.push_back(&cells[each.cells.front()]);
+  const records::CellNames names(firsts);
+  for (TradeConfiguration& each : configurations) each.label = names.name(cells[each.cells.front()]);
 }
 
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells) {
@@ -204,7 +197,7 @@ std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>
     scope.width = first ? first->width : 0;
     scope.height = first ? first->height : 0;
     scope.costs = reader.costs();
-    label_configurations(scope.configurations);
+    label_configurations(scope.configurations, cells);
   }
   std::erase_if(scopes, [](const TradeScope& scope) { return scope.configurations.empty(); });
   make_unique(scopes);

@@ -19,7 +19,7 @@ struct TradeConfiguration {
   int map_size = 0;
   std::optional<double> sigma_texels;      ///< width of its kernel
   std::optional<std::size_t> width_class;  ///< index into filters::width_classes()
-  std::string label;                       ///< tells it apart in its scope: "vsm (radius 4) · map 512"
+  std::string label;                       ///< tells it apart in its scope: "vsm (radius 4), map 512"
   std::vector<std::size_t> cells;          ///< indices into the run's cells: one, or one per scene and view
   std::array<Measured, kErrorMeasures> errors;
   std::vector<Measured> costs;  ///< one for each of the scope's
@@ -39,9 +39,9 @@ struct TradeScope {
   std::size_t incomplete = 0;  ///< configurations left out because not every scene and view has a cell of them
 };
 
-/// Labels configurations by their filter, the parameters in which those of one filter differ, and the map where there
-/// are several.
-void label_configurations(std::vector<TradeConfiguration>& configurations);
+/// Labels configurations of a run's cells by what differs among them, as records::CellNames does.
+void label_configurations(std::vector<TradeConfiguration>& configurations,
+                          const std::vector<records::CellRecord>& cells);
 
 /// Sorts a run's cells into scopes: scenes together first, where there are several, then each scene by itself in the
 /// order in which it appears. Scenes together hold only configurations that every scene and view has.

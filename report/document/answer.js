@@ -1,12 +1,13 @@
-// The answer on top of a run's page: the cheapest configuration within the limits that the reader moves. What advise()
-// found is in the page's data; here worst values are compared with limits, and no more. `shadowbench advise` says the
-// same, as the command below the answer.
+// The answer on top of a run's page: which filters are fast, balanced and best within the limits that the reader moves.
+// What advise() found is in the page's data; here worst values are compared with limits, and no more. `shadowbench
+// advise` says the same, as the command below the answer.
 const startAnswer = (holder) => {
   const kSteps = 60;
   const kTime = "time_ms";
   const kSeen = 0.001;
+  const kClaim = "contact-hardening";
   const places = run.places.map(({ title }) => title);
-  const state = { wide: "", limits: { ...run.limits } };
+  const state = { wide: "", soft: false, limits: {} };
   const nameLimit = (measure) =>
     measure.option === "--max-ms"
       ? { ...measure, field: kTime, title: "time of a frame" }
@@ -14,12 +15,13 @@ const startAnswer = (holder) => {
   const limits = run.measures.filter(({ id, option }) => option && id !== `${kTime}.static`).map(nameLimit);
   const limitOf = (field) => limits.find((limit) => limit.field === field);
   const canLimit = (field) => limitOf(field) && !(field === kTime && costChoice().isEstimate);
-  const titleOf = (field) => limitOf(field).title;
+  const titleOf = (field) => limitOf(field)?.title ?? field;
   const fieldOf = (field) => (field === kTime ? costChoice().field : field);
+  const [all] = run.scopes;
 
-  // The worst value of a configuration, or a text that says why there is none.
-  const worstOf = (index, field) => run.configurations[index].worst[fieldOf(field)];
-  const costOf = (index) => run.configurations[index][costChoice().field];
+  // The worst value of a configuration in a scope, or a text that says why there is none.
+  const worstOf = (index, field, scope = all) => scope.rows[index].worst[fieldOf(field)];
+  const costOf = (index, scope = all) => scope.rows[index][costChoice().field];
   // Of mixed machines, costs are ratios to `none`, which under other settings is another one.
   const areComparable = (a, b) =>
     !run.ratios ||
@@ -27,15 +29,23 @@ const startAnswer = (holder) => {
     run.configurations[a.index].surroundings === run.configurations[b.index].surroundings;
   // Whether the cost of one cannot be told from that of another, which ranks behind it.
   const areTied = ({ tied }, { rank }) => tied.some(([from, end]) => from <= rank && rank < end);
-  const judge = () => {
-    const { order, unjudged } = run.advice[shadowbench.cost][state.wide];
-    const judged = { keeping: [], failing: [], unjudged: [...unjudged] };
+  const limitsWhatIsSeen = () => Object.keys(state.limits).some((field) => limitOf(field).group !== "cost");
+  const judge = (scope = all) => {
+    const { order, unjudged } = scope.advice[shadowbench.cost][state.wide] ?? { order: [], unjudged: [] };
+    const judged = { keeping: [], failing: [], noGain: [], unjudged: [...unjudged] };
     const fields = Object.keys(state.limits);
     for (const [rank, { index, tied }] of order.entries()) {
-      const gap = fields.map((field) => worstOf(index, field)).find((worst) => typeof worst === "string");
-      const broken = fields.filter((field) => worstOf(index, field).value > state.limits[field]);
+      const gap = fields.map((field) => worstOf(index, field, scope)).find((worst) => typeof worst === "string");
+      const broken = fields.filter((field) => worstOf(index, field, scope).value > state.limits[field]);
+      if (state.soft && !run.configurations[index].hardens) broken.push(kClaim);
       if (gap) judged.unjudged.push({ index, gap });
       else (broken.length > 0 ? judged.failing : judged.keeping).push({ index, rank, tied, broken });
+    }
+    judged.gained = judged.keeping.some(({ index }) => scope.rows[index].gains);
+    if (judged.gained && !limitsWhatIsSeen()) {
+      const isPlain = ({ index }) => scope.rows[index].gains === false;
+      judged.noGain = judged.keeping.filter(isPlain);
+      judged.keeping = judged.keeping.filter((each) => !isPlain(each));
     }
     return judged;
   };
@@ -44,17 +54,18 @@ const startAnswer = (holder) => {
   const say = (value, field) => format(value, limitOf(field).unit);
   const sayWorst = (index, field) =>
     `${say(worstOf(index, field).value, field)} on ${places[worstOf(index, field).place]}`;
-  const costText = (index) => `${format(costOf(index))} ${costChoice().unit}`;
+  const costText = (index, scope) => `${format(costOf(index, scope))} ${costChoice().unit}`;
   const list = (texts) => (texts.length > 1 ? `${texts.slice(0, -1).join(", ")} and ${texts.at(-1)}` : texts.join());
-  const writeCommand = () => {
-    const asked = limits.filter(({ field }) => field in state.limits);
-    return [
-      "shadowbench advise RUN",
-      ...asked.map(({ option, field }) => `${option} ${state.limits[field]}`),
-      ...(state.wide ? [`--class ${state.wide}`] : []),
-      ...(costChoice().option ? [costChoice().option] : []),
-    ].join(" ");
-  };
+
+  const pick = ({ keeping, gained }, scope) =>
+    pickThree(keeping, {
+      rmseOf: ({ index }) => scope.rows[index].rmse,
+      costOf: ({ index }) => costOf(index, scope),
+      areComparable,
+      areTied,
+      why: limitsWhatIsSeen() ? "cheapest within the limits" : gained ? "cheapest with a clear gain" : "cheapest",
+    });
+
   // How the worst of what can be limited differs between the choice and the runner-up.
   const compareWorst = (best, second) => {
     const found = { lower: [], higher: [] };
@@ -105,11 +116,20 @@ const startAnswer = (holder) => {
   };
 
   const headline = element(holder, "p", { className: "choice", "aria-live": "polite" });
-  const reasons = element(holder, "ul");
-  const picture = element(holder, "div", { className: "worst" });
-  const line = element(holder, "p", { className: "note" }, "In a terminal: ");
-  const code = element(line, "code");
   const controls = element(holder, "form", { className: "limits", "aria-label": "Limits", onsubmit: () => false });
+  const table = element(element(holder, "div", { className: "scroll picks" }), "table");
+  const picture = startPicture(holder);
+  const folded = element(holder, "details", { className: "reasons" });
+  element(folded, "summary", {}, "Why, limits and commands");
+  const sliders = element(folded, "div", { className: "limits sliders" });
+  const reasons = element(folded, "ul");
+  const codes = ["In a terminal: ", "In a window: "].map((text) => {
+    const line = element(folded, "p", { className: "note" }, text);
+    const code = element(line, "code");
+    line.append(" ");
+    addButton(line, "Copy", () => navigator.clipboard?.writeText(code.textContent));
+    return code;
+  });
   // An item of the reasons, in which a number stands for a configuration's name.
   const explain = (lead, ...parts) => {
     const item = element(reasons, "li");
@@ -119,39 +139,15 @@ const startAnswer = (holder) => {
       else item.append(part);
   };
 
-  let turn = 0;
-  const showWorst = async (best) => {
-    const mine = ++turn;
-    const worst = best === null ? {} : worstOf(best, "error.rmse");
-    picture.replaceChildren();
-    if (worst.value === undefined) return;
-    const { value: shown, message } = await attempt(shadowbench.worstPlace(worst.place, best));
-    if (mine !== turn) return;
-    if (message) element(picture, "p", { className: "note" }, `There is no picture of the worst place: ${message}`);
-    if (!shown) return;
-    const addPicture = (canvas, text) => {
-      const figure = element(picture, "figure");
-      canvas.setAttribute("role", "img");
-      const where = `where ${labelOf(best)} is most wrong on ${places[worst.place]}`;
-      canvas.setAttribute("aria-label", `${text} ${where}`);
-      figure.append(canvas);
-      element(element(figure, "figcaption"), "bdi", {}, text);
-    };
-    addPicture(shown.left, "truth");
-    addPicture(shown.right, labelOf(best));
-    const view = { place: worst.place, left: kTruth, right: best, layer: "picture", rect: shown.rect };
-    addButton(picture, "Look closer", () => shadowbench.openViewer(view));
-  };
-  const showHeadline = ({ index: best }, tied) => {
-    headline.replaceChildren();
-    element(headline, "bdi", {}, tied.length > 0 ? labelOf(best) : run.configurations[best].full);
-    if (tied.length > 2) headline.append(` and ${tied.length} others`);
-    for (const { index } of tied.length > 2 ? [] : tied) {
-      headline.append(" or ");
-      element(headline, "bdi", {}, labelOf(index));
-    }
-    if (tied.length > 0) headline.append(": their costs cannot be told apart");
-    headline.append(`. ${tied.length > 0 ? "About " : ""}${costText(best)} ${costChoice().said}.`);
+  const writeAdvise = () => {
+    const asked = limits.filter(({ field }) => field in state.limits);
+    return [
+      `shadowbench advise ${folderOfPage()}`,
+      ...asked.map(({ option, field }) => `${option} ${state.limits[field]}`),
+      ...(state.soft ? [`--requires ${kClaim}`] : []),
+      ...(state.wide ? [`--class ${state.wide}`] : []),
+      ...(costChoice().option ? [costChoice().option] : []),
+    ].join(" ");
   };
   const explainSecond = (best, second) => {
     if (!second) return explain("Runner-up:", "no other keeps the limits.");
@@ -164,70 +160,141 @@ const startAnswer = (holder) => {
         : times;
     explain("Runner-up:", second.index, `, ${stands}; ${compareWorst(best.index, second.index)}.`);
   };
-  const showChoice = (keeping, failing) => {
+  const explainChoice = ({ keeping, failing, noGain, gained }) => {
     const [best, second] = keeping;
     const tied = keeping.filter((other) => areTied(best, other));
     const configuration = run.configurations[best.index];
-    showHeadline(best, tied);
     const smallest = keeping.every((other) => areComparable(best, other)) ? "" : ", on the smallest picture and map,";
     const cheapest = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
     const lead = run.ratios && !costChoice().isEstimate ? `it has the lowest ratio to 'none'${smallest}` : cheapest;
     const bounds = describeBounds(best.index);
-    const judged = Object.keys(state.limits).length > 0 ? "that keep the limits" : "that can be judged";
-    explain("Why:", `${lead} of ${keeping.length} ${judged}${bounds.length > 0 ? ": " : ""}${bounds.join("; ")}.`);
+    const limited = Object.keys(state.limits).length > 0 || state.soft;
+    const judged = limited
+      ? "that keep the limits"
+      : gained
+        ? "that are clearly better than 'none'"
+        : "that can be judged";
+    explain(
+      "Fast:",
+      best.index,
+      `; ${lead} of ${keeping.length} ${judged}${bounds.length > 0 ? ": " : ""}${bounds.join("; ")}.`,
+    );
+    if (tied.length > 0) {
+      const others = tied.length > 3 ? `${tied.length} others` : list(tied.map(({ index }) => labelOf(index)));
+      explain("Tied:", `the costs of ${others} cannot be told from it.`);
+    }
     const kernel = configuration.sigma === null ? "of no one width that is known" : configuration.kernel;
     explain("Kernel:", `${kernel}${configuration.params && `; ${configuration.params}`}.`);
     explainSecond(best, second);
     const isCheaper = (other) => areComparable(best, other) && costOf(other.index) < costOf(best.index);
-    const cheaper = failing.find((other) => other.broken.length === 1 && isCheaper(other) && !areTied(other, best));
+    const cheaper = failing.find(
+      (other) => other.broken.length === 1 && limitOf(other.broken[0]) && isCheaper(other) && !areTied(other, best),
+    );
     if (cheaper) {
       const [field] = cheaper.broken;
       const limit = say(worstOf(cheaper.index, field).limit, field);
-      const were = `were ${titleOf(field)} of ${limit} allowed`;
-      explain("Cheaper:", cheaper.index, `, ${costText(cheaper.index)}, ${were}.`);
+      explain("Cheaper:", cheaper.index, `, ${costText(cheaper.index)}, were ${titleOf(field)} of ${limit} allowed.`);
     }
+    if (noGain.length > 0) explain("No clear gain over 'none':", `${list(noGain.map(({ index }) => labelOf(index)))}.`);
     const faults = describeFaults(best.index);
     if (faults.length > 0) explain("Fails at:", `${faults.join("; ")}.`);
-    showWorst(best.index);
   };
-  // How many times a limit the worst value is, at most; beyond a limit of 0, infinitely.
+  // How many times a limit the worst value is, at most; beyond a limit of 0, and without a claim, infinitely.
   const measureExcess = ({ index, broken }) =>
     Math.max(
       ...broken.map((field) =>
         state.limits[field] > 0 ? worstOf(index, field).value / state.limits[field] : Infinity,
       ),
     );
-  const showNothing = (failing) => {
+  const explainNothing = (failing) => {
     const none = "Nothing can be judged: a value, a time or a scene is missing for every filter.";
     headline.textContent = failing.length > 0 ? "Nothing keeps these limits." : none;
     const [nearest] = failing
       .map((each) => ({ ...each, excess: measureExcess(each) }))
       .sort((a, b) => a.broken.length - b.broken.length || (a.excess === b.excess ? 0 : a.excess - b.excess));
-    if (nearest) {
-      const { index, broken } = nearest;
-      explain(
-        "Closest:",
-        index,
-        ` breaks ${list(broken.map((field) => `${titleOf(field)}, with ${sayWorst(index, field)}`))}.`,
+    if (!nearest) return;
+    const { index, broken } = nearest;
+    const breaks = broken.map(
+      (field) => titleOf(field) + (field in state.limits ? `, with ${sayWorst(index, field)}` : ""),
+    );
+    explain("Closest:", index, ` breaks ${list(breaks)}.`);
+  };
+
+  // The table: all scenes, and each; a click shows the picture.
+  const findWorstPlace = (index, scope) => {
+    const own = run.cells.filter(
+      ({ configuration, place }) =>
+        configuration === index && (!scope.scene || run.places[place].scene === scope.scene),
+    );
+    const flip = ({ values_of: values, picture }) => (picture ? (values["error.flip"] ?? -1) : -2);
+    return own.reduce((a, b) => (flip(b) > flip(a) ? b : a)).place;
+  };
+  const showPick = (index, place) => {
+    picture.show(index, place);
+    for (const button of table.querySelectorAll("button"))
+      button.setAttribute(
+        "aria-pressed",
+        Number(button.dataset.index) === index && Number(button.dataset.place) === place,
       );
+    codes[1].textContent = writeView(index, place);
+  };
+  const addPick = (row, { index, why }, scope) => {
+    const place = findWorstPlace(index, scope);
+    const cell = element(row, "td");
+    const choose = () => {
+      showPick(index, place);
+      writeLink("shown", [labelOf(index), places[place]]);
+    };
+    const button = addButton(cell, "", choose, `${run.configurations[index].full}\n${why}`);
+    Object.assign(button.dataset, { index, place });
+    element(button, "bdi", {}, labelOf(index));
+    const rmse = scope.rows[index].rmse;
+    const error = rmse ? `RMSE ${format(rmse.value)}` : "";
+    if (scope !== all) return element(button, "span", {}, rmse ? format(rmse.value) : costText(index, scope));
+    element(cell, "span", {}, [costText(index, scope), error].filter(Boolean).join(" · "));
+    element(cell, "span", {}, why);
+  };
+  const addRow = (scope, judged) => {
+    const row = element(table.tBodies[0] ?? element(table, "tbody"), "tr");
+    const title = run.scopes.length < 2 ? "" : (scope.scene ?? "all scenes");
+    element(row, "th", { scope: "row", dir: "auto" }, title);
+    if (scope.idle) return element(row, "td", { colSpan: 3 }, "does not matter: every filter's FLIP is below 0.001");
+    if (judged.keeping.length === 0) return element(row, "td", { colSpan: 3 }, "nothing keeps the limits");
+    const picks = pick(judged, scope);
+    for (const column of [0, 1, 2]) {
+      const own = picks.find(({ columns }) => columns.includes(column));
+      if (own) addPick(row, own, scope);
+      else element(row, "td", {}, "–");
     }
-    showWorst(null);
+  };
+  const showTable = (judged) => {
+    table.replaceChildren();
+    if (judged.keeping.length === 0) return;
+    const head = element(element(table, "thead"), "tr");
+    element(head, "td");
+    for (const title of ["Fast", "Balanced", "Best"]) element(head, "th", { scope: "col" }, title);
+    run.scopes.forEach((scope) => addRow(scope, scope === all ? judged : judge(scope)));
   };
   const show = () => {
+    headline.textContent = "";
     reasons.replaceChildren();
-    const { keeping, failing, unjudged } = judge();
-    if (keeping.length > 0) showChoice(keeping, failing);
-    else showNothing(failing);
-    const gaps = new Map(unjudged.map(({ gap }) => [gap, []]));
-    for (const { index, gap } of unjudged) gaps.get(gap).push(index);
-    for (const [gap, [first, ...others]] of gaps)
-      explain("Not judged:", first, others.length > 0 ? ` and ${others.length} more` : "", `: ${gap}.`);
-    code.textContent = writeCommand();
+    const judged = judge();
+    showTable(judged);
+    if (judged.keeping.length > 0) explainChoice(judged);
+    else explainNothing(judged.failing);
+    const first = table.querySelector("button");
+    picture.figure.hidden = !first;
+    if (first) showPick(Number(first.dataset.index), Number(first.dataset.place));
+    const gaps = new Map(judged.unjudged.map(({ gap }) => [gap, []]));
+    for (const { index, gap } of judged.unjudged) gaps.get(gap).push(index);
+    for (const [gap, [index, ...others]] of gaps)
+      explain("Not judged:", index, others.length > 0 ? ` and ${others.length} more` : "", `: ${gap}.`);
+    codes[0].textContent = writeAdvise();
   };
 
   // A slider's steps are the worst values of the run: each step lets one more configuration through.
   const listSteps = (field) => {
-    const { order } = run.advice[shadowbench.cost][""];
+    const { order } = all.advice[shadowbench.cost][""];
     const values = order.map(({ index }) => worstOf(index, field).limit).filter((limit) => limit !== undefined);
     if (field in state.limits) values.push(state.limits[field]);
     const steps = [...new Set(values)].sort((a, b) => a - b);
@@ -260,7 +327,7 @@ const startAnswer = (holder) => {
   };
   const change = () => {
     const asked = Object.entries(state.limits).map((limit) => limit.join(":"));
-    writeLink("limits", [shadowbench.cost, state.wide, ...asked]);
+    writeLink("limits", [shadowbench.cost, state.wide, state.soft ? kClaim : "", ...asked]);
     show();
   };
   const choose = (changes) => {
@@ -278,29 +345,41 @@ const startAnswer = (holder) => {
   cost.value = shadowbench.cost;
   const classes = [["", "of any width"], ...run.classes.map((name) => [name, name])];
   const wide = addSelect(controls, "Kernel", classes, { name: "class" }, (value) => choose({ wide: value }));
-  const sliders = element(controls, "div", { className: "sliders" });
+  const softLabel = element(controls, "label", { title: "Only filters whose shadows are sharper where they touch" });
+  const soft = element(softLabel, "input", { type: "checkbox", name: "soft" });
+  softLabel.append(" Soft shadows that harden at contacts");
+  softLabel.hidden = !run.configurations.some(({ hardens, teaching }) => hardens && !teaching);
+  soft.addEventListener("change", () => choose({ soft: soft.checked }));
+  const openShown = () => {
+    const [label, title] = readLink("shown") ?? [];
+    const [index, place] = [run.configurations.findIndex((each) => each.label === label), places.indexOf(title)];
+    if (cellAt(index, place)) showPick(index, place);
+  };
   const openLink = () => {
-    const [id, width, ...asked] = readLink("limits") ?? [];
-    if (id === undefined) return;
-    if (run.costs.some((each) => each.id === id)) shadowbench.cost = cost.value = id;
-    if (width === "" || run.classes.includes(width)) state.wide = wide.value = width;
-    const isKnown = ([field, most]) => canLimit(field) && most && Number.isFinite(Number(most));
-    const known = asked.map((text) => text.split(":")).filter(isKnown);
-    state.limits = Object.fromEntries(known.map(([field, most]) => [field, Number(most)]));
-    showSliders();
-    show();
-    shadowbench.drawTable?.();
+    const [id, width, claim, ...asked] = readLink("limits") ?? [];
+    if (id !== undefined) {
+      if (run.costs.some((each) => each.id === id)) shadowbench.cost = cost.value = id;
+      if (width === "" || run.classes.includes(width)) state.wide = wide.value = width;
+      state.soft = soft.checked = claim === kClaim && !softLabel.hidden;
+      const isKnown = ([field, most]) => canLimit(field) && most && Number.isFinite(Number(most));
+      const known = asked.map((text) => text.split(":")).filter(isKnown);
+      state.limits = Object.fromEntries(known.map(([field, most]) => [field, Number(most)]));
+      showSliders();
+      show();
+      shadowbench.drawTable?.();
+    }
+    openShown();
   };
 
-  // Of what stood there without the script, the notes stay, at the end.
-  const own = [headline, reasons, picture, line, controls];
+  // Of what stood there without the script, the notes stay, folded.
+  const own = [headline, controls, table.parentNode, picture.figure, folded];
   const before = [...holder.children].filter((child) => !own.includes(child));
   const notes = before.pop();
   before.forEach((child) => child.remove());
-  if (notes) holder.append(notes);
+  if (notes) folded.append(notes);
   window.addEventListener("hashchange", openLink);
   showSliders();
   show();
   openLink();
-  shadowbench.answer = { judge, state };
+  shadowbench.answer = { judge, state, picks: (scope = all) => pick(judge(scope), scope) };
 };

@@ -34,12 +34,14 @@ std::string escape_html(std::string_view text) {
   return escaped;
 }
 
-/// Everything before the body.
+/// Everything before the body. What scripts change is shown once they have run, so that nothing moves: a browser waits
+/// for the element whose id is "read".
 std::string html_head(const std::string& title) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<link rel=\"expect\" href=\"#read\" blocking=\"render\">\n"
       "<title>{}</title>\n<style>\n{}</style>\n</head>\n",
       escape_html(title), page_style());
 }
@@ -247,6 +249,21 @@ class HtmlWriter {
                        escape_html(gallery.title), gallery.wide ? " wide" : "", figures);
   }
 
+  /// Both pictures lie in one place, larger than the stage that shows a part of them.
+  std::string write(const Split& split) {
+    const auto [left, top, width, height] = split.rect;
+    const std::string place = fmt::format("width:{:.3f}%;left:{:.3f}%;top:{:.3f}%", 100.0 * split.width / width,
+                                          -100.0 * left / width, -100.0 * top / height);
+    std::string pictures;
+    for (const Picture* each : {&split.left, &split.right})
+      pictures += fmt::format("<img src=\"{}\" alt=\"{}\" style=\"{}\">", files::encode_url_path(each->path),
+                              escape_html(each->caption), place);
+    return fmt::format(
+        "<figure class=\"split\"><div class=\"stage\" style=\"aspect-ratio:{}/{}\">{}<i></i></div><figcaption><bdi>{}"
+        "</bdi><bdi>{}</bdi></figcaption></figure>\n",
+        width, height, pictures, escape_html(split.left.caption), escape_html(split.right.caption));
+  }
+
   std::string write(const Bars& bars) {
     std::string html = "<figure class=\"bars\">\n<figcaption>" + escape_html(bars.title) + "<span class=\"legend\">";
     for (const auto& [color, name] : bars.legend)
@@ -348,7 +365,7 @@ std::string write_html(const Page& page) {
     html.append(html_data("run", records::dump_line(page.data))).append(html_script(run_script()));
   if (!writer.charts().is_empty())
     html.append(html_data("charts", writer.charts().write())).append(html_script(chart_script()));
-  return html.append("</body>\n</html>\n");
+  return html.append("<i id=\"read\"></i>\n</body>\n</html>\n");
 }
 
 }  // namespace shadowbench::document

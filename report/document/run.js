@@ -9,19 +9,22 @@ const costChoice = () => run.costs.find(({ id }) => id === shadowbench.cost);
 
 const cells = new Map(run.cells.map((cell) => [`${cell.configuration} ${cell.place}`, cell]));
 const cellAt = (who, place) => cells.get(`${who} ${place}`);
-// By how much one cell's error is above another's, and how far that may be off, as subtract() of the program has it.
+// By how much one error is above another's, and how far that may be off, as subtract() of the program has it.
 const compareErrors = (a, b) => {
   const gaps = a.replicates.map((value, i) => value - b.replicates[i]);
   const count = gaps.length;
-  if (count < 2 || count !== b.replicates.length) {
-    return { gap: a.values_of["error.rmse"] - b.values_of["error.rmse"], reach: Math.max(a.reach, b.reach) };
-  }
+  if (count < 2 || count !== b.replicates.length) return { gap: a.value - b.value, reach: Math.max(a.reach, b.reach) };
   const gap = gaps.reduce((sum, each) => sum + each) / count;
   const squares = gaps.reduce((sum, each) => sum + (each - gap) ** 2, 0);
   return { gap, reach: a.t * Math.sqrt(squares / (count - 1) / count) };
 };
+const isErrorLess = (a, b) => {
+  const { gap, reach } = compareErrors(b, a);
+  return gap - reach > 0;
+};
+const errorOf = (cell) => ({ ...cell, value: cell.values_of["error.rmse"] });
 const areErrorsTied = (a, b) => {
-  const { gap, reach } = compareErrors(a, b);
+  const { gap, reach } = compareErrors(errorOf(a), errorOf(b));
   return Math.abs(gap) <= reach;
 };
 const findEntry = (who, place) => {
@@ -94,27 +97,6 @@ const cut = (source, rect, factor) => {
   context.drawImage(source, rect.x, rect.y, rect.width, rect.height, 0, 0, canvas.width, canvas.height);
   return canvas;
 };
-// Promises the tile of a cell that holds most of its squared error, and how the truth and the cell look there.
-shadowbench.worstPlace = async (place, configuration) => {
-  const errors = await getNumbers(configuration, place, "error");
-  const { width, height } = await loadFile(kTruth, place);
-  const [tile] = findTiles(addSquares(null, errors, await getMask(place)), width, height, 1);
-  if (!tile) throw new Error(`${tell(configuration)} has no error here.`);
-  const { rect } = tile;
-  const whos = [kTruth, configuration];
-  const room = 320 / rect.width;
-  const factor = room < 1 ? room : Math.min(3, Math.floor(room));
-  const pictures = await attemptAll(whos.map((who) => getPicture(who, place)));
-  const hasBoth = pictures.every(({ value }) => value);
-  const magnify = async (who, i) => {
-    if (hasBoth) return cut(pictures[i].value, rect, factor);
-    const painted = paint(await getNumbers(who, place, "visibility"), null, width, rect, "grey", 1);
-    return cut(painted, { ...rect, x: 0, y: 0 }, factor);
-  };
-  const [left, right] = await Promise.all(whos.map(magnify));
-  return { rect, left, right };
-};
-
 // What the viewer can show of a side; a plane of a family joins them as it is met.
 const kSigned = { palette: "diverging", least: 0.05, low: "darkens", high: "lightens" };
 const kHeat = { palette: "heat", low: "", high: "" };

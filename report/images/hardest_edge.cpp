@@ -11,6 +11,7 @@ namespace {
 constexpr double kVarianceFloor = 1e-9;
 // Likewise small against any edge, and enough to follow the disagreement where there is none.
 constexpr double kEdgeFloor = 1e-6;
+constexpr int kTilesAcross = 16;  // of a picture
 
 // Sums of all pixels above and left of each corner: any rectangle's sum is four look-ups.
 class SummedArea {
@@ -57,14 +58,15 @@ double reference_at(const Image& reference, int x, int y) {
   return std::isfinite(value) ? quantise(std::clamp(value, 0.0, 1.0)) : 0.0;
 }
 
-Rect find_best(const SummedArea& variance, const SummedArea& lit, Size image, Size size) {
+// The rectangle of `size` in the image with the largest score.
+Rect find_best(const Image& image, Size size, const auto& score_of) {
+  size = {std::min(size.width, image.width), std::min(size.height, image.height)};
   Rect best{0, 0, size.width, size.height};
   double best_score = -1.0;
   for (int y = 0; y + size.height <= image.height; ++y) {
     for (int x = 0; x + size.width <= image.width; ++x) {
       const Rect here{x, y, size.width, size.height};
-      const double m = lit.mean(here);
-      const double score = (variance.mean(here) + kVarianceFloor) * (4.0 * m * (1.0 - m) + kEdgeFloor);
+      const double score = score_of(here);
       if (score > best_score) {
         best_score = score;
         best = here;
@@ -97,8 +99,18 @@ Rect find_hardest_edge(const std::vector<const Image*>& visibility, std::size_t 
       lit.set(x, y, reference_at(edge, x, y));
     }
   }
-  return find_best(variance, lit, {edge.width, edge.height},
-                   {std::min(size.width, edge.width), std::min(size.height, edge.height)});
+  return find_best(edge, size, [&](const Rect& here) {
+    const double m = lit.mean(here);
+    return (variance.mean(here) + kVarianceFloor) * (4.0 * m * (1.0 - m) + kEdgeFloor);
+  });
+}
+
+Rect find_hardest_tile(const Image& values) {
+  SummedArea sums(values.width, values.height);
+  for (int y = 0; y < values.height; ++y)
+    for (int x = 0; x < values.width; ++x) sums.set(x, y, reference_at(values, x, y));
+  const int side = std::max(1, values.width / kTilesAcross);
+  return find_best(values, {side, side}, [&](const Rect& here) { return sums.mean(here); });
 }
 
 }  // namespace shadowbench::images

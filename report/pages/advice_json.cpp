@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "report/analysis/advice_words.h"
+#include "report/analysis/picks.h"
 #include "report/pages/advice_text.h"
 #include "report/records/absence.h"
 #include "report/records/cell_key.h"
@@ -120,7 +121,7 @@ Json cost_json(const analysis::Candidate& candidate, const analysis::AdviceReque
 }
 
 Json candidate_json(const analysis::Candidate& candidate, const analysis::Advice& advice) {
-  Json json = {{"label", candidate.configuration.label}};
+  Json json = {{"label", candidate.configuration.name}};
   json["settings"] = settings_json(*candidate.configuration.cells.front());
   json["cost"] = cost_json(candidate, advice.request);
   json["limits"] = Json::array();
@@ -155,7 +156,7 @@ Json request_json(const analysis::Advice& advice) {
 Json unjudged_json(const analysis::Advice& advice) {
   Json list = Json::array();
   for (const analysis::Unjudged& unjudged : advice.unjudged)
-    list.push_back({{"label", unjudged.configuration.label}, {"reason", unjudged.reason}});
+    list.push_back({{"label", unjudged.configuration.name}, {"reason", unjudged.reason}});
   return list;
 }
 
@@ -166,7 +167,7 @@ Json relaxed_json(const analysis::Advice& advice) {
       const analysis::Candidate& candidate = advice.failing[bought];
       const auto saving = analysis::compare_costs(candidate, advice.keeping.front(), advice.request.cheapest);
       Json json = verdict_json(advice.request.demands[i], candidate.verdicts[i]);
-      json["label"] = candidate.configuration.label;
+      json["label"] = candidate.configuration.name;
       json["cost"] = candidate.cost.mean;
       json["saves"] = saving.difference;
       json["basis"] = name_of(saving.basis);
@@ -186,12 +187,39 @@ Json obstacle_json(const analysis::Advice& advice, std::size_t i) {
   std::optional<double> worst;
   if (!obstacle.alone.empty()) {
     const analysis::Candidate& nearest = advice.failing[obstacle.alone.front()];
-    label = nearest.configuration.label;
+    label = nearest.configuration.name;
     worst = nearest.verdicts[i].worst;
   }
   set(json, "nearest_label", label, "no configuration fails this alone");
   set(json, "nearest_worst", worst, label ? kClaim : "no configuration fails this alone");
   return json;
+}
+
+Json picks_json(const analysis::Advice& advice) {
+  Json list = Json::array();
+  if (advice.keeping.empty()) return list;
+  for (const analysis::NamedPick& pick : analysis::name_picks(advice)) {
+    const analysis::Candidate& candidate = advice.keeping[pick.index];
+    Json json = {{"name", pick.name}, {"label", candidate.configuration.name}, {"why", pick.why}};
+    json["settings"] = settings_json(*candidate.configuration.cells.front());
+    json["cost"] = candidate.cost.mean;
+    json["absent"] = Json::object();
+    set(json, "rmse", candidate.rmse ? std::optional(candidate.rmse->value) : std::nullopt, "a place has none");
+    list.push_back(json);
+  }
+  return list;
+}
+
+Json no_gain_json(const analysis::Advice& advice) {
+  Json list = Json::array();
+  for (const analysis::Candidate& each : advice.no_gain) list.push_back(each.configuration.name);
+  return list;
+}
+
+Json idle_json(const analysis::Advice& advice) {
+  Json list = Json::array();
+  for (const analysis::Place& each : advice.idle) list.push_back({{"scene", each.scene}, {"view", each.view}});
+  return list;
 }
 
 void set_answer(Json& json, const analysis::Advice& advice, const records::GlRecord& gl) {
@@ -223,10 +251,13 @@ Json make_advice_json(const records::RunRecord& run, const analysis::Advice& adv
                {"software", run.gl.software},
                {"renderer", run.gl.renderer},
                {"asked", request_json(advice)}};
+  json["picks"] = picks_json(advice);
   set_answer(json, advice, run.gl);
   json["relaxed"] = relaxed_json(advice);
   json["limits"] = Json::array();
   for (std::size_t i = 0; i < advice.obstacles.size(); ++i) json["limits"].push_back(obstacle_json(advice, i));
+  json["no_better_than_none"] = no_gain_json(advice);
+  json["idle"] = idle_json(advice);
   json["keep"] = advice.keeping.size();
   json["fail"] = advice.failing.size();
   json["not_judged"] = unjudged_json(advice);

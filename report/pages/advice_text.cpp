@@ -7,6 +7,7 @@
 
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cell_group.h"
+#include "report/analysis/picks.h"
 #include "report/document/markdown.h"
 #include "report/records/format.h"
 
@@ -116,7 +117,7 @@ std::string list_cells(const records::RunRecord& run, const analysis::Advice& ad
 std::string describe_second(const records::RunRecord& run, const analysis::Advice& advice) {
   if (advice.keeping.size() < 2) return "Runner-up: no other configuration keeps the limits.\n";
   const analysis::Candidate& second = advice.keeping[1];
-  return wrap(fmt::format("Runner-up: {}, {}; {}.", second.configuration.label,
+  return wrap(fmt::format("Runner-up: {}, {}; {}.", second.configuration.name,
                           analysis::format_cost(second.cost.mean, advice.request.cheapest, run.gl),
                           analysis::describe_runner_up(advice, run.gl)));
 }
@@ -131,7 +132,7 @@ Row describe_relaxation(const records::RunRecord& run, const analysis::Advice& a
   return {worst ? fmt::format("{} -> {}", limit, analysis::format_limit(*worst)) : "without " + limit,
           fmt::format("saves {} ({:.0f} %)", analysis::format_cost(saved, kind, run.gl),
                       of > 0.0 ? 100.0 * saved / of : 0.0),
-          candidate.configuration.label};
+          candidate.configuration.name};
 }
 
 std::string list_relaxations(const records::RunRecord& run, const analysis::Advice& advice) {
@@ -157,7 +158,7 @@ std::string list_obstacles(const analysis::Advice& advice) {
     if (!obstacle.alone.empty()) {
       const analysis::Candidate& nearest = advice.failing[obstacle.alone.front()];
       const auto worst = nearest.verdicts[i].worst;
-      row.push_back((worst ? analysis::format_limit(*worst) : "none") + ": " + nearest.configuration.label);
+      row.push_back((worst ? analysis::format_limit(*worst) : "none") + ": " + nearest.configuration.name);
     }
     rows.push_back(row);
   }
@@ -175,6 +176,19 @@ std::string list_remarks(const records::RunRecord& run, const analysis::Advice& 
   return text;
 }
 
+/// Fast, balanced and best, a line each; nothing where one configuration is left.
+std::string list_picks(const records::RunRecord& run, const analysis::Advice& advice) {
+  if (advice.keeping.size() < 2) return "";
+  std::vector<Row> rows;
+  for (const analysis::NamedPick& pick : analysis::name_picks(advice)) {
+    const analysis::Candidate& candidate = advice.keeping[pick.index];
+    rows.push_back({pick.name + ":", candidate.configuration.name,
+                    analysis::format_cost(candidate.cost.mean, advice.request.cheapest, run.gl),
+                    candidate.rmse ? "RMSE " + records::format_number(candidate.rmse->value) : "", pick.why});
+  }
+  return align(rows);
+}
+
 std::string describe_answer(const records::RunRecord& run, const analysis::Advice& advice) {
   const analysis::Candidate& best = advice.keeping.front();
   const records::CellRecord& cell = *best.configuration.cells.front();
@@ -182,7 +196,7 @@ std::string describe_answer(const records::RunRecord& run, const analysis::Advic
   if (cell.kernel.sigma_texels) parts.push_back(fmt::format("a kernel of {}", records::describe_kernel(cell.kernel)));
   if (!cell.params.empty()) parts.push_back(records::describe_params(cell.params));
   const std::string with = parts.empty() ? "" : wrap(fmt::format("with {}", fmt::join(parts, ", ")));
-  return fmt::format("{}: {}{}; {} of {}{}\n{}", best.configuration.label,
+  return fmt::format("{}: {}{}; {} of {}{}\n{}", best.configuration.name,
                      analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),
                      analysis::describe_frame(advice.request), analysis::describe_choice(advice), advice.keeping.size(),
                      advice.request.demands.empty() ? "" : " that keep the limits", with);
@@ -199,8 +213,8 @@ std::string make_advice_text(const records::RunRecord& run, const analysis::Advi
   if (advice.keeping.empty()) {
     sections = {"Nothing fits.\n", list_obstacles(advice), describe_nearest(advice)};
   } else {
-    sections = {describe_answer(run, advice), list_limits(run, advice), list_cells(run, advice),
-                describe_second(run, advice), list_relaxations(run, advice)};
+    sections = {list_picks(run, advice), describe_answer(run, advice), list_limits(run, advice),
+                list_cells(run, advice), describe_second(run, advice), list_relaxations(run, advice)};
   }
   sections.push_back(list_remarks(run, advice));
   std::erase(sections, "");

@@ -3,57 +3,90 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "report/analysis/advice_words.h"
+#include "report/analysis/picks.h"
 #include "report/analysis/trade_measures.h"
+#include "report/pages/answer_data.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
 namespace {
 
-constexpr const char* kRmse = "error.rmse";
-constexpr double kAllowance = 1.25;  // of the least RMSE
-constexpr std::size_t kWidened = 3;  // configurations keep a limit that would be kept by one
+constexpr double kShape = 2.5;        // of the picture: width over height
+constexpr double kMostShown = 480.0;  // pixels across, so that an edge is large enough to look at
+const std::vector<std::string> kPicks = {"fast", "balanced", "best"};
 
 bool can_advise(const std::vector<records::CellRecord>& cells) {
   return std::ranges::any_of(
       cells, [](const records::CellRecord& cell) { return !cell.teaching.value_or(false); });
 }
 
-std::string describe_margin(const analysis::Advice& advice, const analysis::Candidate& best) {
-  std::string text;
-  for (std::size_t i = 0; i < advice.request.demands.size(); ++i) {
-    const analysis::Verdict& verdict = best.verdicts[i];
-    text += fmt::format("; {} at worst, on {}, where {} is the limit",
-                        analysis::format_kept(*verdict.worst, advice.request.demands[i].most),
-                        analysis::describe_place(analysis::place_of(*verdict.where), advice.places),
-                        records::format_number(advice.request.demands[i].most));
+std::string describe_pick(const analysis::Advice& advice, const analysis::NamedPick& pick, const records::GlRecord& gl,
+                          bool in_full) {
+  const analysis::Candidate& candidate = advice.keeping[pick.index];
+  std::string text = candidate.configuration.name;
+  if (in_full) text += ": " + analysis::format_cost(candidate.cost.mean, advice.request.cheapest, gl);
+  if (candidate.rmse) text += fmt::format(", RMSE {}", records::format_number(candidate.rmse->value));
+  return in_full ? fmt::format("{}; {}", text, pick.why) : text;
+}
+
+/// A row for all scenes, or for one: its picks. One that is both fast and best stands under both.
+std::vector<std::string> make_row(const std::string& head, const analysis::Advice& advice, const records::GlRecord& gl,
+                                  bool in_full) {
+  std::vector<std::string> row = {head};
+  row.resize(1 + kPicks.size(), records::kNothing);
+  for (const analysis::NamedPick& pick : analysis::name_picks(advice))
+    for (std::size_t i = 0; i < kPicks.size(); ++i)
+      if (pick.name.find(kPicks[i]) != std::string::npos) row[1 + i] = describe_pick(advice, pick, gl, in_full);
+  return row;
+}
+
+document::Table make_table(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                           const analysis::Advice& advice) {
+  document::Table table{"", {{"", "Fast", "Balanced", "Best"}, {}}};
+  const std::vector<std::string> scenes = list_answered_scenes(cells);
+  table.table.rows.push_back(
+      make_row(scenes.empty() ? advice.places.front().scene : "all scenes", advice, run.gl, true));
+  for (const std::string& scene : scenes) {
+    if (std::ranges::count(advice.places, scene, &analysis::Place::scene) == 0) {
+      table.table.rows.push_back({scene, "does not matter: every filter's FLIP is below 0.001", "", ""});
+      continue;
+    }
+    analysis::AdviceRequest request = advice.request;
+    request.scenes = {scene};
+    const analysis::Advice own = analysis::advise(cells, request);
+    if (!own.keeping.empty()) table.table.rows.push_back(make_row(scene, own, run.gl, false));
   }
-  return text;
+  return table;
 }
 
-document::Sentences describe_choice(const records::RunRecord& run, const analysis::Advice& advice) {
-  const analysis::Candidate& best = advice.keeping.front();
-  const bool has_limits = !advice.request.demands.empty();
-  document::Sentences answer{fmt::format("{}: {}{}.", best.configuration.label,
-                                         analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),
-                                         advice.request.cheapest.is_of_frame() ? " a frame with a moving light" : ""),
-                             {}};
-  answer.items.push_back(fmt::format("Why: the {} of {}{}{}.", analysis::describe_choice(advice), advice.keeping.size(),
-                                     has_limits ? " that keep the limits" : " that can be judged",
-                                     describe_margin(advice, best)));
-  if (advice.keeping.size() > 1)
-    answer.items.push_back(fmt::format("Runner-up: {}, {}.", advice.keeping[1].configuration.label,
-                                       analysis::describe_runner_up(advice, run.gl)));
-  return answer;
+/// The picture to begin with: the most accurate pick of several, against the truth, where it differs most from it.
+std::optional<document::Split> make_picture(const analysis::Advice& advice) {
+  const analysis::Candidate& shown = advice.keeping[analysis::name_picks(advice).front().index];
+  const records::CellRecord* worst = nullptr;
+  for (const records::CellRecord* cell : shown.configuration.cells)
+    if (cell->images.picture && cell->images.truth_picture && cell->images.hardest && cell->error.flip &&
+        (!worst || *cell->error.flip > *worst->error.flip))
+      worst = cell;
+  if (!worst) return std::nullopt;
+  const auto& tile = *worst->images.hardest;
+  const double width = std::min<double>(worst->width, std::max(kMostShown, worst->width / 2.0));
+  const double height = std::min<double>(worst->height, width / kShape);
+  const double left = std::clamp(tile[0] + 0.5 * tile[2] - 0.5 * width, 0.0, worst->width - width);
+  const double top = std::clamp(tile[1] + 0.5 * tile[3] - 0.5 * height, 0.0, worst->height - height);
+  const std::string on = " on " + analysis::describe_place(analysis::place_of(*worst), advice.places);
+  return document::Split{{*worst->images.truth_picture, "truth" + on},
+                         {*worst->images.picture, shown.configuration.name + on},
+                         worst->width,
+                         worst->height,
+                         {left, top, width, height}};
 }
 
-/// The GPU whose estimates decide at first: where a software rasteriser drew everything, since its times say nothing of
-/// a GPU, the first of which there is an estimate.
+/// The GPU whose estimates decide at first; see choose_request().
 std::optional<std::string> choose_gpu(const std::vector<records::CellRecord>& cells) {
   const auto is_of_cpu = [](const records::CellRecord& cell) { return cell.machine && cell.machine->software; };
   if (!std::ranges::all_of(cells, is_of_cpu)) return std::nullopt;
@@ -67,22 +100,7 @@ std::optional<std::string> choose_gpu(const std::vector<records::CellRecord>& ce
 
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells) {
   analysis::AdviceRequest request;
-  if (!can_advise(cells)) return request;
-  if (const auto gpu = choose_gpu(cells)) request.cheapest = {analysis::CostKind::kGpu, *gpu};
-  const auto spec = std::ranges::find(analysis::limit_table(), kRmse, &analysis::LimitSpec::field);
-  request.demands.push_back({&*spec, std::numeric_limits<double>::infinity(), {}});
-  const std::vector<analysis::Candidate> judged = analysis::advise(cells, request).keeping;
-  if (judged.empty()) {
-    request.demands.clear();
-    return request;
-  }
-  std::vector<double> worst;
-  for (const analysis::Candidate& each : judged) worst.push_back(*each.verdicts.front().worst);
-  std::ranges::sort(worst);
-  double most = kAllowance * worst.front();
-  // Of one that keeps it there is nothing to choose, and a limit that all keep is none.
-  if (worst.size() > 2 && worst[1] > most) most = worst[std::min(kWidened, worst.size() - 1) - 1];
-  request.demands.front().most = std::stod(analysis::format_limit(most));
+  if (const auto gpu = choose_gpu(cells); gpu && can_advise(cells)) request.cheapest = {analysis::CostKind::kGpu, *gpu};
   return request;
 }
 
@@ -96,21 +114,19 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
   }
   const analysis::Advice advice = analysis::advise(cells, request);
   document::Mount mount{"answer", {}};
-  if (advice.keeping.empty())
+  if (advice.keeping.empty()) {
     mount.blocks.emplace_back(
         document::Paragraph{fmt::format("Nothing fits: {}.", analysis::describe_failure(advice))});
-  else
-    mount.blocks.emplace_back(describe_choice(run, advice));
+  } else {
+    mount.blocks.emplace_back(make_table(run, cells, advice));
+    if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
+  }
   document::Sentences notes{{}, analysis::list_run_notes(advice, run.gl)};
   if (request.cheapest.kind == analysis::CostKind::kGpu)
-    notes.items.push_back(fmt::format(
-        "A software rasteriser drew the run, so that its times say nothing of a GPU: the costs are estimates "
-        "for {}, which was not there. Choose another under Cost, or this CPU's times.",
-        request.cheapest.gpu));
-  if (!request.demands.empty())
-    notes.items.insert(notes.items.begin(),
-                       "The limit to begin with is a quarter above the least RMSE that a filter keeps to on every "
-                       "scene, or as much as three filters keep to: move it to yours.");
+    notes.items.push_back(
+        fmt::format("Costs are estimates for {}, which was not there: this CPU's times say nothing "
+                    "of a GPU.",
+                    request.cheapest.gpu));
   mount.blocks.emplace_back(std::move(notes));
   section.blocks.emplace_back(std::move(mount));
   return section;

@@ -8,13 +8,12 @@
 
 namespace shadowbench::pages {
 
-/// The limits that a run's page starts with: a moving light, and an RMSE of at most a quarter more than that of the
-/// filter whose worst scene is the least wrong, or as much as three configurations keep to, rounded up. No limit where
-/// no RMSE was measured.
+/// What a run's page asks first: no limit, a moving light, and whose cost counts. Where a software rasteriser drew
+/// everything, whose times say nothing of a GPU, that is the first GPU of which there is an estimate.
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells);
 
-/// Says which filter and map keep those limits at the least cost, why, what the runner-up would buy, and what the
-/// choice fails at. In the browser a script makes the same of limits that the reader moves.
+/// Says which filters are fast, balanced and best, over all scenes and on each, at what cost and error and why, with a
+/// picture of one beside the truth. In the browser a script makes the same of limits that the reader moves.
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                       const analysis::AdviceRequest& request);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "report/analysis/cell_group.h"
 #include "report/analysis/differences.h"
@@ -18,6 +19,7 @@
 #include "report/pages/run_data.h"
 #include "report/pages/text_tables.h"
 #include "report/pages/trade_charts.h"
+#include "report/records/cell_names.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
 
@@ -44,8 +46,10 @@ std::string head_group(const records::RunRecord& run, const std::vector<records:
     });
   };
   if (varies(&records::CellRecord::map_size)) head += fmt::format(", map {}", cell.map_size);
-  if (varies(&records::CellRecord::fit)) head += fmt::format(", fit {}", cell.fit);
-  return head;
+  if (!varies(&records::CellRecord::fit)) return head;
+  std::set<std::string> fits;
+  for (const records::CellRecord& each : cells) fits.insert(each.fit);
+  return head + ", " + records::name_fit(cell.fit, fits);
 }
 
 /// The first path that a cell of the group names: cells of one group share it.
@@ -60,8 +64,8 @@ document::Gallery make_stability_gallery(const analysis::CellGroup& group) {
   document::Gallery gallery{"Where numbers break: overflow, negative variance, 16 bits, and bounds", {}, true};
   for (const records::CellRecord& cell : group.cells)
     if (cell.images.stability)
-      gallery.pictures.push_back({*cell.images.stability,
-                                  analysis::label_cell(group, cell) + ": where its numbers break, or come near to it"});
+      gallery.pictures.push_back(
+          {*cell.images.stability, group.names.name(cell) + ": where its numbers break, or come near to it"});
   return gallery;
 }
 
@@ -89,8 +93,7 @@ std::string css_color(const std::array<float, 3>& color) {
 }
 
 document::Bars::Row make_bar_row(const analysis::CellGroup& group, const records::CellRecord& cell) {
-  const std::string head =
-      fmt::format("{}: RMSE {}", analysis::label_cell(group, cell), records::format_number(*cell.error.rmse));
+  const std::string head = fmt::format("{}: RMSE {}", group.names.name(cell), records::format_number(*cell.error.rmse));
   const auto bar = images::make_attribution_bar(cell);
   if (!bar) return {fmt::format("{} · no attribution: {}", head, records::explain_no_attribution(cell)), {}};
   document::Bars::Row row{
@@ -177,12 +180,10 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
   for (const analysis::Place& place : places) table.header.push_back(analysis::describe_place(place, places));
   for (const analysis::Configuration& configuration : analysis::list_configurations(all)) {
     auto& row = table.rows.emplace_back(
-        std::vector<std::string>{configuration.label, records::describe_kernel(configuration.cells.front()->kernel)});
+        std::vector<std::string>{configuration.name, records::describe_kernel(configuration.cells.front()->kernel)});
     row.resize(table.header.size(), records::kNothing);
-    for (const records::CellRecord* cell : configuration.cells) {
-      const auto place = std::ranges::find(places, analysis::place_of(*cell)) - places.begin();
-      row[2 + static_cast<std::size_t>(place)] = records::format_number(cell->error.rmse);
-    }
+    for (const records::CellRecord* cell : configuration.cells)
+      row[2 + analysis::find_place(places, *cell)] = records::format_number(cell->error.rmse);
   }
   return {"table",
           "All numbers",
@@ -190,24 +191,23 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
 }
 
 /// Facts and estimates for each GPU that the run names; nothing where it names none.
-std::optional<document::Section> make_gpu_section(const records::RunRecord& run,
-                                                  const std::vector<records::CellRecord>& cells) {
+std::optional<document::Section> make_gpu_section(const std::vector<records::CellRecord>& cells) {
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<std::string> gpus = analysis::list_gpus(all);
   if (gpus.empty()) return std::nullopt;
   const std::vector<analysis::Configuration> configurations = analysis::list_configurations(all);
-  document::Section section{"gpus", "Costs on GPUs that are not here", {}};
+  document::Section section{"gpus", "GPUs", {}};
   document::Sentences sentences;
   document::Details tables{"Estimates and facts of every filter", {}};
   for (const std::string& gpu : gpus) {
     const auto costs = analysis::list_gpu_costs(configurations, gpu);
-    for (std::string& each : analysis::describe_gpu(gpu, costs, run.gl)) sentences.items.push_back(std::move(each));
+    for (std::string& each : analysis::describe_gpu(gpu, costs)) sentences.items.push_back(std::move(each));
     if (records::TextTable table = analysis::make_gpu_table(costs); !table.rows.empty())
       tables.blocks.emplace_back(document::Table{
           gpu + ": estimates for a million receivers and one map, and facts of the lookup", std::move(table)});
   }
   if (!sentences.items.empty()) section.blocks.emplace_back(std::move(sentences));
-  section.blocks.emplace_back(document::Paragraph{kGpuNote, true});
+  tables.blocks.emplace(tables.blocks.begin(), document::Paragraph{kGpuNote, true});
   if (!tables.blocks.empty()) section.blocks.emplace_back(std::move(tables));
   return section;
 }
@@ -255,7 +255,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
     page.data = make_run_data(run, cells, request);
   }
   if (trade) add(make_trade_section(run, cells, *trade));
-  if (auto gpus = make_gpu_section(run, cells)) add(std::move(*gpus));
+  if (auto gpus = make_gpu_section(cells)) add(std::move(*gpus));
   add(make_evidence_section(run, measured));
   return page;
 }

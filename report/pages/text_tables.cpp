@@ -125,7 +125,7 @@ records::TextTable make_accuracy_table(const analysis::CellGroup& group) {
   table.header.push_back("share of " + join_part_names());
   for (const records::CellRecord& cell : group.cells) {
     auto& row = table.rows.emplace_back(
-        std::vector<std::string>{analysis::label_cell(group, cell), records::describe_kernel(cell.kernel)});
+        std::vector<std::string>{group.names.name(cell), records::describe_kernel(cell.kernel)});
     add_values(row, errors, cell);
     row.push_back(format_dominating_part(cell));
     add_values(row, artefacts, cell);

@@ -148,7 +148,7 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& measured
 
 document::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                      const Trade& trade) {
-  document::Section section{"trade", "The trade: what less error costs", {}};
+  document::Section section{"trade", "The trade", {}};
   const std::vector<std::string> filters = analysis::list_filters(cells);
   if (trade.has_fronts) {
     add_fronts(section.blocks, run, cells, trade);

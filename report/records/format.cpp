@@ -36,40 +36,12 @@ bool any(const records::BiasAmountRecord& amount) {
   return amount.depth > 0.0 || amount.texels > 0.0 || amount.world > 0.0;
 }
 
-/// Lists the parts of a bias that are there.
-std::string describe_bias(const records::BiasRecord& bias, const records::MapScaleRecord& scale) {
-  std::vector<std::string> parts;
-  if (any(bias.constant)) parts.push_back(describe_amount(bias.constant, scale));
-  if (any(bias.slope)) parts.push_back("(1 − n·l) × " + describe_amount(bias.slope, scale));
-  if (bias.plane_texels > 0.0) parts.push_back(fmt::format("plane over {} texels", format_number(bias.plane_texels)));
-  if (bias.plane_kernels > 0.0)
-    parts.push_back(fmt::format("plane over {} × the filter's reach", format_number(bias.plane_kernels)));
-  if (any(bias.normal_offset)) parts.push_back("normal offset of " + describe_amount(bias.normal_offset, scale));
-  if (bias.receiver_plane) parts.push_back("receiver plane, per tap");
-  if (bias.polygon_factor > 0.0 || bias.polygon_units > 0.0) {
-    parts.push_back(
-        fmt::format("polygon offset {}, {}", format_number(bias.polygon_factor), format_number(bias.polygon_units)));
-  }
-  if (bias.front_cull) parts.push_back("front faces culled");
-  if (bias.midpoint) parts.push_back("midpoint map");
-  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
-}
-
 /// Names the fit and the light where they are not the default.
 std::string describe_fit_and_light(const records::CellRecord& cell) {
   const records::CellRecord usual;
   std::string text;
   if (cell.fit != usual.fit) text += " · fit " + cell.fit;
   if (cell.light != usual.light) text += fmt::format(" · light at {}° (azimuth, elevation)", cell.light);
-  return text;
-}
-
-/// Names the settings outside the map that are not right, each with a separator before it; nothing where all are.
-std::string describe_wrong_range(const records::RangeRecord& range) {
-  std::string text;
-  if (range.border != records::RangeRecord().border) text += " · outside the map: " + range.border;
-  if (!range.far_test) text += " · far-plane test off";
-  if (!range.behind_test) text += " · behind-the-light test off";
   return text;
 }
 
@@ -149,10 +121,37 @@ std::string describe_coverage(const records::CoverageRecord& coverage) {
                      100.0 * *coverage.map_used);
 }
 
+std::string describe_bias(const records::BiasRecord& bias, const records::MapScaleRecord& scale) {
+  std::vector<std::string> parts;
+  if (any(bias.constant)) parts.push_back(describe_amount(bias.constant, scale));
+  if (any(bias.slope)) parts.push_back("(1 − n·l) × " + describe_amount(bias.slope, scale));
+  if (bias.plane_texels > 0.0) parts.push_back(fmt::format("plane over {} texels", format_number(bias.plane_texels)));
+  if (bias.plane_kernels > 0.0)
+    parts.push_back(fmt::format("plane over {} × the filter's reach", format_number(bias.plane_kernels)));
+  if (any(bias.normal_offset)) parts.push_back("normal offset of " + describe_amount(bias.normal_offset, scale));
+  if (bias.receiver_plane) parts.push_back("receiver plane, per tap");
+  if (bias.polygon_factor > 0.0 || bias.polygon_units > 0.0) {
+    parts.push_back(
+        fmt::format("polygon offset {}, {}", format_number(bias.polygon_factor), format_number(bias.polygon_units)));
+  }
+  if (bias.front_cull) parts.push_back("front faces culled");
+  if (bias.midpoint) parts.push_back("midpoint map");
+  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
+}
+
+std::string describe_range(const records::RangeRecord& range) {
+  std::vector<std::string> parts;
+  if (range.border != records::RangeRecord().border) parts.push_back("outside the map: " + range.border);
+  if (!range.far_test) parts.emplace_back("far-plane test off");
+  if (!range.behind_test) parts.emplace_back("behind-the-light test off");
+  return fmt::format("{}", fmt::join(parts, " · "));
+}
+
 std::string describe_settings(const records::CellRecord& cell) {
-  return fmt::format("view {} · map {} × {} {}{} · picture {} × {} · bias: {}{}", cell.view, cell.map_size,
+  const std::string range = describe_range(cell.range);
+  return fmt::format("view {} · map {} × {} {}{} · picture {} × {} · bias: {}{}{}", cell.view, cell.map_size,
                      cell.map_size, cell.map_format, describe_fit_and_light(cell), cell.width, cell.height,
-                     describe_bias(cell.bias, cell.map_scale), describe_wrong_range(cell.range));
+                     describe_bias(cell.bias, cell.map_scale), range.empty() ? "" : " · ", range);
 }
 
 std::string describe_status(const records::CellRecord& cell) {

@@ -58,6 +58,12 @@ std::string describe_kernel(const records::KernelRecord& kernel);
 /// that was not measured.
 std::string describe_coverage(const records::CoverageRecord& coverage);
 
+/// Lists the parts of a bias that are there, or "none"; lengths in all units where the map's scale is known.
+std::string describe_bias(const records::BiasRecord& bias, const records::MapScaleRecord& scale = {});
+
+/// Lists the settings outside the map that are not the right ones; empty where all are.
+std::string describe_range(const records::RangeRecord& range);
+
 /// Lists what all cells of one table share: view, map, picture size, bias.
 std::string describe_settings(const records::CellRecord& cell);
 

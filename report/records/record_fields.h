@@ -202,6 +202,10 @@ void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
         path("relative to the report folder: the picture shaded with the area truth", true));
   visit("truth_values", images.truth_values,
         path("relative to the report folder: a script with the truth as 16-bit numbers, for the page", true));
+  visit("hardest", images.hardest,
+        {.text = "where the picture differs most from the truth by FLIP: left, top, width and height of a tile, pixels",
+         .least = 0,
+         .later = true});
 }
 
 /// Visits a cell's metrics, and over what its errors are means.

@@ -134,6 +134,8 @@ struct ImagesRecord {
   std::optional<std::string> truth_picture = std::nullopt;  ///< one per scene and view
   std::optional<std::string> truth_values = std::nullopt;   ///< of the same: visibility, its standard error, the mask
   std::optional<std::string> parts = std::nullopt;  ///< no path, but how the names of the cell's parts in `exr` begin
+  std::optional<std::vector<double>> hardest =
+      std::nullopt;  ///< where FLIP is largest: left, top, width, height, pixels
 };
 
 /// How wide the filter's kernel is.

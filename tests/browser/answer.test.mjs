@@ -13,30 +13,44 @@ const findConfiguration = (run, data, { filter, params, map_size: map }) => {
 };
 
 // Runs the command that the page shows, and compares what both say.
-const compare = async (page, run) => {
-  const command = await page.locator(".answer > .note code").textContent(), [program, ...words] = command.split(" ");
+const runAdvice = (command, ...more) => {
+  const [program, ...words] = command.split(" ");
   assert.equal(program, "shadowbench");
-  const { status, stdout, stderr } = runProgram([...words.map((word) => (word === "RUN" ? folderOf(run) : word)), "--json"]);
+  const { status, stdout, stderr } = runProgram([...words, ...more, "--json"]);
   assert.ok(status === 0 || status === 1, `${command}: ${stderr}`);
-  const advice = JSON.parse(stdout), headline = await page.locator(".choice").textContent();
-  const reasons = (await page.locator(".answer .choice + ul li").allTextContents()).join("\n");
+  return { status, advice: JSON.parse(stdout) };
+};
+const readCommand = (page, i = 0) => page.locator(".reasons code").nth(i).textContent();
+const compare = async (page, run) => {
+  const command = await readCommand(page), { status, advice } = runAdvice(command), headline = await page.locator(".choice").textContent();
+  const reasons = (await page.locator(".reasons li").allTextContents()).join("\n");
   assert.equal(advice.fits, status === 0);
   const judged = await page.evaluate(() => {
-    const { keeping, failing, unjudged } = shadowbench.answer.judge();
-    return { best: keeping[0]?.index, keeping: keeping.length, failing: failing.length, unjudged: unjudged.length };
+    const { keeping, failing, unjudged, noGain } = shadowbench.answer.judge();
+    return { keeping: keeping.length, failing: failing.length, unjudged: unjudged.length, noGain: noGain.length };
   });
-  const data = await readData(page), labelOf = ({ settings }) => data.configurations[findConfiguration(run, data, settings)].label;
-  assert.deepEqual([judged.keeping, judged.failing, judged.unjudged], [advice.keep, advice.fail, advice.not_judged.length], command);
+  const data = await readData(page), indexOf = ({ settings }) => findConfiguration(run, data, settings), labelOf = (each) => data.configurations[indexOf(each)].label;
+  const counts = { keeping: advice.keep, failing: advice.fail, unjudged: advice.not_judged.length, noGain: advice.no_better_than_none.length };
+  assert.deepEqual(judged, counts, command);
   assert.equal(/Not judged: /.test(reasons), judged.unjudged > 0, `${command}: ${reasons}`);
+  assert.equal(/No clear gain over 'none': /.test(reasons), judged.noGain > 0, `${command}: ${reasons}`);
   if (status === 1) {
     assert.match(headline, /^Nothing keeps these limits/, command);
     if (advice.closest) assert.ok(reasons.includes(`Closest: ${labelOf(advice.closest)} breaks `), `${command}: ${advice.closest.label}: ${reasons}`);
     return status;
   }
-  assert.equal(judged.best, findConfiguration(run, data, advice.advised.settings), command);
-  assert.ok(headline.startsWith(labelOf(advice.advised)), `${command}: ${headline}`);
-  const cost = advice.advised.cost.mean, [, shown] = /([-\d.e]+) (?:(?:ms \(CPU\)|× none) a frame|us estimated)/.exec(headline);
-  assert.ok(Math.abs(shown - cost) <= 0.005 * Math.abs(cost), `${command}: ${headline}, not ${cost}`);
+  const rows = await page.locator(".picks tbody tr").all(), cells = await rows[0].locator("td").allTextContents();
+  const named = { fast: [0], balanced: [1], best: [2], "fast and best": [0, 2] };
+  const filled = cells.map((text) => text !== "–"), wanted = [false, false, false];
+  for (const each of advice.picks) {
+    for (const column of named[each.name]) {
+      wanted[column] = true;
+      assert.ok(cells[column].startsWith(labelOf(each)), `${command}: ${each.name}: ${cells[column]}`);
+      const [, cost] = /([-\d.e,]+) (?:ms \(CPU\)|× none|us)/.exec(cells[column].slice(labelOf(each).length));
+      assert.ok(Math.abs(Number(cost.replaceAll(",", "")) - each.cost) <= 0.005 * Math.abs(each.cost), `${command}: ${cells[column]}, not ${each.cost}`);
+    }
+  }
+  assert.deepEqual(filled, wanted, `${command}: ${cells}`);
   if (advice.runner_up) assert.ok(reasons.includes(`Runner-up: ${labelOf(advice.runner_up)},`), `${command}: ${reasons}`);
   const { tied = false, basis } = advice.runner_up?.lost_by ?? {}, apart = basis === "none";
   assert.equal(reasons.includes("whose cost cannot be told from it"), tied && !apart, `${command}: ${reasons}`);
@@ -44,7 +58,25 @@ const compare = async (page, run) => {
   if (!advice.runner_up) assert.ok(reasons.includes("no other keeps the limits"), command);
   return status;
 };
+// Each scene's row is what the command says with --scene.
+const compareScenes = async (page, run) => {
+  const command = await readCommand(page), data = await readData(page);
+  for (const { scene, idle } of data.scopes.slice(1)) {
+    const row = page.locator(".picks tbody tr").filter({ has: page.locator("th", { hasText: scene }) });
+    if (idle) continue;
+    const { status, advice } = runAdvice(command, "--scene", scene), text = (await row.locator("td").allTextContents()).join(" ");
+    if (status === 1) assert.match(text, /nothing keeps the limits/);
+    for (const each of advice.picks ?? []) assert.ok(text.includes(data.configurations[findConfiguration(run, data, each.settings)].label), `${command}, ${scene}: ${each.name} ${each.label}: ${text}`);
+    if (status === 0) assert.equal(await row.locator("button").count(), advice.picks.reduce((sum, { name }) => sum + (name === "fast and best" ? 2 : 1), 0), text);
+  }
+};
 
+// What is folded is unfolded: only what is seen can be moved.
+const openAnswer = async (...words) => {
+  const opened = await openRun(...words);
+  await opened.page.locator(".reasons").evaluate((each) => { each.open = true; });
+  return opened;
+};
 const listSliders = (page) => page.locator(".sliders input").evaluateAll((all) => all.map(({ name, max }) => ({ name, max: Number(max) })));
 const move = (page, { name }, position) => page.locator(`.sliders input[name="${name}"]`).fill(String(position));
 const choose = (page, name, value) => page.locator(`.limits select[name="${name}"]`).selectOption(value);
@@ -54,6 +86,7 @@ for (const run of ["several", "odd", "untrue", "single", "mixed"]) {
   test(`OnLoad_TheAnswerIsThatOfTheProgram: ${run}`, async () => {
     const { page, messages, close } = await openRun(run);
     await compare(page, run);
+    await compareScenes(page, run);
     assert.deepEqual(messages, []);
     await close();
   });
@@ -61,7 +94,7 @@ for (const run of ["several", "odd", "untrue", "single", "mixed"]) {
 
 for (const run of ["several", "mixed"]) {
   test(`EverySliderAndChoice_MovesTheAnswerAsTheProgramDoes: ${run}`, async () => {
-    const { page, messages, close } = await openRun(run);
+    const { page, messages, close } = await openAnswer(run);
     const exits = new Set(), sliders = await listSliders(page);
     assert.ok(sliders.length >= 5, String(sliders.length));
     for (const slider of sliders) {
@@ -75,7 +108,15 @@ for (const run of ["several", "mixed"]) {
       for (const option of (await listOptions(page, name)).reverse()) {
         await choose(page, name, option);
         exits.add(await compare(page, run));
+        await compareScenes(page, run);
       }
+    }
+    const soft = page.locator('.limits input[name="soft"]');
+    if (await soft.isVisible()) {
+      await soft.check();
+      exits.add(await compare(page, run));
+      assert.match(await readCommand(page), /--requires contact-hardening/);
+      await soft.uncheck();
     }
     for (const slider of await listSliders(page)) await move(page, slider, 0);
     exits.add(await compare(page, run));
@@ -92,7 +133,7 @@ for (const run of ["several", "mixed"]) {
 }
 
 test("AtRandomPositions_TheAnswerIsThatOfTheProgram", async () => {
-  const { page, messages, close } = await openRun("several"), random = makeRandom(7);
+  const { page, messages, close } = await openAnswer("several"), random = makeRandom(7);
   const exits = [0, 0], pick = (list) => list[Math.floor(random() * list.length)];
   for (let i = 0; i < kRandomPositions; ++i) {
     await choose(page, "cost", pick(await listOptions(page, "cost")));
@@ -106,35 +147,53 @@ test("AtRandomPositions_TheAnswerIsThatOfTheProgram", async () => {
   await close();
 });
 
-test("LookCloser_OpensTheViewerAtTheWorstPlace", async () => {
-  const { page, messages, close } = await openRun("several");
-  await page.waitForSelector(".worst canvas");
-  assert.equal(await page.locator(".worst canvas").count(), 2);
-  const label = await page.locator(".worst figcaption").nth(1).textContent();
+test("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", async () => {
+  const { page, messages, close } = await openRun("several"), data = await readData(page);
+  const stage = page.locator(".split .stage"), names = () => page.locator(".split figcaption bdi").allTextContents();
+  const [first] = await page.evaluate(() => shadowbench.answer.picks());
+  assert.deepEqual((await names())[0], "truth");
+  assert.ok((await names())[1].startsWith(data.configurations[first.index].label));
+  const { width } = await stage.boundingBox(), room = (await page.locator(".answer").boundingBox()).width;
+  assert.ok(width > 0.95 * room, `${width} of ${room} px`);
+  const shown = await stage.evaluate((box) => [...box.querySelectorAll("img")].map((image) => [image.naturalWidth, image.offsetWidth, image.offsetLeft, image.offsetTop, box.clientWidth, box.clientHeight]));
+  assert.deepEqual(shown[0], shown[1], "both lie in one place");
+  const title = (await names())[1].split(" on ")[1], place = data.places.findIndex((each) => each.title === title);
+  const [natural, drawn, left, top, wide, high] = shown[1], scale = drawn / natural;
+  const [x, y, across, down] = data.cells.find((each) => each.configuration === first.index && each.place === place).hardest;
+  const middle = [left + scale * (x + across / 2), top + scale * (y + down / 2)];
+  assert.ok(middle[0] > 0 && middle[0] < wide && middle[1] > 0 && middle[1] < high, `the hardest tile is at ${middle} of ${wide} x ${high}`);
+  const button = page.locator(".picks tbody tr").last().locator("button").last();
+  await button.click();
+  const chosen = await button.evaluate(({ dataset }) => [Number(dataset.index), Number(dataset.place)]);
+  assert.deepEqual(await names(), ["truth", `${data.configurations[chosen[0]].label} on ${data.places[chosen[1]].title}`]);
+  assert.equal(await page.locator('.picks [aria-pressed="true"]').count() > 0, true);
+  await stage.locator("input").fill("20");
+  assert.equal(await stage.evaluate((box) => getComputedStyle(box).getPropertyValue("--split")), "20%");
+  assert.match(await readCommand(page, 1), new RegExp(`^shadowbench view ${data.places[chosen[1]].scene} --left truth --right ${data.configurations[chosen[0]].filter}`));
   await page.getByRole("button", { name: "Look closer" }).click();
-  await page.waitForFunction((name) => document.querySelectorAll(".viewer figcaption")[1].textContent.includes(name), label);
-  await page.waitForFunction(() => location.hash.startsWith("#view="));
-  assert.ok(Number(new URL(page.url()).hash.split(",")[7]) > 2, "the view is at the place");
+  await page.waitForFunction((name) => document.querySelectorAll(".viewer figcaption")[1].textContent.includes(name), data.configurations[chosen[0]].label);
+  await page.waitForFunction(() => location.hash.includes("view="));
   assert.deepEqual(messages, []);
   await close();
 });
 
 test("ALink_OpensTheSameAnswerAndTable", async () => {
-  const { page, close } = await openRun("several");
+  const { page, close } = await openAnswer("several");
   await choose(page, "cost", "static");
   await choose(page, "class", "medium");
   await move(page, { name: "error.flip" }, 2);
+  await page.locator(".picks button").last().click();
   await page.locator('.numbers select[name="measure"]').selectOption("error.mean");
   await page.locator('.numbers input[type="search"]').fill("3x");
   await page.locator(".numbers thead button").first().click();
-  const read = (from) => from.evaluate(() => [".choice", ".answer code", ".numbers table", ".sliders"].map((name) => document.querySelector(name).textContent));
-  await page.waitForFunction(() => /limits=.*table=.*3x/.test(location.hash));
+  const read = (from) => from.evaluate(() => [".picks", ".reasons", ".numbers table", ".split figcaption"].map((name) => document.querySelector(name).textContent));
+  await page.waitForFunction(() => /limits=/.test(location.hash) && /shown=/.test(location.hash) && /table=.*3x/.test(location.hash));
   const hash = new URL(page.url()).hash, wanted = await read(page), again = await openRun("several", { hash });
   assert.match(wanted[1], /--max-flip .*--class medium --light-motion static/);
   assert.deepEqual(await read(again.page), wanted);
   assert.deepEqual(again.messages, []);
   // What the page does not have is left as it was.
-  const bad = await openRun("several", { hash: "#limits=noon,vast,error.rmse:x,nothing:1&table=none,none,none,none,&view" }), plain = await openRun("several");
+  const bad = await openRun("several", { hash: "#limits=noon,vast,,error.rmse:x,nothing:1&shown=nobody,nowhere&table=none,none,none,none,&view" }), plain = await openRun("several");
   assert.deepEqual((await read(bad.page))[2], (await read(plain.page))[2]);
   assert.deepEqual(bad.messages, []);
   for (const each of [{ close }, again, bad, plain]) await each.close();

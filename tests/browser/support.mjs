@@ -83,8 +83,9 @@ export const changePage = (run, name, edit) => {
 };
 // Repeats the configurations of a page, each with its cells, until there are as many as wanted.
 export const multiply = (data, count) => {
-  const { configurations, cells } = data;
+  const { configurations, cells, scopes } = data;
   data.cells = [];
+  for (const scope of scopes) scope.rows = Array.from({ length: count }, (_, i) => scope.rows[i % configurations.length]);
   data.configurations = Array.from({ length: count }, (_, i) => {
     const at = i % configurations.length, twin = i >= configurations.length ? ` (twin ${i})` : "";
     for (const cell of cells) if (cell.configuration === at) data.cells.push({ ...cell, configuration: i, key: cell.key + twin });

@@ -71,6 +71,12 @@ std::string describe_fit(const FitRule& rule) {
                      cascades.seen ? "seen" : "all");
 }
 
+std::set<std::string> describe_fits(const std::vector<FitRule>& rules) {
+  std::set<std::string> all;
+  for (const FitRule& rule : rules) all.insert(describe_fit(rule));
+  return all;
+}
+
 FitRule parse_fit_rule(std::string_view text) {
   const std::string_view name = text.substr(0, text.find(':'));
   const auto found = std::find(kFitNames.begin(), kFitNames.end(), name);

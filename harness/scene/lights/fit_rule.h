@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,9 @@ std::string_view name_of(FitMode mode);
 
 /// The rule as parse_fit_rule() reads it: "tight", "cascades:count=4,split=0.5,blend=0.1,depths=all".
 std::string describe_fit(const FitRule& rule);
+
+/// All of these, as describe_fit() has each.
+std::set<std::string> describe_fits(const std::vector<FitRule>& rules);
 
 /// Reads a rule. Throws kUsage for a name that is no fit, or a key or value that cascades have not, with those there
 /// are.

@@ -58,7 +58,7 @@ int count_loops(const records::GpuRecord& record) {
 }
 
 /// The filter that stands farthest apart in the two orders.
-std::string describe_farthest(const Pairs& pairs, const std::string& gpu) {
+std::string describe_farthest(const Pairs& pairs) {
   std::size_t farthest = 0;
   std::ptrdiff_t most = 0;
   for (std::size_t i = 0; i < pairs.costs.size(); ++i) {
@@ -69,9 +69,9 @@ std::string describe_farthest(const Pairs& pairs, const std::string& gpu) {
     farthest = i;
   }
   if (most == 0) return "";
-  return fmt::format(" Farthest apart is {}: number {} of the measured times, cheapest first, and number {} on {}.",
+  return fmt::format(" Farthest apart is {}: number {} here, cheapest first, and number {} there.",
                      pairs.costs[farthest]->configuration->name, find_rank(pairs.measured, pairs.measured[farthest]),
-                     find_rank(pairs.estimated, pairs.estimated[farthest]), gpu);
+                     find_rank(pairs.estimated, pairs.estimated[farthest]));
 }
 
 /// The configurations whose estimates are within a hundredth of one of them, and that the same resource bounds: of
@@ -125,15 +125,14 @@ std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs) {
   return std::isfinite(correlation) ? std::optional(correlation) : std::nullopt;
 }
 
-std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs,
-                                      const records::GlRecord& gl) {
+std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs) {
   std::vector<std::string> sentences;
   const Pairs pairs = list_pairs(costs);
   if (const auto correlation = correlate_ranks(costs)) {
-    sentences.push_back(fmt::format(
-        "{}: the order of the estimates and that of the times measured here ({}, moving light) have a rank correlation "
-        "of {:.2f} over {} configurations; 1 is the same order, 0 none.{}",
-        gpu, records::describe_clock(gl), *correlation, pairs.costs.size(), describe_farthest(pairs, gpu)));
+    sentences.push_back(
+        fmt::format("{}: its estimates and the times here (moving light) have a rank correlation of {:.2f} over {} "
+                    "configurations.{}",
+                    gpu, *correlation, pairs.costs.size(), describe_farthest(pairs)));
   }
   if (const auto level = find_level_group(costs); !level.empty()) {
     std::vector<std::string> names;

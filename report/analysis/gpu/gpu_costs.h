@@ -29,8 +29,7 @@ std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs);
 
 /// Says how alike the orders are, which filter's place differs most, which filters cost the same, and what was refused
 /// or guessed.
-std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs,
-                                      const records::GlRecord& gl);
+std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs);
 
 /// One row for each configuration that the GPU's compiler took: the estimate beside what was measured here, and facts
 /// of its lookup, less those of the empty one.

@@ -6,6 +6,7 @@
 
 #include "report/analysis/cell_group.h"
 #include "report/analysis/configuration.h"
+#include "report/records/cell_names.h"
 
 namespace shadowbench::analysis {
 namespace {
@@ -27,9 +28,9 @@ bool is_complete(const records::CellRecord& cell) {
 // One map serves every camera where it is fitted to the scene and to nothing that the camera sees.
 bool is_shared(const std::string& fit) { return fit.starts_with("tight") || fit.starts_with("sphere"); }
 
-MapUse make_use(const records::CellRecord& cell) {
+MapUse make_use(const records::CellRecord& cell, const std::set<std::string>& fits) {
   const double layer = static_cast<double>(*cell.cost.bytes_per_texel) * cell.map_size * cell.map_size;
-  return {cell.fit,
+  return {records::name_fit(cell.fit, fits),
           cell.map_size,
           static_cast<int>(std::lround(static_cast<double>(*cell.cost.map_bytes) / layer)),
           *cell.cost.map_bytes,
@@ -59,14 +60,15 @@ double find_drift(const std::vector<MapUse>& maps) {
 
 void widen(Estimate& time, double factor) { time = {time.value, time.low / factor, time.high * factor}; }
 
-MapFamily make_family(const std::string& name, const std::string& place, CellPointers cells) {
+MapFamily make_family(const std::string& name, const std::string& place, CellPointers cells,
+                      const std::set<std::string>& fits) {
   std::ranges::stable_sort(cells, {},
                            [](const auto* cell) { return std::pair(!is_shared(cell->fit), cell->map_size); });
   CellPointers kept;
   for (const auto* cell : cells)
     if (!repeats(*cell, kept)) kept.push_back(cell);
   MapFamily family{name, place, {}};
-  for (const auto* cell : kept) family.maps.push_back(make_use(*cell));
+  for (const auto* cell : kept) family.maps.push_back(make_use(*cell, fits));
   family.drift = find_drift(family.maps);
   for (MapUse& map : family.maps)
     for (Estimate* time : {&map.redraw, &map.lookup}) widen(*time, std::sqrt(family.drift));
@@ -107,7 +109,9 @@ std::optional<int> find_first_view(const MapUse& shared, const MapUse& own) {
 Estimate MapUse::frame() const { return add_times(redraw, lookup); }
 
 std::vector<MapFamily> list_map_families(const std::vector<records::CellRecord>& cells) {
-  if (std::ranges::all_of(cells, [&](const auto& cell) { return cell.fit == cells.front().fit; })) return {};
+  std::set<std::string> fits;
+  for (const records::CellRecord& cell : cells) fits.insert(cell.fit);
+  if (fits.size() < 2) return {};
   CellPointers complete;
   std::vector<records::CellRecord> plain;  // the same without their maps: one configuration is a family
   for (const records::CellRecord& cell : cells) {
@@ -125,7 +129,7 @@ std::vector<MapFamily> list_map_families(const std::vector<records::CellRecord>&
       CellPointers members;
       for (const records::CellRecord* cell : configuration.cells)
         if (place_of(*cell) == place) members.push_back(complete[static_cast<std::size_t>(cell - plain.data())]);
-      MapFamily family = make_family(configuration.name, describe_place(place, places), std::move(members));
+      MapFamily family = make_family(configuration.name, describe_place(place, places), std::move(members), fits);
       if (has_fits(family)) families.push_back(std::move(family));
     }
   }

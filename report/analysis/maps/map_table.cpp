@@ -9,7 +9,7 @@
 namespace shadowbench::analysis {
 namespace {
 
-std::string name_map(const MapUse& map) { return fmt::format("{} {}", map.fit, map.size); }
+std::string name_map(const MapUse& map) { return fmt::format("{}, {}", map.fit, map.size); }
 
 // "0.4, less": a ratio, and whether the two can be told apart.
 std::string format_ratio(double ratio, int sign) {

@@ -252,8 +252,8 @@ TEST(Advice, ATie_NamesTheLowerMeanAndSaysByHowMuchErrorsDiffer) {
                                             measure("cubes", "slow", 9.0, 0.001)};
   const Advice advice = advise_on(cells, {});
   EXPECT_EQ(describe_runner_up(advice, make_run().gl),
-            "a tie, for their 95 % intervals overlap: rough, map 1024 × 1024 d32f is named first for its lower mean; "
-            "its RMSE is lower by 0.02 [0.019, 0.021]; tied with it too: third, map 1024 × 1024 d32f");
+            "a tie, for their 95 % intervals overlap: rough is named first for its lower mean; "
+            "its RMSE is lower by 0.02 [0.019, 0.021]; tied with it too: third");
 }
 
 TEST(Advice, EqualBytes_AreATieThatTimeOrders) {
@@ -264,7 +264,7 @@ TEST(Advice, EqualBytes_AreATieThatTimeOrders) {
   const Advice advice = advise(cells, request);
   EXPECT_THAT(labels(advice.keeping), ElementsAre("fast", "slow"));
   EXPECT_EQ(describe_runner_up(advice, make_run().gl),
-            "a tie, at the same cost: fast, map 1024 × 1024 d32f is named first for its shorter time; its RMSE is "
+            "a tie, at the same cost: fast is named first for its shorter time; its RMSE is "
             "lower by 0.02 [0.019, 0.021]");
 }
 
@@ -308,7 +308,7 @@ TEST(Advice, NothingFits_WithoutASingleObstacleNamesTheClosest) {
                                                   measure("cubes", "close", 9.0, 0.04)};
   const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03), limit("--max-ms", 5.0)});
   EXPECT_EQ(describe_failure(advice),
-            "none of 2 configurations keeps the limits; no single one is in the way: close, map 1024 × 1024 d32f comes "
+            "none of 2 configurations keeps the limits; no single one is in the way: close comes "
             "closest, and breaks --max-rmse 0.03 with 0.04 and --max-ms 5 with 10");
 }
 

@@ -38,7 +38,7 @@ TEST(StabilityWords, Overflow_NamesLimitAndSafeValue) {
   const auto sentences = describe_stability({"cubes", {cell}});
   ASSERT_EQ(sentences.size(), 1u);
   EXPECT_EQ(sentences[0],
-            "odd (k 20, store r16f): 3 % of its map's texels overflowed: r16f holds numbers up to 65504 (e^11.09); an "
+            "odd: 3 % of its map's texels overflowed: r16f holds numbers up to 65504 (e^11.09); an "
             "exponent "
             "of 11.08 is safe here.");
 }

@@ -131,49 +131,71 @@ TEST(RunPage, WithoutAttribution_ThereAreNoBarsOrAReason) {
   expect_balanced(page);
 }
 
-TEST(RunPage, BeginsWithTheChoice_ItsReasonAndTheRunnerUp) {
+TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
   std::vector<records::CellRecord> cells;
-  for (const auto& [filter, rmse, ms] : {std::tuple{"cheap", 0.09, 1.0}, {"fair", 0.05, 2.0}, {"dear", 0.04, 6.0}}) {
+  for (const auto& [filter, rmse, ms] :
+       {std::tuple{"none", 0.09, 1.0}, {"cheap", 0.08, 2.0}, {"knee", 0.05, 3.0}, {"dear", 0.04, 12.0}}) {
     cells.push_back(make_attributed_cell(filter, rmse, {0.0, 0.1, 0.1, 0.8}));
     cells.back().time_ms.moving = records::OwnTime{{ms, ms, ms, 9}, {ms, ms}};
+    cells.back().images.picture = fmt::format("images/{}.png", filter);
+    cells.back().images.truth_picture = "images/truth.png";
+    cells.back().images.hardest = {900, 500, 60, 40};
+    cells.back().error.flip = rmse;
   }
   const std::string page = make_html(make_run(), cells);
   const std::size_t answer = page.find("class=\"answer\"");
-  for (const char* text : {"fair, map 1024 × 1024 d32f: 2 ms (CPU) a frame with a moving light.",
-                           "the cheapest of 2 that keep the limits; 0.05 at worst, on cubes, where 0.05 is the limit",
-                           "Runner-up: dear, map 1024 × 1024 d32f, dearer by 4 ms (CPU) (200 %)"})
+  for (const char* text :
+       {"cheap: 2 ms (CPU), RMSE 0.08; the cheapest that is clearly better than &#39;none&#39;<",
+        "knee: 3 ms (CPU), RMSE 0.05; 75 % of what the best one gains, for 10 % of what it costs more<",
+        "dear: 12 ms (CPU), RMSE 0.04; the least RMSE, at 6 times the cost of the fast one<",
+        "<img src=\"images/truth.png\" alt=\"truth on cubes\" style=\"width:200.000%;left:-100.000%;top:"})
     EXPECT_GT(page.find(text), answer) << text;
-  EXPECT_LT(page.find("Runner-up"), page.find("id=\"numbers\"")) << page.find("id=\"table\"");
+  EXPECT_LT(page.find("dear: 12"), page.find("<figure class=\"split\""));
+  EXPECT_LT(page.find("<figure class=\"split\""), page.find("id=\"table\""));
   const nlohmann::json data = read_data(page);
-  EXPECT_EQ(data["limits"], nlohmann::json({{"error.rmse", 0.05}})) << "a quarter above the least";
-  EXPECT_EQ(data["cells"][1]["values_of"]["error.rmse"], 0.05);
-  EXPECT_EQ(data["configurations"][2]["time_ms.moving"], 6.0);
-  EXPECT_EQ(data["configurations"][1]["worst"]["error.rmse"],
-            nlohmann::json({{"value", 0.05}, {"limit", 0.05}, {"place", 0}, {"unseen", nlohmann::json::array()}}));
-  const nlohmann::json& advice = data["advice"]["moving"][""];
+  EXPECT_EQ(data["cells"][1]["values_of"]["error.rmse"], 0.08);
+  EXPECT_EQ(data["cells"][1]["hardest"], nlohmann::json({900, 500, 60, 40}));
+  EXPECT_EQ(data["configurations"][3]["time_ms.moving"], 12.0);
+  const nlohmann::json& scope = data["scopes"].at(0);
+  EXPECT_EQ(scope["rows"][1]["worst"]["error.rmse"],
+            nlohmann::json({{"value", 0.08}, {"limit", 0.08}, {"place", 0}, {"unseen", nlohmann::json::array()}}));
+  EXPECT_EQ(scope["rows"][0]["gains"], false);
+  EXPECT_EQ(scope["rows"][1]["gains"], true);
+  const nlohmann::json& advice = scope["advice"]["moving"][""];
   EXPECT_EQ(advice["order"][0], nlohmann::json({{"index", 0}, {"tied", nlohmann::json::array()}}));
   EXPECT_TRUE(advice["unjudged"].empty());
-  EXPECT_TRUE(data["advice"]["moving"].contains("medium")) << "as with --class";
+  EXPECT_TRUE(scope["advice"]["moving"].contains("medium")) << "as with --class";
+  EXPECT_EQ(data["scopes"].size(), 1u) << "one scene is all scenes";
 }
 
-TEST(RunPage, ALimitThatOneWouldKeep_IsWidenedUntilThreeDo) {
-  const auto limit_of = [](const std::vector<double>& rmses) {
-    std::vector<records::CellRecord> cells;
-    for (const double rmse : rmses) {
-      cells.push_back(make_attributed_cell(fmt::format("filter{}", cells.size()), rmse, {0.0, 0.1, 0.1, 0.8}));
-      cells.back().time_ms.moving = records::OwnTime{{1.0, 1.0, 1.0, 9}, {1.0, 1.0}};
-    }
-    return read_data(make_html(make_run(), cells))["limits"]["error.rmse"].get<double>();
-  };
-  EXPECT_EQ(limit_of({0.04, 0.06, 0.07, 0.08, 0.09}), 0.07);
-  EXPECT_EQ(limit_of({0.04, 0.05, 0.07, 0.08, 0.09}), 0.05) << "two keep it";
-  EXPECT_EQ(limit_of({0.04, 0.06, 0.07}), 0.06) << "a limit that all keep is none";
-  EXPECT_EQ(limit_of({0.04, 0.06}), 0.05);
+TEST(RunPage, AnswersForEachScene_AndSaysWhereTheChoiceDoesNotMatter) {
+  std::vector<records::CellRecord> cells;
+  for (const auto& [scene, filter, rmse, flip] : {std::tuple{"sun", "none", 0.09, 0.02},
+                                                  {"sun", "soft", 0.05, 0.01},
+                                                  {"spot", "none", 0.05, 0.02},
+                                                  {"spot", "soft", 0.09, 0.03},
+                                                  {"dim", "none", 0.2, 0.0002},
+                                                  {"dim", "soft", 0.1, 0.0004}}) {
+    cells.push_back(make_attributed_cell(filter, rmse, {0.0, 0.1, 0.1, 0.8}));
+    cells.back().scene = scene;
+    cells.back().error.flip = flip;
+    const double ms = std::string(filter) == "none" ? 1.0 : 2.0;
+    cells.back().time_ms.moving = records::OwnTime{{ms, ms, ms, 9}, {ms, ms}};
+  }
+  const std::string page = make_html(make_run(), cells);
+  EXPECT_THAT(page, HasSubstr(">sun</td><td>soft, RMSE 0.05</td>"));
+  EXPECT_THAT(page, HasSubstr(">spot</td><td>none, RMSE 0.05</td>"));
+  EXPECT_THAT(page, HasSubstr(">dim</td><td>does not matter: every filter&#39;s FLIP is below 0.001<"));
+  const nlohmann::json data = read_data(page);
+  ASSERT_EQ(data["scopes"].size(), 4u);
+  EXPECT_EQ(data["scopes"][3]["idle"], true);
+  EXPECT_EQ(data["scopes"][0]["rows"][1]["rmse"]["value"], std::sqrt((0.05 * 0.05 + 0.09 * 0.09) / 2.0))
+      << "without the scene that does not matter";
 }
 
 TEST(RunPage, WithoutErrorsOrTimes_SaysWhatCanBeSaid) {
   EXPECT_THAT(make_summary(make_run(), {make_cell("cubes", "vsm", 4.0)}),
-              HasSubstr("the cheapest of 1 that can be judged"));
+              HasSubstr("vsm: 7.5 ms (CPU); the cheapest "));
   records::CellRecord untimed = make_attributed_cell("vsm", 0.04, {0.0, 0.1, 0.1, 0.8});
   untimed.time_ms = {};
   EXPECT_THAT(make_summary(make_run(), {untimed}), HasSubstr("Nothing fits: none of 1 configurations can be judged"));
@@ -190,7 +212,7 @@ TEST(RunPage, SceneWithSeveralMapsAndFits_IsNamedWithEach) {
                            "<summary>cubes: Three cubes on a floor, map 512<", "<summary>ball<"})
     EXPECT_THAT(page, HasSubstr(link));
   cells[1].fit = "view";
-  EXPECT_THAT(make_html(make_run(), cells), HasSubstr("<summary>cubes: Three cubes on a floor, map 512, fit view<"));
+  EXPECT_THAT(make_html(make_run(), cells), HasSubstr("<summary>cubes: Three cubes on a floor, map 512, view fit<"));
 }
 
 TEST(RunPage, Page_LoadsNothingFromElsewhere) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "report/analysis/configuration.h"
+#include "report/analysis/front.h"
+#include "report/records/records.h"
+
+namespace shadowbench::analysis {
+
+/// The RMSE over cells of several places: the root of the mean square. Nothing where a cell has none,
+/// or there is none.
+std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells);
+
+/// Says of each configuration whether its RMSE over its places is clearly less than that of the `none` among `cells`
+/// with the same map, bias, light and picture; nothing where either has none. `none` itself gains nothing.
+std::vector<std::optional<bool>> find_gains(const std::vector<Configuration>& configurations,
+                                            const std::vector<const records::CellRecord*>& cells);
+
+/// Finds the places where the choice does not matter: those at which every cell's picture differs from the truth by a
+/// FLIP below 0.001. Where that is so everywhere, there is none.
+std::vector<Place> list_idle_places(const std::vector<const records::CellRecord*>& cells);
+
+}  // namespace shadowbench::analysis

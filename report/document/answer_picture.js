@@ -1,0 +1,71 @@
+// The picture of the answer: the truth at the left of a line that the reader moves, a filter at the right, where the
+// filter's picture differs most. The page has one before its scripts run.
+const kPictureShape = 2.5;
+const kMostShown = 480; // pixels across, so that an edge is large enough to look at
+const startPicture = (holder) => {
+  const old = holder.querySelector("figure.split");
+  const figure = old ?? element(holder, "figure", { className: "split" });
+  if (old) holder.append(old);
+  const stage = figure.querySelector(".stage") ?? element(figure, "div", { className: "stage" });
+  const images = [0, 1].map((i) => stage.querySelectorAll("img")[i] ?? element(stage, "img", { alt: "" }));
+  const line = stage.querySelector("i") ?? element(stage, "i");
+  const slider = element(stage, "input", { type: "range", min: 0, max: 100, value: 50 });
+  slider.addEventListener("input", () => stage.style.setProperty("--split", `${slider.value}%`));
+  const caption = figure.querySelector("figcaption") ?? element(figure, "figcaption");
+  let shown = null;
+  const button = addButton(figure, "Look closer", () => shadowbench.openViewer(shown));
+  const message = element(figure, "p", { className: "note" });
+
+  // The part of a picture about the tile where FLIP is largest; all of it where nobody knows.
+  const chooseRect = ({ hardest }, [width, height]) => {
+    if (!hardest) return { x: 0, y: 0, width, height };
+    const [left, top, across, down] = hardest;
+    const wide = Math.min(width, Math.max(kMostShown, width / 2));
+    const high = Math.min(height, wide / kPictureShape);
+    const clampTo = (value, most) => Math.min(Math.max(value, 0), most);
+    const x = clampTo(left + across / 2 - wide / 2, width - wide);
+    return { x, y: clampTo(top + down / 2 - high / 2, height - high), width: wide, height: high };
+  };
+  const show = (index, place) => {
+    const cell = cellAt(index, place);
+    const truth = run.truths[place]?.picture;
+    const [width, height] = run.configurations[index].size;
+    const rect = chooseRect(cell, [width, height]);
+    const hasBoth = Boolean(truth && cell.picture);
+    shown = { place, left: truth ? kTruth : index, right: index, layer: "picture", rect };
+    stage.style.aspectRatio = `${rect.width}/${rect.height}`;
+    [truth, cell.picture].forEach((path, i) => {
+      images[i].hidden = !path;
+      if (path && images[i].getAttribute("src") !== path) images[i].src = path;
+      images[i].alt = `${i === 0 ? "truth" : labelOfPicture(index)} on ${run.places[place].title}`;
+      images[i].style.width = `${(100 * width) / rect.width}%`;
+      images[i].style.left = `${(-100 * rect.x) / rect.width}%`;
+      images[i].style.top = `${(-100 * rect.y) / rect.height}%`;
+    });
+    stage.classList.toggle("single", !hasBoth);
+    slider.hidden = line.hidden = !hasBoth;
+    stage.hidden = caption.hidden = button.hidden = !truth && !cell.picture;
+    const name = `${labelOfPicture(index)} on ${run.places[place].title}`;
+    slider.setAttribute("aria-label", `How much of the truth is seen beside ${name}`);
+    caption.replaceChildren();
+    for (const text of hasBoth ? ["truth", name] : [truth ? "truth" : name]) element(caption, "bdi", {}, text);
+    message.textContent = truth || cell.picture ? "" : "This run stored no pictures.";
+  };
+  const labelOfPicture = (index) => run.configurations[index].label;
+  images.forEach((image) =>
+    image.addEventListener("error", () => {
+      message.textContent = `${image.getAttribute("src")} cannot be read: the file is not beside this page.`;
+    }),
+  );
+  return { figure, show };
+};
+
+// The commands that say and show the same: the run's folder is that of the page, where it was opened from a disk.
+const folderOfPage = () => {
+  const folder = location.protocol === "file:" ? decodeURI(location.pathname).replace(/\/[^/]*$/, "") : "RUN";
+  return /^[\w./+-]+$/.test(folder) ? folder : `'${folder.replaceAll("'", "'\\''")}'`;
+};
+const writeView = (index, place) => {
+  const { request, map } = run.configurations[index];
+  return `shadowbench view ${run.places[place].scene} --left truth --right ${request} --map-size ${map}`;
+};

@@ -1,0 +1,214 @@
+#include "report/pages/answer_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "reference/metrics/error_stats.h"
+#include "report/analysis/advice.h"
+#include "report/analysis/advice_words.h"
+#include "report/analysis/gains.h"
+#include "report/pages/trade_charts.h"
+#include "report/records/format.h"
+
+namespace shadowbench::pages {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::pair<const char*, analysis::LightMotion> kLights[] = {{"moving", analysis::LightMotion::kMoving},
+                                                                     {"static", analysis::LightMotion::kStatic}};
+
+/// The worst value, the number that as a limit lets it pass, its place, and those with nothing to see; or why there is
+/// none.
+json describe_worst(const analysis::Verdict& verdict, const std::vector<analysis::Place>& places) {
+  if (!verdict.absent.empty()) return verdict.absent;
+  json unseen = json::array();
+  for (const records::CellRecord* cell : verdict.nothing_to_see) unseen.push_back(analysis::find_place(places, *cell));
+  return {{"value", *verdict.worst},
+          {"limit", std::stod(analysis::format_limit(*verdict.worst))},
+          {"place", analysis::find_place(places, *verdict.where)},
+          {"unseen", std::move(unseen)}};
+}
+
+/// How a configuration stands to everything that may be limited, by the names of the measures.
+json list_worst(const analysis::Configuration& configuration, const std::vector<analysis::Place>& places,
+                const analysis::CostKind& frame) {
+  json worst = json::object();
+  for (const analysis::LimitSpec& spec : analysis::limit_table()) {
+    if (!spec.metric && frame == analysis::CostKind::kRatio) continue;
+    for (const auto& [name, light] : kLights) {
+      if (spec.metric && light == analysis::LightMotion::kStatic) continue;
+      worst[spec.metric ? spec.field : fmt::format("{}.{}", spec.field, name)] =
+          describe_worst(analysis::judge_limit(configuration, {&spec, 0.0, {}}, light, places), places);
+    }
+  }
+  return worst;
+}
+
+/// The ranks behind one whose costs cannot be told from its own, as pairs of the first and the one after the last.
+json list_ties(const analysis::Advice& advice, std::size_t rank) {
+  json ranges = json::array();
+  std::size_t end = 0;
+  for (std::size_t other = rank + 1; other < advice.keeping.size(); ++other) {
+    const auto gap = analysis::compare_costs(advice.keeping[rank], advice.keeping[other], advice.request.cheapest);
+    if (!gap.tied || gap.basis == analysis::Basis::kNone) continue;
+    if (end != other) ranges.push_back({other, other});
+    ranges.back()[1] = end = other + 1;
+  }
+  return ranges;
+}
+
+/// A scene, or all of them, with the configurations' cells there.
+struct Scope {
+  std::vector<std::string> scenes;  ///< empty: all
+  std::vector<analysis::Configuration> configurations;
+};
+
+Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Configuration>& configurations) {
+  Scope scope{std::move(scenes), configurations};
+  std::vector<const records::CellRecord*> advised;
+  for (analysis::Configuration& each : scope.configurations) {
+    std::erase_if(each.cells, [&](const records::CellRecord* cell) {
+      return !scope.scenes.empty() && std::ranges::count(scope.scenes, cell->scene) == 0;
+    });
+    for (const records::CellRecord* cell : each.cells)
+      if (!cell->teaching.value_or(false)) advised.push_back(cell);
+  }
+  const std::vector<analysis::Place> idle = analysis::list_idle_places(advised);
+  for (analysis::Configuration& each : scope.configurations)
+    std::erase_if(each.cells,
+                  [&](const auto* cell) { return std::ranges::count(idle, analysis::place_of(*cell)) > 0; });
+  return scope;
+}
+
+json describe_rmse(const std::vector<const records::CellRecord*>& cells) {
+  const auto rmse = analysis::combine_rmse(cells);
+  if (!rmse) return {};
+  const std::size_t count = rmse->replicates.size();
+  return {{"value", rmse->value},
+          {"reach", rmse->high - rmse->value},
+          {"replicates", rmse->replicates},
+          {"t", count > 1 ? json(metrics::find_student_t(count)) : json()}};
+}
+
+/// What a scope has of each configuration; null of those without a cell there.
+json list_rows(const Scope& scope, const std::vector<analysis::Place>& places,
+               const std::vector<const records::CellRecord*>& all, const std::vector<CostChoice>& choices) {
+  const auto gains = analysis::find_gains(scope.configurations, all);
+  json rows = json::array();
+  for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
+    const analysis::Configuration& each = scope.configurations[i];
+    if (each.cells.empty()) {
+      rows.push_back(nullptr);
+      continue;
+    }
+    json row = {{"worst", list_worst(each, places, choices.front().kind)},
+                {"rmse", describe_rmse(each.cells)},
+                {"gains", gains[i] ? json(*gains[i]) : json()}};
+    for (const CostChoice& choice : choices) row[choice.field] = describe_cost(each.cells, choice);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// What advise() says without limits, by cost and class of width: configurations in the order of their costs, with
+/// their ties, and why others are not judged.
+json list_advice(const std::vector<records::CellRecord>& cells, const Scope& scope,
+                 const std::vector<std::string>& classes, const std::vector<CostChoice>& choices,
+                 const std::map<const records::CellRecord*, std::size_t>& indices) {
+  const auto index_of = [&](const auto& each) { return indices.at(each.configuration.cells.front()); };
+  json all = json::object();
+  for (const CostChoice& choice : choices) {
+    for (const std::string& wide : classes) {
+      analysis::AdviceRequest request;
+      request.light = choice.light;
+      if (choice.kind.kind == analysis::CostKind::kGpu) request.cheapest = choice.kind;
+      request.width_class = wide;
+      request.scenes = scope.scenes;
+      request.gainless = true;
+      const analysis::Advice advice = analysis::advise(cells, request);
+      json order = json::array(), unjudged = json::array();
+      for (std::size_t rank = 0; rank < advice.keeping.size(); ++rank)
+        order.push_back({{"index", index_of(advice.keeping[rank])}, {"tied", list_ties(advice, rank)}});
+      for (const analysis::Unjudged& each : advice.unjudged)
+        unjudged.push_back({{"index", index_of(each)}, {"gap", each.reason}});
+      all[choice.id][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
+    }
+  }
+  return all;
+}
+
+/// Classes that the scope's configurations have, and that of any width, whose name is empty.
+std::vector<std::string> list_classes_of(const Scope& scope, const std::vector<std::string>& classes) {
+  std::vector<std::string> own = {""};
+  for (const std::string& name : classes)
+    if (std::ranges::any_of(scope.configurations, [&](const analysis::Configuration& each) {
+          return !each.cells.empty() && !each.cells.front()->teaching.value_or(false) &&
+                 each.cells.front()->kernel.width_class == name;
+        }))
+      own.push_back(name);
+  return own;
+}
+
+}  // namespace
+
+std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const std::vector<std::string>& gpus,
+                                          const analysis::CostKind& frame) {
+  const bool is_ratio = frame == analysis::CostKind::kRatio;
+  const std::string unit = is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl);
+  const std::string where = is_ratio ? "" : run.gl.software ? ", this CPU" : ", this GPU";
+  std::vector<CostChoice> choices = {
+      {"moving", kMovingField, "moving light" + where, unit, "a frame with a moving light", "", frame},
+      {"static", kStaticField, "static light" + where, unit, "a frame with a static light", "--light-motion static",
+       frame, analysis::LightMotion::kStatic}};
+  for (const std::string& gpu : gpus)
+    choices.push_back({"gpu." + gpu, "gpu." + gpu + ".estimate_us", "estimate, " + gpu, "us",
+                       "estimated on " + gpu + ", for one map's prefilter and a million receivers",
+                       "--cheapest gpu:" + gpu, analysis::CostKind(analysis::CostKind::kGpu, gpu)});
+  return choices;
+}
+
+json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice) {
+  const auto cost = analysis::measure_cost(cells, choice.kind, choice.light);
+  return cost ? json(cost->mean) : json();
+}
+
+std::vector<std::string> list_answered_scenes(const std::vector<records::CellRecord>& cells) {
+  std::vector<std::string> scenes;
+  for (const records::CellRecord& cell : cells)
+    if (!cell.teaching.value_or(false) && std::ranges::count(scenes, cell.scene) == 0) scenes.push_back(cell.scene);
+  return scenes.size() < 2 || cells.size() > kMostCellsInDetail ? std::vector<std::string>() : scenes;
+}
+
+json make_answer_data(const std::vector<records::CellRecord>& cells,
+                      const std::vector<analysis::Configuration>& configurations,
+                      const std::vector<std::string>& classes, const std::vector<CostChoice>& choices) {
+  const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
+  const std::vector<analysis::Place> places = analysis::list_places(all);
+  std::map<const records::CellRecord*, std::size_t> indices;
+  for (std::size_t i = 0; i < configurations.size(); ++i)
+    for (const records::CellRecord* cell : configurations[i].cells) indices[cell] = i;
+  std::vector<const records::CellRecord*> advised = all;
+  std::erase_if(advised, [](const auto* cell) { return cell->teaching.value_or(false); });
+  const std::vector<analysis::Place> idle = analysis::list_idle_places(advised);
+  const auto is_idle = [&](const std::string& scene) {
+    return std::ranges::count(idle, scene, &analysis::Place::scene) ==
+           std::ranges::count(places, scene, &analysis::Place::scene);
+  };
+  std::vector<std::vector<std::string>> scopes = {{}};
+  for (const std::string& scene : list_answered_scenes(cells)) scopes.push_back({scene});
+  json data = json::array();
+  for (const std::vector<std::string>& scenes : scopes) {
+    const Scope scope = make_scope(scenes, configurations);
+    data.push_back({{"scene", scenes.empty() ? json() : json(scenes.front())},
+                    {"idle", !scenes.empty() && is_idle(scenes.front())},
+                    {"rows", list_rows(scope, places, all, choices)},
+                    {"advice", list_advice(cells, scope, list_classes_of(scope, classes), choices, indices)}});
+  }
+  return data;
+}
+
+}  // namespace shadowbench::pages

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "report/analysis/configuration.h"
+#include "report/analysis/limits.h"
+#include "report/records/records.h"
+
+namespace shadowbench::pages {
+
+/// What a frame costs, by the names that the page's scripts have for it: milliseconds, or ratios to `none` where
+/// several kinds of machine measured the cells.
+inline constexpr const char *kMovingField = "time_ms.moving", *kStaticField = "time_ms.static";
+
+/// A cost that a reader may ask for.
+struct CostChoice {
+  std::string id;     ///< in the page's data and its links
+  std::string field;  ///< of a configuration's and a cell's value
+  std::string title, unit;
+  std::string said;    ///< behind a number: "a frame with a moving light"
+  std::string option;  ///< of `advise`
+  analysis::CostKind kind;
+  analysis::LightMotion light = analysis::LightMotion::kMoving;
+};
+
+/// Lists what a frame costs, the light moving and static, and the estimate for each GPU. `frame`: of
+/// analysis::frame_cost_kind().
+std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const std::vector<std::string>& gpus,
+                                          const analysis::CostKind& frame);
+
+/// The mean of a cost over cells; null where one has none.
+nlohmann::json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice);
+
+/// What the script of the answer judges by, for all scenes and for each by itself: per configuration its costs, its
+/// worst values, its RMSE over the places, and whether it is better than `none`; and what advise() says without limits
+/// for every cost and class of width. Scripts compare worst values with the limits that the reader moves, and judge
+/// nothing else. `cells`: all of the run, of which `configurations` are.
+nlohmann::json make_answer_data(const std::vector<records::CellRecord>& cells,
+                                const std::vector<analysis::Configuration>& configurations,
+                                const std::vector<std::string>& classes, const std::vector<CostChoice>& choices);
+
+/// The scenes that the answer has by themselves: all, or none where there is one, or where the run is too large.
+std::vector<std::string> list_answered_scenes(const std::vector<records::CellRecord>& cells);
+
+}  // namespace shadowbench::pages
