@@ -136,23 +136,23 @@ TEST(MapLayers, OfSeveralTheMostAccurateIsCompared) {
   std::vector<CellRecord> cells = make_deep_cells();
   cells.push_back(make_map_cell({"cascades:count=4,split=0,blend=0.1,depths=all", 1024, 4, 0.06, 1.0, 1.0}));
   auto errors = read_column(list_map_families(cells), kErrorRatio);
-  EXPECT_EQ(errors.at("tight 2048"), "0.4, less");
-  EXPECT_EQ(errors.at("view 2048"), "0.403, less");
-  EXPECT_EQ(errors.at("tight 1024"), kNothing);
+  EXPECT_EQ(errors.at("tight fit, 2048"), "0.4, less");
+  EXPECT_EQ(errors.at("view fit, 2048"), "0.403, less");
+  EXPECT_EQ(errors.at("tight fit, 1024"), kNothing);
   auto costs = read_column(list_map_families(cells), kCostRatio);
-  EXPECT_EQ(costs.at("tight 2048"), "1.85, more");
-  EXPECT_EQ(costs.at("view 2048"), "2, more");
+  EXPECT_EQ(costs.at("tight fit, 2048"), "1.85, more");
+  EXPECT_EQ(costs.at("view fit, 2048"), "2, more");
   cells.push_back(make_map_cell({"psm", 2048, 1, 0.03, 2.0, 1.0}));
-  EXPECT_EQ(read_column(list_map_families(cells), kErrorRatio).at("psm 2048"), "1.33, more");
-  EXPECT_EQ(read_column(list_map_families(cells), kCostRatio).at("psm 2048"), "8.33, more");
+  EXPECT_EQ(read_column(list_map_families(cells), kErrorRatio).at("psm fit, 2048"), "1.33, more");
+  EXPECT_EQ(read_column(list_map_families(cells), kCostRatio).at("psm fit, 2048"), "8.33, more");
 }
 
 TEST(MapLayers, WhoWinsIsSaid) {
   const auto say = [](double rmse, double ms) {
     const auto families = list_map_families(
         make_map_cells({{"tight", 2048, 1, 0.1, 6.0, 2.0}, {kCascades, 1024, 4, rmse, ms - 2.0, 2.0}}));
-    return read_column(families, kErrorRatio).at("tight 2048") + "; " +
-           read_column(families, kCostRatio).at("tight 2048");
+    return read_column(families, kErrorRatio).at("tight fit, 2048") + "; " +
+           read_column(families, kCostRatio).at("tight fit, 2048");
   };
   EXPECT_EQ(say(0.05, 4.0), "0.5, less; 0.5, less");
   EXPECT_EQ(say(0.05, 8.0), "0.5, less; 1, not apart");
@@ -172,10 +172,10 @@ TEST(MapSharing, IsCheaperFromTheViewsThatPayForItsMap) {
   EXPECT_EQ(found[0].from_views, 2);
   EXPECT_EQ(found[1].own, 4u) << "as accurate is the view's map of 2048, which is cheaper than the cascades";
   EXPECT_EQ(found[1].from_views, 2);
-  EXPECT_EQ(read_column({family}, kSharing).at("tight 2048"), "from 2 views on, against view 2048");
-  EXPECT_EQ(read_column({family}, "map and prefilter, ms (CPU)").at("tight 2048"), "12");
-  EXPECT_EQ(read_column({family}, "lookup, ms (CPU)").at("tight 2048"), "1.5");
-  EXPECT_EQ(read_column({family}, "RMSE").at("view 2048"), "0.0992");
+  EXPECT_EQ(read_column({family}, kSharing).at("tight fit, 2048"), "from 2 views on, against view fit, 2048");
+  EXPECT_EQ(read_column({family}, "map and prefilter, ms (CPU)").at("tight fit, 2048"), "12");
+  EXPECT_EQ(read_column({family}, "lookup, ms (CPU)").at("tight fit, 2048"), "1.5");
+  EXPECT_EQ(read_column({family}, "RMSE").at("view fit, 2048"), "0.0992");
 }
 
 /// A dear shared map of 100 ms against 11 less 1: from 11 views on, by what the quartiles allow.
@@ -192,7 +192,7 @@ TEST(MapSharing, TakesAsManyViewsAsTheSmallerOwnMapIsCheaper) {
 
 TEST(MapSharing, WithoutOwnMapsAsAccurate_ThatIsSaid) {
   const auto families = list_map_families(make_map_cells({{"tight", 1024, 1, 0.05}, {"view", 1024, 1, 0.1}}));
-  EXPECT_EQ(read_column(families, kSharing).at("tight 1024"), "no own map is as accurate");
+  EXPECT_EQ(read_column(families, kSharing).at("tight fit, 1024"), "no own map is as accurate");
 }
 
 TEST(MapCaching, SavesTheMap_WhereTheKeptOneIsAsAccurate) {
@@ -204,10 +204,10 @@ TEST(MapCaching, SavesTheMap_WhereTheKeptOneIsAsAccurate) {
   EXPECT_EQ(found[1].cached, std::nullopt) << "cascades";
   EXPECT_EQ(found[2].cached, 3u) << "0.0992 is not clearly less than 0.1";
   auto saved = read_column({family}, kCaching);
-  EXPECT_EQ(saved.at("view 1024"), "3.5, tight 2048");
-  EXPECT_EQ(saved.at("view 2048"), "11, tight 2048");
-  EXPECT_EQ(saved.at(std::string(kCascades) + " 1024"), "no kept map is as accurate");
-  EXPECT_EQ(saved.at("tight 2048"), kNothing) << "it is kept itself";
+  EXPECT_EQ(saved.at("view fit, 1024"), "3.5, tight fit, 2048");
+  EXPECT_EQ(saved.at("view fit, 2048"), "11, tight fit, 2048");
+  EXPECT_EQ(saved.at("4 cascades, 1024"), "no kept map is as accurate");
+  EXPECT_EQ(saved.at("tight fit, 2048"), kNothing) << "it is kept itself";
 }
 
 TEST(MapTable, IsSummedUpInASentence) {
@@ -221,7 +221,7 @@ TEST(MapCaching, ThatCannotBeTold_IsNoSaving) {
   const auto families =
       list_map_families(make_map_cells({{"tight", 1024, 1, 0.1, 4.0, 5.0}, {"view", 1024, 1, 0.1005, 4.0, 1.0}}));
   EXPECT_FALSE(find_caching(families[0])[0].pays);
-  EXPECT_EQ(read_column(families, kCaching).at("view 1024"), "nothing that can be told, tight 1024");
+  EXPECT_EQ(read_column(families, kCaching).at("view fit, 1024"), "nothing that can be told, tight 1024");
 }
 
 /// Empty lookups over one map should take as long: where they do not, costs are told apart by more than that alone.
@@ -232,8 +232,8 @@ TEST(MapFamily, DriftOfTheMachine_WidensTimes) {
   const auto families = list_map_families(make_map_cells(maps));
   EXPECT_NEAR(families[0].drift, 2.0, 1e-12) << "cascades look up four times, which tells nothing";
   EXPECT_EQ(compare_layers(families[0])[0].cost_sign, 0);
-  EXPECT_EQ(read_column(families, "drift").at("view 2048"), "2");
-  EXPECT_EQ(read_column(list_map_families(make_deep_cells()), "drift").at("view 2048"), "1");
+  EXPECT_EQ(read_column(families, "drift").at("view fit, 2048"), "2");
+  EXPECT_EQ(read_column(list_map_families(make_deep_cells()), "drift").at("view fit, 2048"), "1");
 }
 
 std::string write_trade(const std::vector<CellRecord>& cells) {

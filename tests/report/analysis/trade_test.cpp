@@ -44,7 +44,7 @@ TEST(TradeScopes, MapSizesShareAFront_PicturesDoNot) {
   const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(2));
   ASSERT_THAT(scopes[0].configurations, SizeIs(2));
-  EXPECT_EQ(scopes[0].configurations[1].label, "none · map 2048");
+  EXPECT_EQ(scopes[0].configurations[1].label, "none, map 2048");
 }
 
 TEST(TradeScopes, OfAll_HoldOnlyWhatEverySceneHas) {

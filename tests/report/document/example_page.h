@@ -31,7 +31,7 @@ inline Chart make_example_chart(const std::string& id) {
                    false,  LineStyle::kSolid, false,         {{about(3.0), about(0.03)}}};
   late.hidden = true;
   chart.series = {line, points, beaten, ties, late};
-  chart.notes = {"1: vsm (radius 4) · map 512",
+  chart.notes = {"1: vsm (radius 4), map 512",
                  "a note that is so long that it does not fit into one line of a chart on a phone"};
   return chart;
 }

@@ -101,13 +101,13 @@ TEST(Configurations, LengthsInUnitsOfAScenesMap_MakeNoDifference) {
   EXPECT_EQ(list_labels(cells)[0], "a");
 }
 
-TEST(AdviceText, FirstLine_IsTheAnswer) {
+TEST(AdviceText, BeginsWithThePicks_ThenTheFastOne) {
   const auto cells = make_cells();
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
-              StartsWith("wide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 that keep the "
-                         "limits\nwith a kernel of 0.65 texels (medium), radius 4, store rg32f\n"));
+              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 that keep the "
+                        "limits\nwith a kernel of 0.65 texels (medium), radius 4, store rg32f\n"));
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {})),
-              StartsWith("none: 4.5 ms (CPU) a frame, moving light; cheapest of 3\n"));
+              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2\n"));
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.001)})), StartsWith("Nothing fits.\n"));
 }
 
@@ -128,7 +128,7 @@ TEST(AdviceText, Evidence_IsQuoted) {
   EXPECT_THAT(
       text, HasSubstr("  stack  9.5       9.13 .. 9.87  1.5 [1.46, 1.54]  0.0295  4194304  4        " + cells[3].key));
   EXPECT_THAT(text, HasSubstr("Runner-up: huge, 12.5 ms (CPU); dearer by 4 ms (CPU) (47 %)"));
-  EXPECT_THAT(text, HasSubstr("--max-rmse 0.03 -> 0.06  saves 4 ms (CPU) (47 %)  none, map"));
+  EXPECT_THAT(text, HasSubstr("--max-rmse 0.03 -> 0.06  saves 4 ms (CPU) (47 %)  none\n"));
   EXPECT_THAT(text, HasSubstr("3 of 3 configurations judged, on cubes, stack.\n"));
   EXPECT_THAT(text, HasSubstr("Times are CPU time"));
 }
@@ -143,7 +143,7 @@ TEST(AdviceText, LimitOnTimeWithinTheSpread_IsSaid) {
 TEST(AdviceText, NothingFits_CountsPerLimit) {
   const auto cells = make_cells();
   const std::string text = make_advice_text(make_run(), advise_on(cells, {max_rmse(0.001)}));
-  EXPECT_THAT(text, HasSubstr("  --max-rmse 0.001  3        3              0         0.01: huge, map"));
+  EXPECT_THAT(text, HasSubstr("  --max-rmse 0.001  3        3              0         0.01: huge\n"));
   EXPECT_THAT(text, HasSubstr("huge comes closest, and breaks --max-rmse 0.001 with 0.01.\n"));
 }
 
