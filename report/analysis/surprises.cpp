@@ -1,7 +1,6 @@
 #include "report/analysis/surprises.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/cell_group.h"
+#include "report/analysis/extremes.h"
 #include "report/records/absence.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
@@ -26,12 +26,6 @@ constexpr double kMajority = 2.0 / 3.0;  // of the cells: what "most" means
 using Cells = std::vector<records::CellRecord>;
 
 std::string number(double value) { return records::format_number(value); }
-
-std::string list_some(const std::vector<std::string>& names) {
-  if (names.size() <= kMostOfAKind) return fmt::format("{}", fmt::join(names, ", "));
-  return fmt::format("{} and {} more", fmt::join(names.begin(), names.begin() + kMostOfAKind, ", "),
-                     names.size() - kMostOfAKind);
-}
 
 /// Everything about a run's configurations that sentences are made of.
 class Finder {
@@ -189,9 +183,12 @@ class Finder {
     if (static_cast<double>(usual->second) < kMajority * static_cast<double>(dominated.size())) return {};
     std::map<std::pair<std::string, std::size_t>, std::vector<std::string>> where;
     for (const Found& each : dominated)
-      if (each.part != usual->first)
-        where[{each.label, each.part}].push_back(fmt::format(
-            "{} ({})", name_place(*each.cell), records::format_share(*(*records::list_shares(*each.cell))[each.part])));
+      if (each.part != usual->first) {
+        const records::PartShares shares = *records::list_shares(*each.cell);
+        where[{each.label, each.part}].push_back(fmt::format("{} ({}{})", name_place(*each.cell),
+                                                             records::format_share(*shares[each.part]),
+                                                             records::has_offsets(shares) ? ", offset by others" : ""));
+      }
     std::vector<std::string> sentences;
     for (const auto& [key, places] : where) {
       const records::ErrorPart &own = records::list_error_parts()[key.second],

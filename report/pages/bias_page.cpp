@@ -1,12 +1,11 @@
 #include "report/pages/bias_page.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
-#include <tuple>
 
+#include "report/analysis/extremes.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv_tables.h"
 
@@ -39,8 +38,8 @@ std::string explain_amounts() {
 struct BiasVerdict {
   std::string text;
   document::Grade grade = document::Grade::kBad;
-  bool free = false;  ///< of acne
-  double gap = 0.0;
+  std::optional<bool> free = {};  ///< of acne
+  std::optional<double> gap = {};
 };
 
 BiasVerdict judge_curve(const records::BiasCurve& curve) {
@@ -48,49 +47,75 @@ BiasVerdict judge_curve(const records::BiasCurve& curve) {
   const auto enough = find_enough(curve);
   const records::BiasPoint& point = enough ? *find_point(curve, *enough) : curve.points.back();
   if (!point.acne || *point.acne >= kLittleAcne)
-    return {"acne " + format_rate(point.acne), point.acne ? document::Grade::kBad : document::Grade::kNone};
+    return point.acne ? BiasVerdict{"acne " + format_rate(point.acne), document::Grade::kBad, false}
+                      : BiasVerdict{"acne absent", document::Grade::kNone};
   BiasVerdict verdict{(enough ? name_factor(*enough) + ", " : "") + "gap " + format_rate(point.contact_gap)};
   verdict.free = true;
-  verdict.gap = point.contact_gap.value_or(0.0);
-  if (verdict.gap < kWideGap)
-    verdict.grade = verdict.gap < kNarrowGap ? document::Grade::kGood : document::Grade::kNear;
-  if (!point.contact_gap) verdict.grade = document::Grade::kNone;
+  verdict.gap = point.contact_gap;
+  if (!verdict.gap)
+    verdict.grade = document::Grade::kNone;
+  else if (*verdict.gap < kWideGap)
+    verdict.grade = *verdict.gap < kNarrowGap ? document::Grade::kGood : document::Grade::kNear;
   return verdict;
 }
 
-/// What a mode comes to for all filters that can use it.
-struct ModeVerdict {
-  std::string mode;
-  int free = 0, filters = 0;  ///< filters that it frees of acne, and all of them
-  double gap = 0.0;           ///< the widest of theirs
+/// One rate of the modes, each with the filters that can use it.
+struct ComparedModes {
+  std::vector<analysis::Rated> modes;
+  int absent = 0, cells = 0;  ///< modes with a filter: those that lack the rate, and all that could have it
 
-  std::string describe() const {
-    const std::string cost = free > 0 ? fmt::format(", and lights {} of the contacts at most", format_rate(gap)) : "";
-    return fmt::format("{} takes acne from {} of {} filters{}", mode, free, filters, cost);
+  void add(const std::string& mode, double rate) { modes.push_back({mode, rate, format_rate(rate)}); }
+
+  std::string describe(const records::BiasSweepRecord& sweep) const {
+    const std::string why = fmt::format("fewer than {} receivers are left to rate", sweep.fewest_receivers);
+    if (modes.empty()) return absent > 0 ? "absent, since " + why : "none";
+    return analysis::describe_extremes(modes, "under", "modes") +
+           (absent > 0 ? fmt::format("; absent in {} of {} cells, where {}", absent, cells, why) : "");
+  }
+};
+
+/// Acne and contact gap each have a sentence: one mode can be the best of one, and the worst of the other.
+struct BiasHeadline {
+  ComparedModes acne, gap;
+
+  void add(const std::string& mode, const std::vector<BiasVerdict>& verdicts) {
+    int rated = 0, kept = 0;
+    std::optional<double> widest;
+    for (const BiasVerdict& verdict : verdicts) {
+      ++acne.cells;
+      ++(verdict.free ? rated : acne.absent);
+      if (verdict.free == false) ++kept;
+      if (verdict.free != true) continue;
+      ++gap.cells;
+      if (!verdict.gap) ++gap.absent;
+      if (verdict.gap) widest = std::max(widest.value_or(0.0), *verdict.gap);
+    }
+    if (rated > 0) acne.add(mode, static_cast<double>(kept) / rated);
+    if (widest) gap.add(mode, *widest);
+  }
+
+  std::string describe(const records::BiasSweepRecord& sweep) const {
+    if (acne.cells == 0) return "No filter of this run can use any bias.";
+    return fmt::format("Filters with acne: {}. Widest contact gap of those without: {}.", acne.describe(sweep),
+                       gap.describe(sweep));
   }
 };
 
 document::Section make_bias_answer(const records::BiasSweepRecord& sweep) {
   document::Table table{"Enough bias, and the contact gap it opens", {{"mode"}, {}}};
-  std::vector<ModeVerdict> modes;
+  BiasHeadline headline;
   for (const records::BiasModeRecord& mode : sweep.modes) {
-    ModeVerdict all{mode.mode, 0, static_cast<int>(mode.curves.size())};
+    std::vector<BiasVerdict> verdicts;
     for (const records::BiasCurve& curve : mode.curves) {
-      const BiasVerdict verdict = judge_curve(curve);
-      table.judge(mode.mode, curve.filter, verdict.text, verdict.grade);
-      all.free += verdict.free ? 1 : 0;
-      all.gap = std::max(all.gap, verdict.gap);
+      verdicts.push_back(judge_curve(curve));
+      table.judge(mode.mode, curve.filter, verdicts.back().text, verdicts.back().grade);
     }
-    if (all.filters > 0) modes.push_back(all);
+    headline.add(mode.mode, verdicts);
   }
-  std::string text = "No filter of this run can use any bias.";
-  const auto [worst, best] = std::ranges::minmax_element(
-      modes, {}, [](const ModeVerdict& mode) { return std::tuple(mode.free, -mode.gap, -mode.filters); });
-  if (best != modes.end()) text = fmt::format("Best: {}.", best->describe());
-  if (best != worst) text += fmt::format(" Worst: {}.", worst->describe());
-  return {"answer",
-          "",
-          {document::Paragraph{std::move(text)}, std::move(table), document::Paragraph{explain_amounts(), true}}};
+  return {
+      "answer",
+      "",
+      {document::Paragraph{headline.describe(sweep)}, std::move(table), document::Paragraph{explain_amounts(), true}}};
 }
 
 records::TextTable make_amount_table(const records::BiasModeRecord& mode) {

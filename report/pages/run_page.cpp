@@ -135,8 +135,14 @@ void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord&
   blocks.emplace_back(document::Paragraph{records::describe_settings(group.cells.front()), true});
   blocks.emplace_back(
       document::Table{"What it costs: " + describe_times(run, machines), make_cost_table(group, run.gl, machines)});
+  const bool offset = std::ranges::any_of(group.cells, [](const records::CellRecord& cell) {
+    const auto shares = records::list_shares(cell);
+    return shares && records::has_offsets(*shares);
+  });
   blocks.emplace_back(
-      document::Table{"How wrong it is, and why: errors of visibility in [0,1]", make_accuracy_table(group)});
+      document::Table{fmt::format("How wrong it is, and why: errors of visibility in [0,1]{}",
+                                  offset ? fmt::format("; shares add up to 100 %: {}", records::kOffsets) : ""),
+                      make_accuracy_table(group)});
   if (const auto stability = analysis::describe_stability(group); !stability.empty())
     blocks.emplace_back(document::Sentences{{}, stability});
   if (auto bars = make_bars(group)) blocks.emplace_back(std::move(*bars));

@@ -1,12 +1,15 @@
 #include "report/pages/stress_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
+#include "report/analysis/extremes.h"
 #include "report/document/markdown.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
@@ -48,7 +51,7 @@ constexpr double kEarly = 0.5;        // a limit before this share of an axis' r
 constexpr double kLeastShown = 1e-9;  // on a logarithmic axis
 constexpr const char* kStressNote =
     "The share that a filter's worst variant is ok in, to its best one's. \u2717: one breaks, or is over the axis' "
-    "bound before half of the range.";
+    "bound before half of the range. \u2013: nothing was measured; an axis asks only filters that have what it drives.";
 constexpr const char* kNoFilter = "no filter";
 constexpr const char* kUnseen = "Not met, and not expected:";
 
@@ -88,24 +91,44 @@ std::map<std::string, Standing> find_standings(const StressAxis& axis) {
   return standings;
 }
 
-/// Says who holds furthest on the axes that have all of these filters; nothing where there is no such axis.
-std::string summarize_reach(const StressRecord& record, const std::vector<std::string>& filters) {
-  std::vector<std::pair<double, std::string>> reaches;
-  for (const std::string& name : filters) reaches.emplace_back(0.0, name);
-  int axes = 0;
-  for (const StressAxis& axis : record.axes) {
-    const auto standings = find_standings(axis);
-    if (!std::ranges::all_of(filters, [&](const std::string& name) { return standings.contains(name); })) continue;
-    ++axes;
-    for (auto& [reach, name] : reaches) reach += standings.at(name).least;
-  }
-  if (axes == 0 || filters.empty()) return {};
-  const auto [least, most] = std::ranges::minmax_element(reaches, {}, &std::pair<double, std::string>::first);
-  return fmt::format("On the {} that every filter has, {} holds furthest, {:.0f} % of the range on average{}. ",
-                     axes == 1 ? "axis" : fmt::format("{} axes", axes), most->second, 100.0 * most->first / axes,
-                     least->first < most->first
-                         ? fmt::format(", and {} least far, {:.0f} %", least->second, 100.0 * least->first / axes)
+/// Says who holds least far on an axis, and who furthest; nothing where no filter was measured. `filters` counts those
+/// of the page.
+std::string summarize_axis(const StressAxis& axis, std::size_t filters) {
+  std::vector<analysis::Rated> rated;
+  for (const auto& [name, standing] : find_standings(axis))
+    if (name != kNoFilter) rated.push_back({name, standing.least, records::format_share(standing.least)});
+  if (rated.empty()) return {};
+  return fmt::format("The part of the range that holds with every variant: {}.{}",
+                     analysis::describe_extremes(rated, "with", "filters"),
+                     rated.size() < filters
+                         ? fmt::format(" Nothing was measured with {} of {} filters.", filters - rated.size(), filters)
                          : "");
+}
+
+std::size_t count_filters(const StressRecord& record) {
+  std::set<std::string> filters;
+  for (const StressAxis& axis : record.axes)
+    for (const auto& [name, standing] : find_standings(axis))
+      if (name != kNoFilter) filters.insert(name);
+  return filters.size();
+}
+
+/// Counts the cells that fail, axis by axis.
+std::string describe_failures(const document::Table& table, const StressRecord& record) {
+  std::ptrdiff_t failed = 0, all = 0;
+  std::vector<std::string> where;
+  for (std::size_t row = 0; row < table.grades.size(); ++row) {
+    const std::ptrdiff_t here = std::ranges::count(table.grades[row], document::Grade::kBad),
+                         rated = std::ssize(table.grades[row]) -
+                                 std::ranges::count(table.grades[row], document::Grade::kNone);
+    const std::string& axis = table.table.rows[row].front();
+    if (here > 0) where.push_back(fmt::format("{} ({} of {})", axis.substr(0, axis.find(':')), here, rated));
+    failed += here;
+    all += rated;
+  }
+  return fmt::format(
+      "{} of {} cells fail{}{}; limits that are not where theory puts them, and that nothing explains: {}.", failed,
+      all, where.empty() ? "" : ": ", fmt::join(where, ", "), records::count_disagreements(record));
 }
 
 document::Section make_stress_answer(const StressRecord& record) {
@@ -119,17 +142,9 @@ document::Section make_stress_answer(const StressRecord& record) {
                   found->first, found->second.describe(), found->second.grade());
     }
   }
-  std::vector<std::string> filters(table.table.header.begin() + 1, table.table.header.end());
-  std::erase(filters, kNoFilter);
-  std::ptrdiff_t failed = 0, all = 0;
-  for (const auto& row : table.grades) {
-    failed += std::ranges::count(row, document::Grade::kBad);
-    all += std::ssize(row) - std::ranges::count(row, document::Grade::kNone);
-  }
-  const std::string answer =
-      fmt::format("{}{} of {} cells fail; limits that are not where theory puts them, and that nothing explains: {}.",
-                  summarize_reach(record, filters), failed, all, records::count_disagreements(record));
-  return {"answer", "", {document::Paragraph{answer}, std::move(table), document::Paragraph{kStressNote, true}}};
+  std::string answer = describe_failures(table, record);
+  return {
+      "answer", "", {document::Paragraph{std::move(answer)}, std::move(table), document::Paragraph{kStressNote, true}}};
 }
 
 bool is_shown(const StressAxis& axis, const std::optional<double>& measured) {
@@ -197,8 +212,10 @@ void add_sentences(document::Details& details, const char* lead, std::vector<std
   if (!sentences.empty()) details.blocks.emplace_back(document::Sentences{lead, std::move(sentences)});
 }
 
-document::Section make_axis_section(const StressAxis& axis) {
+document::Section make_axis_section(const StressAxis& axis, std::size_t filters) {
   document::Section section{axis.id, fmt::format("{}: {}", axis.id, axis.title), {}};
+  if (std::string reach = summarize_axis(axis, filters); !reach.empty())
+    section.blocks.emplace_back(document::Paragraph{std::move(reach)});
   if (std::optional<document::Chart> chart = make_stress_chart(axis)) section.blocks.emplace_back(std::move(*chart));
   const std::string about =
       fmt::format("Over the {}, {:g} .. {:g}. Measured: {}; degraded where it is over {:g}. Broken: {}.",
@@ -334,7 +351,8 @@ document::Page make_stress_page(const StressRecord& record) {
       warnings.push_back(axis.id + ": " + sentence);
   if (!warnings.empty())
     page.sections.push_back({"warnings", "Warnings", {document::Sentences{{}, std::move(warnings)}}, true});
-  for (const StressAxis& axis : record.axes) page.sections.push_back(make_axis_section(axis));
+  const std::size_t filters = count_filters(record);
+  for (const StressAxis& axis : record.axes) page.sections.push_back(make_axis_section(axis, filters));
   document::Details limits{
       "Measured against theoretical limits",
       {document::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)}}};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -45,12 +46,22 @@ std::optional<PartShares> list_shares(const CellRecord& cell) {
   return shares;
 }
 
+bool has_offsets(const PartShares& shares) {
+  return std::ranges::any_of(
+      shares,
+      [](const auto& share) {
+        const double percent = std::round(100.0 * share.value_or(0.0));  // as format_share() shows it
+        return percent < 0.0 || percent > 100.0;
+      });
+}
+
 std::string describe_shares(const PartShares& shares) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i)
     if (shares[i]) texts.push_back(fmt::format("{} {}", list_error_parts()[i].id, format_share(*shares[i])));
   if (!shares[kNumeric]) texts.front() = "numeric and " + texts.front();
-  return fmt::format("{}", fmt::join(texts, ", "));
+  const std::string note = has_offsets(shares) ? fmt::format("; {}", kOffsets) : "";
+  return fmt::format("{}{}", fmt::join(texts, ", "), note);
 }
 
 std::string explain_no_attribution(const CellRecord& cell) {

@@ -33,6 +33,12 @@ using PartShares = std::array<std::optional<double>, metrics::kErrorParts>;
 /// Returns the shares of a cell's error, or nothing where one of them does not exist, the numeric part's aside.
 std::optional<PartShares> list_shares(const CellRecord& cell);
 
+/// Whether parts offset others: their shares are below 0, and those of the others add up to more than 100 %.
+bool has_offsets(const PartShares& shares);
+
+/// What is said of such shares where they stand.
+inline constexpr const char* kOffsets = "parts below 0 offset the others";
+
 /// Lists all parts with their shares: "numeric 0 %, estimator 71 %, discretisation 9 %, model 20 %".
 std::string describe_shares(const PartShares& shares);
 

@@ -99,12 +99,12 @@ TEST(Surprises, PartThatIsNotTheUsualOne_IsNamed) {
   std::vector<CellRecord> cells = {make_measured("cubes", "a", 0.02, 1.0), make_measured("stack", "a", 0.02, 1.0),
                                    make_measured("cubes", "b", 0.02, 1.0), make_measured("stack", "b", 0.02, 1.0)};
   EXPECT_THAT(list_surprises(cells), IsEmpty());
-  const CellRecord odd = make_attributed_cell("b", 0.02, {0.0, 0.9, 0.0, 0.1});
+  const CellRecord odd = make_attributed_cell("b", 0.02, {0.0, 1.1, -0.2, 0.1});
   cells[3].attribution = odd.attribution;
   const auto said = list_surprises(cells);
   ASSERT_THAT(said, SizeIs(1));
   EXPECT_THAT(said[0], HasSubstr("comes from estimator"));
-  EXPECT_THAT(said[0], HasSubstr("on stack (90 %)"));
+  EXPECT_THAT(said[0], HasSubstr("on stack (110 %, offset by others)"));
 }
 
 TEST(Surprises, FaultThatOnlyOneIsFreeOf_IsSaid) {

@@ -79,7 +79,14 @@ TEST(AttributionBar, WithoutANumericPart_IsDrawn_AndSaysSo) {
   cell.attribution.numeric = {};
   EXPECT_DOUBLE_EQ(make_attribution_bar(cell).value().net(), 0.04);
   EXPECT_EQ(records::describe_shares(*records::list_shares(cell)),
-            "numeric and estimator 75 %, discretisation -25 %, model 50 %");
+            "numeric and estimator 75 %, discretisation -25 %, model 50 %; parts below 0 offset the others");
+}
+
+TEST(ErrorParts, SharesBelowZeroOrAboveHundred_AreExplained_OthersAreNot) {
+  for (const auto& shares : {records::PartShares{0.0, 1.03, -0.03, 0.0}, {-0.004, -0.004, 1.008, 0.0}})
+    EXPECT_THAT(records::describe_shares(shares), ::testing::EndsWith("; parts below 0 offset the others"));
+  EXPECT_EQ(records::describe_shares({0.0, 0.0, 1.004, -0.004}),
+            "numeric 0 %, estimator 0 %, discretisation 100 %, model 0 %");
 }
 
 TEST(AttributionBar, NegativePartsGoLeftOfZero_PositiveOnesRight) {

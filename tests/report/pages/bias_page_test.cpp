@@ -136,8 +136,8 @@ TEST(BiasPage, BeginsWithTheAnswer_WhichModeFreesOfAcne_AndWhatItCostsInContact)
   for (records::BiasPoint& point : sweep.modes[0].curves[2].points) point.contact_gap = 0.0;
   const document::Page page = make_bias_page(sweep);
   EXPECT_EQ(document::answer_of(page),
-            "Best: constant takes acne from 4 of 5 filters, and lights 50 % of the contacts at most. Worst: midpoint "
-            "takes acne from 0 of 1 filters.");
+            "Filters with acne: from 20 % under constant to 100 % under midpoint. Widest contact gap of those without: "
+            "50 % under constant.");
   const auto verdict = [&](const char* filter) { return document::verdict_of(page, "constant", filter); };
   using document::Grade;
   EXPECT_EQ(verdict("none"), std::pair(std::string("1, gap 1 %"), Grade::kNear));
@@ -157,10 +157,25 @@ TEST(BiasChart, AtMostSixCurves_AreShown_OfNoneAndTheFiltersThatNeedMost) {
                           "theory"));
 }
 
+TEST(BiasPage, Headline_NamesTies_AndCountsWhatIsAbsent) {
+  records::BiasSweepRecord sweep = make_sweep();
+  sweep.modes[1].curves[0].points[0].acne = 0.0;
+  EXPECT_EQ(
+      document::answer_of(make_bias_page(sweep)),
+      "Filters with acne: 0 % under constant, midpoint, which tie. Widest contact gap of those without: 1 % under "
+      "constant; absent in 1 of 3 cells, where fewer than 100 receivers are left to rate.");
+  sweep.modes[1].curves[0].points[0].acne.reset();
+  EXPECT_THAT(document::answer_of(make_bias_page(sweep)),
+              HasSubstr("Filters with acne: 0 % under constant; absent in 1 of 3 cells, where fewer than 100"));
+}
+
 TEST(BiasPage, AbsentRates_AreSaid_NeverNumbers) {
   records::BiasSweepRecord sweep = make_sweep();
   make_gap_absent(sweep);
   sweep.contact_receivers = 7;
+  EXPECT_EQ(document::answer_of(make_bias_page(sweep)),
+            "Filters with acne: from 0 % under constant to 100 % under midpoint. Widest contact gap of those without: "
+            "absent, since fewer than 100 receivers are left to rate.");
   const std::string html = document::write_html(make_bias_page(sweep));
   EXPECT_THAT(html, HasSubstr("gap absent"));
   EXPECT_THAT(html, HasSubstr("Absent: a rate needs 100."));

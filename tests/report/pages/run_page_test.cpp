@@ -108,7 +108,8 @@ TEST(RunPage, Bars_HaveTheirNumbersAsText) {
                                                   make_attributed_cell("esm", 0.04, {0.0, 0.0, 1.0, 0.0})});
   EXPECT_THAT(page,
               HasSubstr("role=\"img\" aria-label=\"vsm: RMSE 0.04 · numeric 0 %, estimator 75 %, discretisation -25 %, "
-                        "model 50 %\""));
+                        "model 50 %; parts below 0 offset the others\""));
+  EXPECT_THAT(page, HasSubstr("in [0,1]; shares add up to 100 %: parts below 0 offset the others<"));
   EXPECT_THAT(page, HasSubstr("the full width 0.06"));  // 0.01 to the left, 0.05 to the right of the zero line
   EXPECT_THAT(page, HasSubstr("<rect x=\"167\" y=\"4\" width=\"500\" height=\"16\" fill=\"#f0bf30\">"));
   EXPECT_THAT(page, HasSubstr("discretisation and bias"));

@@ -75,6 +75,12 @@ records::StressRecord make_record() {
   return record;
 }
 
+/// What the part of an axis begins with.
+std::string reach_of(const document::Page& page, const std::string& axis) {
+  const auto section = std::ranges::find(page.sections, axis, &document::Section::id);
+  return section == page.sections.end() ? "" : std::get<document::Paragraph>(section->blocks.at(0)).text;
+}
+
 TEST(StressJson, HoldsEverything_AbsentIsNull) {
   const nlohmann::json json = nlohmann::json::parse(records::make_stress_json(make_record()));
   EXPECT_EQ(json["schema_version"], records::kStressSchemaVersion);
@@ -165,11 +171,34 @@ TEST(StressPage, BeginsWithTheAnswer_WhoHoldsFurthest_AndWhatFails) {
   record.axes[0].cases.push_back(other);
   const document::Page page = make_stress_page(record);
   EXPECT_EQ(document::answer_of(page),
-            "On the axis that every filter has, vsm holds furthest, 100 % of the range on average, and esm least far, "
-            "0 %. 1 of 2 cells fail; limits that are not where theory puts them, and that nothing explains: 2.");
+            "1 of 2 cells fail: esm-exponent (1 of 2); limits that are not where theory puts them, and that nothing "
+            "explains: 2.");
+  EXPECT_EQ(reach_of(page, "esm-exponent"),
+            "The part of the range that holds with every variant: from 0 % with esm to 100 % with vsm.");
   EXPECT_EQ(document::verdict_of(page, "esm-exponent: exponent c, 1 .. 100", "esm"),
             std::pair(std::string("\u2717 0 %"), document::Grade::kBad));
   EXPECT_EQ(document::verdict_of(page, "esm-exponent", "vsm"), std::pair(std::string("100 %"), document::Grade::kGood));
+}
+
+TEST(StressPage, EveryAxis_SpeaksForItself_NamesTies_AndSaysHowManyFiltersItLacks) {
+  records::StressRecord record = make_record();
+  records::StressAxis other = record.axes[0];
+  other.id = "taps";
+  for (const char* name : {"a", "b", "c", "d"}) {
+    other.cases.push_back(other.cases[0]);
+    other.cases.back().filter = name;
+    other.cases.back().degraded.reset();
+    other.cases.back().broken.reset();
+  }
+  other.cases.erase(other.cases.begin());
+  record.axes.push_back(other);
+  const document::Page page = make_stress_page(record);
+  EXPECT_EQ(reach_of(page, "esm-exponent"),
+            "The part of the range that holds with every variant: 0 % with esm. Nothing was measured with 4 of 5 "
+            "filters.");
+  EXPECT_EQ(reach_of(page, "taps"),
+            "The part of the range that holds with every variant: 100 % with all 4 filters, which tie. Nothing was "
+            "measured with 1 of 5 filters.");
 }
 
 TEST(StressPage, Verdict_IsTheWorstVariants_FromTheEasyEndOn) {
