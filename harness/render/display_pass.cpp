@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/images/color_values.h"
-
 namespace shadowbench::render {
 namespace {
 
@@ -16,17 +14,22 @@ gl::Texture upload_scale(const char* label, const images::Image& colors) {
   return scale;
 }
 
-images::Image color_ramp(const images::Colors& colors) {
-  return images::color_values(images::make_ramp(kSteps, 1), colors);
+images::Image color_ramp(Colors colors) {
+  return images::color_values(images::make_ramp(kSteps, 1), color_function(colors));
 }
 
 }  // namespace
 
+images::Colors color_function(Colors colors) {
+  if (colors == Colors::kGrey) return images::map_grey;
+  if (colors == Colors::kSequential) return images::color_map("viridis");
+  return [](float place) { return images::map_diverging(2.0f * place - 1.0f, 1.0f); };
+}
+
 DisplayPass::DisplayPass()
-    : grey_(upload_scale("grey", color_ramp(images::map_grey))),
-      diverging_(
-          upload_scale("diverging", color_ramp([](float t) { return images::map_diverging(2.0f * t - 1.0f, 1.0f); }))),
-      sequential_(upload_scale("sequential", color_ramp(images::color_map("viridis")))) {}
+    : grey_(upload_scale("grey", color_ramp(Colors::kGrey))),
+      diverging_(upload_scale("diverging", color_ramp(Colors::kDiverging))),
+      sequential_(upload_scale("sequential", color_ramp(Colors::kSequential))) {}
 
 void DisplayPass::clear_window(const glm::ivec2& size, const glm::vec3& color) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);

@@ -7,6 +7,7 @@
 #include "harness/gl/objects.h"
 #include "harness/render/image_target.h"
 #include "harness/render/shader_library.h"
+#include "report/images/color_values.h"
 
 namespace shadowbench::render {
 
@@ -17,6 +18,9 @@ enum class Colors {
   kDiverging,   ///< as images::map_diverging()
   kSequential,  ///< viridis, which people who do not tell red from green can read
 };
+
+/// The colour of a place in [0,1] between the ends of a scale; not of a picture.
+images::Colors color_function(Colors colors);
 
 /// The values that are shown on one side of the divider; what is not a number is magenta.
 struct DisplayedValues {

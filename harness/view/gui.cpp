@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kPanelWidth = 380.0f;
 constexpr float kStatusHeight = 24.0f;
+constexpr int kScaleSteps = 64;
 constexpr ImU32 kDividerColor = IM_COL32(255, 200, 40, 255);
 constexpr ImU32 kCaptionBack = IM_COL32(20, 20, 22, 220);
 constexpr ImU32 kCaptionInk = IM_COL32(240, 240, 240, 255);
@@ -46,15 +47,53 @@ std::filesystem::path find_free_stem(const std::filesystem::path& folder, const 
   return folder / fmt::format("{}-{}", name, number);
 }
 
-/// A line of text on a dark ground.
-void draw_caption(const glm::vec2& corner, const std::string& text) {
+/// Of a text, in lines of at most so many pixels; 0: of one line.
+glm::vec2 text_size(const std::string& text, float room = 0.0f) {
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, room > 0.0f ? room : -1.0f);
+  return {size.x, size.y};
+}
+
+/// A text on a dark ground of this size.
+void draw_caption(const glm::vec2& corner, const std::string& text, const glm::vec2& size) {
   ImDrawList* list = ImGui::GetBackgroundDrawList();
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const float edge = 0.3f * ImGui::GetFontSize();
   list->AddRectFilled({corner.x - edge, corner.y - edge}, {corner.x + size.x + edge, corner.y + size.y + edge},
                       kCaptionBack, 3.0f);
-  list->AddText({corner.x, corner.y}, kCaptionInk, text.c_str());
+  list->AddText(nullptr, 0.0f, {corner.x, corner.y}, kCaptionInk, text.c_str(), nullptr, size.x + 1.0f);
 }
+
+/// What a layer's colours mean: its name, and the colours between what their ends stand for.
+struct ScaleCaption {
+  std::string low, high;
+  images::Colors color;
+
+  ScaleCaption(const Layer& layer, const render::DisplayedValues& values) : color(color_function(values.colors)) {
+    const bool is_signed = values.colors == render::Colors::kDiverging,
+               is_grey = values.colors == render::Colors::kGrey;
+    low = fmt::format("{}: {:.3g}{}", layer.title, values.low, is_signed ? " darker" : is_grey ? " shadow" : "");
+    high = is_signed ? fmt::format("{:+.3g} lighter", values.high)
+                     : fmt::format("{:.3g} {}", values.high, is_grey ? "lit" : layer.unit);
+  }
+
+  bool operator==(const ScaleCaption& other) const { return low == other.low && high == other.high; }
+
+  /// Draws it from its upper left corner on; returns its size.
+  glm::vec2 draw(const glm::vec2& corner) const {
+    const float gap = 0.5f * ImGui::GetFontSize(), bar = 6.0f * ImGui::GetFontSize(), step = bar / kScaleSteps;
+    const float before = text_size(low).x + gap;
+    const glm::vec2 size = {before + bar + gap + text_size(high).x, ImGui::GetFontSize()};
+    draw_caption(corner, low, size);
+    ImDrawList* list = ImGui::GetBackgroundDrawList();
+    for (int i = 0; i < kScaleSteps; ++i) {
+      const images::Rgb rgb = color((static_cast<float>(i) + 0.5f) / kScaleSteps);
+      const float x = corner.x + before + static_cast<float>(i) * step;
+      list->AddRectFilled({x, corner.y + 1.0f}, {x + step, corner.y + size.y - 1.0f},
+                          ImGui::ColorConvertFloat4ToU32({rgb[0], rgb[1], rgb[2], 1.0f}));
+    }
+    list->AddText({corner.x + before + bar + gap, corner.y}, kCaptionInk, high.c_str());
+    return size;
+  }
+};
 
 }  // namespace
 
@@ -208,22 +247,40 @@ void Gui::draw_divider() {
   log_.note_widget("divider", {x, at.corner.y}, {x, at.corner.y + at.size().y});
 }
 
-/// Says which side is which, and what keeps a layer from being shown.
+/// Says which side is which, and what keeps a layer from being shown; below that, what its colours mean.
 void Gui::lay_out_captions() {
   const PicturePlace at = place();
   const float edge = 0.6f * ImGui::GetFontSize();
+  float below = at.corner.y + edge;
   for (std::size_t side = 0; side < kSides; ++side) {
     if (look_.sharing == Sharing::kFlip && side != look_.flipped_to) continue;
     const Side& named = bench_.state().sides[side];
     std::string text = named.truth ? "ray-traced truth" : named.filter.spec.id;
+    if (!shown_[side].absent.empty()) text += ": " + shown_[side].absent;
+    const float room = 0.5f * at.size().x - 2.0f * edge;  // the other side has the rest
+    const glm::vec2 size = text_size(text, room);
+    const float x = side == 0 ? at.corner.x + edge : at.corner.x + at.size().x - size.x - edge;
+    draw_caption({x, at.corner.y + edge}, text, size);
+    below = std::max(below, at.corner.y + size.y + 2.0f * edge);
+  }
+  lay_out_scales({at.corner.x + edge, below + 0.3f * ImGui::GetFontSize()});
+}
+
+/// What colours mean, from a corner on: once where they mean the same on both sides.
+void Gui::lay_out_scales(glm::vec2 corner) {
+  std::vector<std::pair<std::size_t, ScaleCaption>> scales;
+  for (std::size_t side = 0; side < kSides; ++side) {
     const render::DisplayedValues& values = shown_[side].values;
-    if (!shown_[side].absent.empty())
-      text += ": " + shown_[side].absent;
-    else if (values.colors == render::Colors::kSequential)
-      text += fmt::format(": {:.3g} (dark) .. {:.3g} {}", values.low, values.high, Layers::list()[look_.layer].unit);
-    const float width = ImGui::CalcTextSize(text.c_str()).x;
-    const float x = side == 0 ? at.corner.x + edge : at.corner.x + at.size().x - width - edge;
-    draw_caption({x, at.corner.y + edge}, text);
+    const bool is_seen = look_.sharing != Sharing::kFlip || side == look_.flipped_to;
+    if (!is_seen || values.colors == render::Colors::kPicture) continue;
+    ScaleCaption scale(Layers::list()[look_.layer], values);
+    if (scales.empty() || !(scales.front().second == scale)) scales.emplace_back(side, std::move(scale));
+  }
+  for (auto& [side, scale] : scales) {
+    if (scales.size() > 1) scale.low = fmt::format("{}: {}", kSideNames[side], scale.low);
+    const glm::vec2 size = scale.draw(corner);
+    log_.note_widget(fmt::format("scale.{}", kSideNames[side]), corner, corner + size);
+    corner.y += 1.9f * ImGui::GetFontSize();
   }
 }
 

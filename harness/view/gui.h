@@ -79,6 +79,7 @@ class Gui {
   void lay_out_status();
   void lay_out_help();
   void lay_out_captions();
+  void lay_out_scales(glm::vec2 corner);
   void lay_out_faults();
   void lay_out_inspection();
   void draw_divider();

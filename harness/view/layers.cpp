@@ -58,7 +58,12 @@ ShownLayer show_texels(Layers& layers, const Layer& layer, std::size_t side) {
   bench.want_coverage();
   const auto& coverage = bench.truth().coverage;
   if (!coverage) return {picture_of(layers, side), "being counted"};
-  return {layers.upload(layer.id, bench.drawings(), [&] { return coverage->density; }), {}};
+  const auto make_image = [&] {
+    images::Image image = coverage->density;
+    for (float& texels : image.texels) texels = std::max(texels, 0.0f);  // below 0 where there is no surface
+    return image;
+  };
+  return {layers.upload(layer.id, bench.drawings(), make_image), {}};
 }
 
 ShownLayer show_blockers(Layers& layers, const Layer& layer, std::size_t side) {

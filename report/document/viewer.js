@@ -63,6 +63,7 @@ addButton(controls, "Fit", () => fit(), "Key 0");
 addButton(controls, "+", () => zoomBy(1.5), "Key +").setAttribute("aria-label", "Zoom in");
 addButton(controls, "\u2212", () => zoomBy(1 / 1.5), "Key -").setAttribute("aria-label", "Zoom out");
 const cropButton = addButton(controls, "Crop", toggleCrop, "Then drag a rectangle; or shift and drag");
+const bar = element(root, "div", { className: "scale", hidden: true });
 const paneBox = element(root, "div", { className: "panes" });
 const makePane = () => {
   const figure = element(paneBox, "figure");
@@ -73,7 +74,6 @@ const makePane = () => {
   return { figure, caption, canvas, context: canvas.getContext("2d"), message };
 };
 const panes = [makePane(), makePane()];
-const bar = element(root, "div", { className: "scale", hidden: true });
 const live = element(root, "p", { className: "unseen", "aria-live": "polite" });
 const below = element(root, "div", { className: "below" });
 const hiddenScroll = { tabIndex: 0, hidden: true };

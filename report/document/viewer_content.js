@@ -9,6 +9,18 @@ let scale = 1;
 let turn = 0;
 let wanted = null;
 
+// The least and the greatest value of a pane's receivers.
+const sayRange = (values, mask, palette) => {
+  let [least, most] = [Infinity, -Infinity];
+  values.forEach((value, i) => {
+    if ((mask && !mask[i]) || !Number.isFinite(value)) return;
+    [least, most] = [Math.min(least, value), Math.max(most, value)];
+  });
+  const plus = palette === "diverging" ? "+" : "";
+  const say = (value) => (value < 0 ? "\u2212" : value > 0 ? plus : "") + format(Math.abs(value));
+  return least > most ? "" : `, ${say(least)} to ${say(most)}`;
+};
+
 // From the state to what the panes hold.
 const makeSides = async (place, layer, mode) => {
   const whos = [state.left, state.right];
@@ -36,7 +48,7 @@ const makeSides = async (place, layer, mode) => {
     const rect = { x: 0, y: 0, width: file.width, height: file.height };
     const key = [place, whos[i], differs && whos[1], names[i], shades, most].join();
     const make = () => paint(value, counts, file.width, rect, shades, most);
-    return { value: keepColours(key, value.length, make), note: isOwn ? "" : kNote };
+    return { value: keepColours(key, value.length, make), note: isOwn ? sayRange(value, counts, shades) : kNote };
   };
   return { made: found.map(colour), top, palette, look, differs };
 };
@@ -46,6 +58,7 @@ const showScale = ({ top, palette, look, differs }) => {
   if (!top) return;
   const [low, high] = differs ? ["right is lower", "right is higher"] : [look.low, look.high];
   const signed = palette === "diverging";
+  element(bar, "strong", {}, look.title);
   const say = (value, word) => element(bar, "span", {}, word ? `${value} (${word})` : value);
   say(signed ? `\u2212${top}` : "0", low);
   element(bar, "i").style.background = `linear-gradient(to right,${kPalettes[palette]})`;
@@ -56,8 +69,10 @@ const labelPane = (pane, titles) => {
   const isDifference = state.mode === "difference";
   pane.figure.hidden = pane === panes[1] && state.mode !== "side";
   const shown = shownIn(pane).sort();
-  const parts = (isDifference ? [0, 1] : shown).map((side) => ({ ...titles[side], note: sides[side].note ?? "" }));
-  pane.caption.replaceChildren(isDifference ? "Right \u2212 left. " : "");
+  const notes = sides.map(({ note = "" }) => note);
+  const parts = (isDifference ? [0, 1] : shown).map((i) => ({ ...titles[i], note: isDifference ? "" : notes[i] }));
+  const gap = isDifference ? `Right \u2212 left${notes[0]}. ` : "";
+  pane.caption.replaceChildren(gap);
   for (const { side, name, note } of parts) {
     const text = element(pane.caption, "span", {}, side);
     element(text, "bdi", {}, name);
@@ -69,7 +84,7 @@ const labelPane = (pane, titles) => {
   const [, mode] = kModes.find(([name]) => name === state.mode);
   const layer = selects.layer.selectedOptions[0]?.text;
   const scene = quote(run.places[state.place].title);
-  pane.canvas.setAttribute("aria-label", `${layer} of ${scene}, ${mode}. ${names}`);
+  pane.canvas.setAttribute("aria-label", `${layer} of ${scene}, ${mode}. ${gap}${names}`);
   pane.canvas.style.cursor = isCropping ? "crosshair" : "grab";
 };
 const label = () => {

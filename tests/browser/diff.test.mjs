@@ -40,7 +40,7 @@ const writePicture = (name, values) => {
 };
 
 test("LargeAndTinyValues_AreSaidAndDrawn", async () => {
-  for (const [name, unit, expected] of [["large", 1000, ["812.500", "0.008"]], ["tiny", 1e-5, ["0.00000813", "0.00000500"]]]) {
+  for (const [name, unit, expected, most] of [["large", 1000, ["812.500", "0.008"], "484"], ["tiny", 1e-5, ["0.00000813", "0.00000500"], "0.00000484"]]) {
     const small = unit === 1000 ? 0.008 : 5e-6;
     const first = writePicture(name + "_first", (x, y) => (y < 8 ? (unit * x) / 32 : small)), second = writePicture(name + "_second", (x, y) => (y < 8 ? (unit * x) / 64 : small));
     const { page, messages, shoot, close } = await openViewer(compare(name, [first, second]), { hash: `#view=both,truth,${encodeURIComponent(first)},error,side,0,0,1` });
@@ -51,6 +51,8 @@ test("LargeAndTinyValues_AreSaidAndDrawn", async () => {
       assert.equal(await page.locator(".viewer tbody tr").nth(1).locator("td").first().textContent(), expected[i]);
     }
     assert.ok(Object.keys(await colours(page, 1)).length > 10, "the difference has colours");
+    assert.ok((await page.locator(".viewer figcaption").nth(1).textContent()).endsWith(`, 0 to +${most}`), "the pane says how far its values go");
+    assert.match(await page.locator(".viewer .scale").textContent(), /^Error .*darker than the truth.*lighter than the truth/);
     await shoot("diff_" + name);
     assert.deepEqual(messages, []);
     await close();

@@ -166,10 +166,14 @@ def test_run_on_the_saved_experiment_gives_the_same_images(program, folder):
 
 def test_truth_comes_while_the_window_answers(program, folder):
     window = Window(program, folder, ["cubes", *FIXED, "--right", "truth"])
+    assert "scale.left" not in window.widgets, "a picture has no scale"
     window.key("Next")
     window.key("Next")
     window.wait("the error's layer", lambda frame: frame["layer"] == "error")
     window.wait("the whole truth", lambda frame: frame["truth"] == 1.0, 120.0)
+    left, top, right, bottom = window.widgets["scale.left"]
+    assert 0.0 <= left < right <= 480.0 and 0.0 <= top < bottom <= 270.0, "the error's scale stands on the picture"
+    assert "scale.right" not in window.widgets, "what means the same on both sides is said once"
     error = read_part(window.save("ctrl+p", "picture") + ".exr", "truth.area", folder)[2]
     assert min(error) == 0.0 and max(error) == 1.0, "shadow and light"
     window.close()
