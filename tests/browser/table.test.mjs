@@ -1,7 +1,7 @@
 // The table of a run's page holds what results.json holds, sorts, filters and marks.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { changePage, open, openRun, readData, readResults } from "./support.mjs";
+import { changePage, kNarrow, open, openRun, readData, readResults } from "./support.mjs";
 
 const readHead = (page) => page.locator(".numbers thead th").allTextContents();
 const readRows = (page) => page.locator(".numbers tbody tr").evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => ({
@@ -173,5 +173,30 @@ test("TheLightOfTheAnswer_IsThatOfTheCost", async () => {
       assert.ok(isNear(readNumber(row[2].text), mean), row[0].text);
     }
   }
+  await close();
+});
+
+test("OnAPhone_NamesStay_ANumberIsSeenBesideThem_AndTheCaptionIsWhole", async () => {
+  const file = changePage("several", "long.html", (data) => { data.configurations[0].label = "a_filter_of_a_long_name (parameter 12, another 0.5), map 512 x 512"; });
+  const { page, shoot, close } = await open(file, { viewport: kNarrow });
+  const find = () => page.locator(".numbers .scroll").evaluate((scroll) => {
+    const edges = (node) => { const { left, right } = node.getBoundingClientRect(); return { left, right }; };
+    const rows = [...scroll.querySelectorAll("tbody tr")].map((row) => [...row.children].map(edges));
+    return { box: edges(scroll), caption: edges(scroll.querySelector("caption")), rows, moves: scroll.scrollWidth - scroll.clientWidth };
+  });
+  const { moves, ...before } = await find();
+  await shoot("phone_table");
+  assert.ok(moves > 0, "the table is wider than the phone");
+  for (const [name, , cost, first] of before.rows) {
+    assert.ok(name.right - name.left > 90, "a name keeps room for a word");
+    assert.ok(name.right <= cost.left && cost.right <= first.left && first.right <= before.box.right, "two numbers are seen at once");
+  }
+  await page.locator(".numbers .scroll").evaluate((scroll) => { scroll.scrollLeft = 1e4; });
+  const after = await find();
+  for (const { box, caption, rows } of [before, after]) {
+    assert.ok(Math.abs(caption.left - box.left) < 1 && caption.right <= box.right + 1, "the caption is whole");
+    for (const [name] of rows) assert.ok(Math.abs(name.left - box.left) < 1, "the name stays");
+  }
+  assert.ok(after.rows.every((row) => row[0].right <= row.at(-1).left && row.at(-1).right <= after.box.right + 1), "the last column can be seen");
   await close();
 });
