@@ -196,6 +196,46 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
           {document::Mount{"numbers", {document::Table{"RMSE to the area truth", std::move(table)}}}}};
 }
 
+/// One filter's estimate as a bar of what adds up to it; its words have what does not.
+document::Bars::Row make_gpu_row(const analysis::GpuCost& cost) {
+  document::Bars::Row row{fmt::format("{}: {} us, lookup {} and prefilter {}", cost.configuration->name,
+                                      records::format_number(*cost.estimate_us), records::format_number(cost.lookup_us),
+                                      records::format_number(cost.prefilter_us)),
+                          {},
+                          *cost.estimate_us};
+  double end = 0.0;
+  const auto add = [&](double us, std::size_t color) {
+    if (us > 0.0) row.segments.push_back({end, end + us, document::style_of(color).color});
+    end += us;
+  };
+  for (std::size_t i = 0; i < cost.slowest_us.size(); ++i) {
+    row.label += fmt::format("{}{} {}", i == 0 ? " \u00b7 alone: " : ", ", analysis::kGpuResources[i],
+                             records::format_number(cost.alone_us[i]));
+    add(cost.slowest_us[i], i + 1);
+  }
+  add(cost.prefilter_us, cost.slowest_us.size() + 1);
+  return row;
+}
+
+/// What estimates are made of, cheapest first; nothing where there is none.
+std::optional<document::Bars> make_gpu_bars(const std::string& gpu, std::vector<analysis::GpuCost> costs) {
+  std::erase_if(costs, [](const analysis::GpuCost& cost) { return !cost.estimate_us; });
+  if (costs.empty()) return std::nullopt;
+  std::ranges::stable_sort(costs, {}, &analysis::GpuCost::estimate_us);
+  document::Bars bars;
+  bars.high = std::max(*costs.back().estimate_us, 1e-9);
+  bars.title = fmt::format(
+      "{}: what an estimate is made of. A bar is the time of the lookup's slowest resource, each with its part where "
+      "that differs between scenes, and the prefilter's. The other resources work meanwhile, and are in the words "
+      "alone, as if each were by itself. Drawing the map is in no estimate. The full width is {} us.",
+      gpu, records::format_number(bars.high));
+  for (std::size_t i = 0; i < std::size(analysis::kGpuResources); ++i)
+    bars.legend.emplace_back(document::style_of(i + 1).color, analysis::kGpuResources[i]);
+  bars.legend.emplace_back(document::style_of(std::size(analysis::kGpuResources) + 1).color, "prefilter");
+  for (const analysis::GpuCost& cost : costs) bars.rows.push_back(make_gpu_row(cost));
+  return bars;
+}
+
 /// Facts and estimates for each GPU that the run names; nothing where it names none.
 std::optional<document::Section> make_gpu_section(const std::vector<records::CellRecord>& cells) {
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
@@ -208,6 +248,7 @@ std::optional<document::Section> make_gpu_section(const std::vector<records::Cel
   for (const std::string& gpu : gpus) {
     const auto costs = analysis::list_gpu_costs(configurations, gpu);
     for (std::string& each : analysis::describe_gpu(gpu, costs)) sentences.items.push_back(std::move(each));
+    if (auto bars = make_gpu_bars(gpu, costs)) tables.blocks.emplace_back(std::move(*bars));
     if (records::TextTable table = analysis::make_gpu_table(costs); !table.rows.empty())
       tables.blocks.emplace_back(document::Table{
           gpu + ": estimates for a million receivers and one map, and facts of the lookup", std::move(table)});

@@ -107,8 +107,13 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
     for (const records::CellRecord* cell : configuration.cells) {
       if (!cost.estimate_us) break;
       const records::GpuEstimateRecord& estimate = *cell->gpu->at(gpu).estimate;
-      cost.lookup_us += estimate.lookup_us / static_cast<double>(configuration.cells.size());
-      cost.prefilter_us += estimate.prefilter_us / static_cast<double>(configuration.cells.size());
+      const auto count = static_cast<double>(configuration.cells.size());
+      const GpuResources alone = {estimate.arithmetic_us, estimate.sampling_us, estimate.memory_us.value_or(0.0)};
+      const auto slowest = static_cast<std::size_t>(std::ranges::max_element(alone) - alone.begin());
+      for (std::size_t i = 0; i < alone.size(); ++i) cost.alone_us[i] += alone[i] / count;
+      cost.slowest_us[slowest] += estimate.lookup_us / count;
+      cost.lookup_us += estimate.lookup_us / count;
+      cost.prefilter_us += estimate.prefilter_us / count;
     }
     costs.push_back(cost);
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +12,10 @@
 
 namespace shadowbench::analysis {
 
+/// What the lookup of a filter takes time of, as members of an estimate.
+inline constexpr const char* kGpuResources[] = {"arithmetic", "sampling", "memory"};
+using GpuResources = std::array<double, std::size(kGpuResources)>;
+
 /// What one configuration costs on one GPU: facts and bounds of its first cell, and the means of the estimates over its
 /// cells.
 struct GpuCost {
@@ -17,6 +23,8 @@ struct GpuCost {
   const records::GpuRecord* record = nullptr;
   std::optional<double> estimate_us;           ///< nothing where a cell has none
   double lookup_us = 0.0, prefilter_us = 0.0;  ///< the parts of it
+  GpuResources slowest_us{};  ///< the lookup's part, by the resource that is the slowest in a cell: they add up to it
+  GpuResources alone_us{};    ///< of each resource, were the others for nothing: they do not add up
   std::optional<double> measured_ms;  ///< with a moving light, in the run's clock; nothing where a cell has none
 };
 

@@ -96,6 +96,16 @@ TEST(GpuCosts, OfSeveralScenes_AreMeans) {
   EXPECT_DOUBLE_EQ(*costs.costs[0].measured_ms, 2.0);
 }
 
+TEST(GpuCosts, SlowestResources_AddUpToTheLookup_WhateverBoundsThePrefilter) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("a", 3, 30)};
+  cells[1].scene = "stack";
+  cells[0].gpu->at("one").estimate = records::GpuEstimateRecord{50, 10, 40, 4, 10, 6, "memory"};
+  cells[1].gpu->at("one").estimate = records::GpuEstimateRecord{30, 30, 0, 2, 10, 30, "memory"};
+  const Costs costs(cells);
+  EXPECT_THAT(costs.costs[0].slowest_us, ::testing::ElementsAre(0.0, 5.0, 15.0));
+  EXPECT_THAT(costs.costs[0].alone_us, ::testing::ElementsAre(3.0, 10.0, 18.0));
+}
+
 TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
   std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 30), make_gpu_cell("b", 2, 10)};
   cells.push_back(make_gpu_cell("wrong", 1, 1));

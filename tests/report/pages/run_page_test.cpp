@@ -116,6 +116,16 @@ TEST(RunPage, Bars_HaveTheirNumbersAsText) {
   expect_balanced(page);
 }
 
+TEST(RunPage, BarsOfAnEstimate_AreWhatAddsUp_TheRestIsInWords) {
+  records::CellRecord cell = make_cell("cubes", "vsm", 4.0);
+  cell.gpu = {{"one", {{{"lookup", 1, {}}}, records::GpuEstimateRecord{50, 10, 40, 4, 10, 6, "memory"}, ""}}};
+  const std::string page = make_html(make_run(), {cell});
+  EXPECT_THAT(page,
+              HasSubstr("vsm: 50 us, lookup 10 and prefilter 40 · alone: arithmetic 4, sampling 10, memory 6<svg"));
+  EXPECT_THAT(page, ::testing::ContainsRegex("<rect x=\"0\" y=\"4\" width=\"200\"[^>]*></rect><rect x=\"200\" y=\"4\" "
+                                             "width=\"800\"[^>]*></rect><rect class=\"net\""));
+}
+
 TEST(RunPage, BarsLength_IsWrittenWithoutRoundingErrors) {
   const records::CellRecord cell = make_attributed_cell("vsm", 0.3, {0.0, 1.0, 0.0, 0.0});
   EXPECT_THAT(make_html(make_run(), {cell}), HasSubstr("the full width 0.3.<"));
