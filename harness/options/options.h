@@ -25,6 +25,7 @@ struct Resources {
   std::filesystem::path scenes;
   std::filesystem::path experiments;
   std::filesystem::path gpus;
+  std::filesystem::path lessons;  ///< a file, which the window alone reads
 };
 
 /// Finds the program's folders: below $SHADOWBENCH_ROOT where that is set, else in ../share/shadowbench beside the

@@ -24,7 +24,8 @@ std::filesystem::path choose_root() {
 Resources find_resources() {
   const std::filesystem::path root = choose_root();
   const std::filesystem::path data = root / "data";
-  Resources resources{root / "filters", root / "shaders", data / "scenes", data / "experiments", data / "gpus"};
+  Resources resources{root / "filters",     root / "shaders", data / "scenes",
+                      data / "experiments", data / "gpus",    data / "lessons.toml"};
   for (const auto& folder :
        {resources.filters, resources.shaders, resources.scenes, resources.experiments, resources.gpus}) {
     if (std::filesystem::is_directory(folder)) continue;

@@ -9,17 +9,21 @@
 #include <utility>
 
 #include "base/error.h"
+#include "harness/view/captions.h"
+#include "harness/view/save.h"
+#include "report/images/canvas.h"
 #include "report/images/picture_io.h"
+#include "report/images/text.h"
 
 namespace shadowbench::view {
 namespace {
 
 constexpr float kPanelWidth = 380.0f;
 constexpr float kStatusHeight = 24.0f;
-constexpr int kScaleSteps = 64;
+constexpr double kSecondsBeforeFull = 0.12;  ///< before what was dragged is drawn in full again, while it is still held
+constexpr double kShareOfNewest = 0.25;      ///< in what a frame is said to take
+constexpr const char* kHowToUseScene = ".toml, for 'shadowbench view' and 'run --scene'";
 constexpr ImU32 kDividerColor = IM_COL32(255, 200, 40, 255);
-constexpr ImU32 kCaptionBack = IM_COL32(20, 20, 22, 220);
-constexpr ImU32 kCaptionInk = IM_COL32(240, 240, 240, 255);
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar;
 
@@ -47,54 +51,6 @@ std::filesystem::path find_free_stem(const std::filesystem::path& folder, const 
   return folder / fmt::format("{}-{}", name, number);
 }
 
-/// Of a text, in lines of at most so many pixels; 0: of one line.
-glm::vec2 text_size(const std::string& text, float room = 0.0f) {
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, room > 0.0f ? room : -1.0f);
-  return {size.x, size.y};
-}
-
-/// A text on a dark ground of this size.
-void draw_caption(const glm::vec2& corner, const std::string& text, const glm::vec2& size) {
-  ImDrawList* list = ImGui::GetBackgroundDrawList();
-  const float edge = 0.3f * ImGui::GetFontSize();
-  list->AddRectFilled({corner.x - edge, corner.y - edge}, {corner.x + size.x + edge, corner.y + size.y + edge},
-                      kCaptionBack, 3.0f);
-  list->AddText(nullptr, 0.0f, {corner.x, corner.y}, kCaptionInk, text.c_str(), nullptr, size.x + 1.0f);
-}
-
-/// What a layer's colours mean: its name, and the colours between what their ends stand for.
-struct ScaleCaption {
-  std::string low, high;
-  images::Colors color;
-
-  ScaleCaption(const Layer& layer, const render::DisplayedValues& values) : color(color_function(values.colors)) {
-    const bool is_signed = values.colors == render::Colors::kDiverging,
-               is_grey = values.colors == render::Colors::kGrey;
-    low = fmt::format("{}: {:.3g}{}", layer.title, values.low, is_signed ? " darker" : is_grey ? " shadow" : "");
-    high = is_signed ? fmt::format("{:+.3g} lighter", values.high)
-                     : fmt::format("{:.3g} {}", values.high, is_grey ? "lit" : layer.unit);
-  }
-
-  bool operator==(const ScaleCaption& other) const { return low == other.low && high == other.high; }
-
-  /// Draws it from its upper left corner on; returns its size.
-  glm::vec2 draw(const glm::vec2& corner) const {
-    const float gap = 0.5f * ImGui::GetFontSize(), bar = 6.0f * ImGui::GetFontSize(), step = bar / kScaleSteps;
-    const float before = text_size(low).x + gap;
-    const glm::vec2 size = {before + bar + gap + text_size(high).x, ImGui::GetFontSize()};
-    draw_caption(corner, low, size);
-    ImDrawList* list = ImGui::GetBackgroundDrawList();
-    for (int i = 0; i < kScaleSteps; ++i) {
-      const images::Rgb rgb = color((static_cast<float>(i) + 0.5f) / kScaleSteps);
-      const float x = corner.x + before + static_cast<float>(i) * step;
-      list->AddRectFilled({x, corner.y + 1.0f}, {x + step, corner.y + size.y - 1.0f},
-                          ImGui::ColorConvertFloat4ToU32({rgb[0], rgb[1], rgb[2], 1.0f}));
-    }
-    list->AddText({corner.x + before + bar + gap, corner.y}, kCaptionInk, high.c_str());
-    return size;
-  }
-};
-
 }  // namespace
 
 Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path out, bool keeps_size)
@@ -103,53 +59,104 @@ Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path o
       log_(log),
       out_(std::move(out)),
       keeps_size_(keeps_size),
-      first_(bench.state()),
       layers_(bench),
       input_(bench, window),
-      settings_(bench, Widgets(log)),
+      scenes_(bench, Widgets(log)),
+      settings_(bench, Widgets(log), [this] { save_state("scene", save_scene); }),
       meter_(bench),
+      errors_(bench),
       magnifier_(bench, display_, Widgets(log)),
-      map_(bench, layers_, display_, Widgets(log)) {}
+      map_(bench, layers_, display_, Widgets(log)),
+      full_size_(bench.state().options.width, bench.state().options.height) {}
 
-glm::ivec2 Gui::window_size(const glm::ivec2& picture, float scale) {
-  return picture + glm::ivec2(glm::vec2(kPanelWidth, kStatusHeight) * scale);
-}
+glm::ivec2 Gui::panel_size(float scale) { return glm::vec2(kPanelWidth, kStatusHeight) * scale; }
 
 glm::vec2 Gui::free_area() const {
-  const glm::vec2 panels = look_.panels ? glm::vec2(kPanelWidth, kStatusHeight) * window_.scale() : glm::vec2(0.0f);
-  return glm::max(glm::vec2(window_.size()) - panels, glm::vec2(16.0f));
+  const glm::ivec2 panels = look_.panels ? panel_size(window_.scale()) : glm::ivec2(0);
+  return glm::max(window_.size() - panels, glm::ivec2(16));
 }
 
 PicturePlace Gui::place() const {
   const glm::ivec2 pixels(bench_.state().options.width, bench_.state().options.height);
-  const glm::vec2 area = free_area(), room = area / glm::vec2(pixels);
+  const glm::vec2 area = free_area(), full(full_size_), room = area / full;
   float magnified = std::min(room.x, room.y);
   if (magnified >= 1.0f) magnified = std::floor(magnified);  // whole pixels
-  const glm::vec2 corner = glm::floor(0.5f * (area - magnified * glm::vec2(pixels)));
-  return {glm::max(corner, glm::vec2(0.0f)), magnified, pixels};
+  const glm::vec2 corner = glm::floor(0.5f * (area - magnified * full));
+  return {glm::max(corner, glm::vec2(0.0f)), magnified * full.x / static_cast<float>(pixels.x), pixels};
 }
 
-/// The picture takes the size of the window where it may.
-void Gui::fit_picture() {
+/// The picture takes the size of the window where it may, and half of it while something is dragged.
+void Gui::fit_picture(double now_s) {
+  const bool is_held = ImGui::IsAnyMouseDown() || input_.is_flying();
+  if (is_held && (bench_.changes().camera || bench_.changes().light)) moved_s_ = now_s;
+  const bool is_moving = is_held && now_s - moved_s_ < kSecondsBeforeFull;
+  if (!is_moving) draw_finely();
   const glm::ivec2 area(free_area());
-  if (keeps_size_ || (area.x == bench_.state().options.width && area.y == bench_.state().options.height)) return;
-  bench_.change({.camera = true, .light = true}, [&](ViewSettings& settings) {
-    settings.options.width = area.x;
-    settings.options.height = area.y;
-    settings.options.sizes = {{area.x, area.y}};
+  if (!keeps_size_ && !fine_ && area != full_size_) {
+    full_size_ = area;
+    bench_.change({.camera = true, .light = true}, [&](ViewSettings& settings) {
+      settings.options.width = area.x;
+      settings.options.height = area.y;
+      settings.options.sizes = {{area.x, area.y}};
+    });
+  }
+  if (is_moving) draw_coarsely();
+}
+
+/// Draws a quarter of the pixels, and of the map's texels where the map is filtered anew for every frame.
+void Gui::draw_coarsely() {
+  if (fine_) return;
+  fine_ = bench_.state();
+  const auto is_filtered = [](const Side& side) {
+    return !side.truth && (side.filter.spec.has_encode || !side.filter.spec.passes.empty());
+  };
+  const bool map =
+      (bench_.changes().light || fine_->options.fit.follows_view()) && std::ranges::any_of(fine_->sides, is_filtered);
+  Changes changes{.camera = true, .light = true};
+  if (map) changes = Changes::all();
+  bench_.change(changes, [&](ViewSettings& settings) { halve(settings, map); });
+}
+
+void Gui::draw_finely() {
+  if (!fine_) return;
+  const bool map = fine_->map_size() != bench_.state().map_size();
+  bench_.change(map ? Changes::all() : Changes{.camera = true, .light = true}, [&](ViewSettings& settings) {
+    settings.options = fine_->options;
+    settings.sides = fine_->sides;
   });
+  fine_.reset();
+}
+
+void Gui::note_frame(double ms, bool is_drawn) {
+  const int compiled = bench_.renderer().shaders.compiled();
+  if (std::exchange(compiled_, compiled) != compiled || (was_drawn_ && !is_drawn)) return;
+  frame_ms_ = frame_ms_ == 0.0 || is_drawn != was_drawn_ ? ms : std::lerp(frame_ms_, ms, kShareOfNewest);
+  was_drawn_ = is_drawn;
 }
 
 void Gui::lay_out(double now_s) {
   const double seconds = std::exchange(last_s_, now_s) == 0.0 ? 0.0 : now_s - last_s_;
-  for (const Window::KeyPress& press : window_.take_keys()) obey(press);
-  fit_picture();
+  const std::vector<Window::KeyPress> keys = window_.take_keys();
+  if (!keys.empty()) draw_finely();
+  for (const Window::KeyPress& press : keys) obey(press);
   input_.take(place(), look_, seconds);
   if (look_.panels) {
     lay_out_panels();
     lay_out_status();
   }
   if (look_.help) lay_out_help();
+  fit_picture(now_s);
+  window_.set_title("shadowbench: " + bench_.state().scene.name);
+}
+
+/// Shows what a lesson is about; its state is there already.
+void Gui::start(const Lesson& lesson) {
+  const auto found = std::ranges::find(Layers::list(), lesson.layer, &Layer::id);
+  look_ = {.divider = lesson.divider,
+           .layer = static_cast<std::size_t>(found - Layers::list().begin()),
+           .map = true,
+           .help = look_.help};
+  map_.look_at(lesson.reading);
 }
 
 void Gui::obey(const Window::KeyPress& press) {
@@ -166,6 +173,7 @@ void Gui::lay_out_panels() {
   ImGui::SetNextWindowPos({size.x - width, 0.0f});
   ImGui::SetNextWindowSize({width, size.y});
   ImGui::Begin("panels", nullptr, kFixed);
+  if (const Lesson* lesson = scenes_.lay_out()) start(*lesson);
   settings_.lay_out(look_);
   show_times(bench_, meter_);
   ImGui::End();
@@ -207,6 +215,7 @@ void Gui::lay_out_help() {
 
 void Gui::draw_picture() {
   is_timing_ = look_.panels && meter_.step();
+  errors_.step(last_s_);
   const Layer& layer = Layers::list()[look_.layer];
   const PicturePlace at = place();
   // Half a column more than is seen: the divider may stand within one. The magnifier shows both sides anywhere.
@@ -247,16 +256,22 @@ void Gui::draw_divider() {
   log_.note_widget("divider", {x, at.corner.y}, {x, at.corner.y + at.size().y});
 }
 
-/// Says which side is which, and what keeps a layer from being shown; below that, what its colours mean.
+/// Says what a side is, how far from the truth, and what keeps a layer from being shown.
+std::string Gui::make_caption(std::size_t side) const {
+  const Side& named = bench_.state().sides[side];
+  std::string text = named.truth ? "ray-traced truth" : named.label();
+  if (const std::string error = errors_.describe(side); !error.empty()) text += ", " + error;
+  return shown_[side].absent.empty() ? text : text + ": " + shown_[side].absent;
+}
+
+/// The captions of both sides, below them what colours mean, and what a frame takes.
 void Gui::lay_out_captions() {
   const PicturePlace at = place();
   const float edge = 0.6f * ImGui::GetFontSize();
   float below = at.corner.y + edge;
   for (std::size_t side = 0; side < kSides; ++side) {
     if (look_.sharing == Sharing::kFlip && side != look_.flipped_to) continue;
-    const Side& named = bench_.state().sides[side];
-    std::string text = named.truth ? "ray-traced truth" : named.filter.spec.id;
-    if (!shown_[side].absent.empty()) text += ": " + shown_[side].absent;
+    const std::string text = make_caption(side);
     const float room = 0.5f * at.size().x - 2.0f * edge;  // the other side has the rest
     const glm::vec2 size = text_size(text, room);
     const float x = side == 0 ? at.corner.x + edge : at.corner.x + at.size().x - size.x - edge;
@@ -264,6 +279,12 @@ void Gui::lay_out_captions() {
     below = std::max(below, at.corner.y + size.y + 2.0f * edge);
   }
   lay_out_scales({at.corner.x + edge, below + 0.3f * ImGui::GetFontSize()});
+  if (frame_ms_ == 0.0) return;
+  const std::string speed = fmt::format("{:.0f} frames a second ({:.0f} ms), {} x {} pixels, map {}", 1e3 / frame_ms_,
+                                        frame_ms_, at.pixels.x, at.pixels.y, bench_.state().map_size());
+  const glm::vec2 size = text_size(speed);
+  draw_caption({at.corner.x + at.size().x - size.x - edge, at.corner.y + at.size().y - 1.8f * ImGui::GetFontSize()},
+               speed, size);
 }
 
 /// What colours mean, from a corner on: once where they mean the same on both sides.
@@ -292,7 +313,8 @@ void Gui::lay_out_faults() {
       text += (text.empty() ? "" : "\n") + fault;
   if (text.empty()) return;
   const PicturePlace at = place();
-  ImGui::SetNextWindowPos({at.corner.x + 8.0f, at.corner.y + at.size().y - 8.0f}, ImGuiCond_Always, {0.0f, 1.0f});
+  ImGui::SetNextWindowPos({at.corner.x + 8.0f, at.corner.y + at.size().y - 2.4f * ImGui::GetFontSize()},
+                          ImGuiCond_Always, {0.0f, 1.0f});
   ImGui::SetNextWindowSize({std::max(0.9f * at.size().x, 200.0f), 0.0f});
   ImGui::Begin("fault", nullptr, kFixed | ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PushTextWrapPos();
@@ -304,9 +326,10 @@ void Gui::lay_out_faults() {
 
 void Gui::save(const std::string& what, const std::function<void(const std::filesystem::path& stem)>& write) {
   try {
+    bench_.draw();
     const std::filesystem::path stem = find_free_stem(out_, bench_.state().scene.name);
     write(stem);
-    saved_ = fmt::format("saved {}: {}", what, stem.string());
+    saved_ = fmt::format("saved {}: {}{}", what, stem.string(), what == "scene" ? kHowToUseScene : "");
     log_.note(last_s_, "saved " + what, stem.string());
   } catch (const Error& error) {
     bench_.say(error.what());
@@ -316,14 +339,14 @@ void Gui::save(const std::string& what, const std::function<void(const std::file
 void Gui::save_state(const std::string& what,
                      void (*write)(const ViewState& state, const std::filesystem::path& file)) {
   // By change(), since a file keeps directions as it reads them.
-  bench_.change({.camera = true, .light = true}, [](ViewSettings&) {});
-  bench_.draw();
+  bench_.change(
+      {.camera = true, .light = true}, [](ViewSettings&) {});
   save(what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
 }
 
-/// Writes STEM.png, which is what the window shows of both sides, and STEM.exr with the float images behind it: for
-/// each side, "left" and "right", its visibility and its picture, and the truth as far as it is traced.
-/// Throws Error(kOutput).
+/// Writes STEM.png, which is what the window shows of both sides with their captions, and STEM.exr with the float
+/// images behind it: for each side, "left" and "right", its visibility and its picture, and the truth as far as it is
+/// traced. Throws Error(kOutput).
 void Gui::save_picture(const std::filesystem::path& stem) {
   std::array<render::DisplayedValues, kSides> shown;
   const ViewState& state = bench_.state();
@@ -345,7 +368,11 @@ void Gui::save_picture(const std::filesystem::path& stem) {
   images::Metadata metadata = {{"scene", state.scene.name}};
   for (std::size_t side = 0; side < kSides; ++side) metadata[kSideNames[side]] = state.sides[side].label();
   images::write_exr(std::filesystem::path(stem) += ".exr", parts, metadata);
-  images::write_display_png(std::filesystem::path(stem) += ".png", render::read_image(target.texture(), 3));
+  images::Image picture = render::read_image(target.texture(), 3);
+  std::array<std::string, kSides> captions = {make_caption(0), make_caption(1)};
+  if (look_.sharing == Sharing::kFlip) captions[1 - look_.flipped_to].clear();
+  draw_captions(picture, captions);
+  images::write_display_png(std::filesystem::path(stem) += ".png", picture);
 }
 
 }  // namespace shadowbench::view

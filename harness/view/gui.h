@@ -2,15 +2,18 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/render/display_pass.h"
+#include "harness/view/error_meter.h"
 #include "harness/view/layers.h"
 #include "harness/view/look.h"
 #include "harness/view/panels/magnifier.h"
 #include "harness/view/panels/map_panel.h"
 #include "harness/view/panels/picture_input.h"
+#include "harness/view/panels/scene_panel.h"
 #include "harness/view/panels/settings_panel.h"
 #include "harness/view/panels/times_panel.h"
 #include "harness/view/view_log.h"
@@ -35,11 +38,16 @@ class Gui {
   /// Whether the next frame must not wait for an event.
   bool is_moving() const { return input_.is_flying() || is_timing_; }
 
+  /// Takes note of what a frame took; `is_drawn` tells whether passes ran. Those that compiled a filter do not count.
+  void note_frame(double ms, bool is_drawn);
+
   PicturePlace place() const;
   const Look& look() const { return look_; }
+  const ErrorMeter& errors() const { return errors_; }
+  std::string lesson() const { return scenes_.lesson(); }
 
-  /// The window's size in pixels that a picture of this size wants, panels included.
-  static glm::ivec2 window_size(const glm::ivec2& picture, float scale);
+  /// What the panels take of the window's size, in pixels.
+  static glm::ivec2 panel_size(float scale);
 
   /// One key with what it does, beside those that fly the camera; F1 lists them all.
   struct Key {
@@ -57,27 +65,38 @@ class Gui {
   std::filesystem::path out_;
   bool keeps_size_;
   Look look_;
-  ViewSettings first_;  ///< as the scene had them
   Layers layers_;
   render::DisplayPass display_;
   PictureInput input_;
+  ScenePanel scenes_;
   SettingsPanel settings_;
   TimeMeter meter_;
+  ErrorMeter errors_;
   Magnifier magnifier_;
   MapPanel map_;
   std::array<ShownLayer, kSides> shown_;
   bool is_timing_ = false;
+  glm::ivec2 full_size_;              ///< of the picture, in pixels, while nothing is dragged
+  std::optional<ViewSettings> fine_;  ///< the settings that are halved while something is dragged
+  double moved_s_ = 0.0;              ///< when camera or light moved last
+  double frame_ms_ = 0.0;   ///< what a frame takes, of those in which passes ran once there are some; 0: not known yet
+  bool was_drawn_ = false;  ///< whether such a frame is among them
+  int compiled_ = 0;        ///< filters, until the last frame
   double last_s_ = 0.0;
   std::string saved_;  ///< what was saved last
 
   glm::vec2 free_area() const;
-  void fit_picture();
+  void fit_picture(double now_s);
+  void draw_coarsely();
+  void draw_finely();
+  void start(const Lesson& lesson);
   /// All keys, in the order of the help; one table.
   static const std::vector<Key>& list_keys();
   void obey(const Window::KeyPress& press);
   void lay_out_panels();
   void lay_out_status();
   void lay_out_help();
+  std::string make_caption(std::size_t side) const;
   void lay_out_captions();
   void lay_out_scales(glm::vec2 corner);
   void lay_out_faults();

@@ -13,7 +13,8 @@
 namespace shadowbench::view {
 namespace {
 
-constexpr double kSecondsOfRest = 0.1;  ///< between frames in which nothing moves
+constexpr double kSecondsOfRest = 0.1;             ///< between frames in which nothing moves
+constexpr glm::ivec2 kLargestPicture(1920, 1080);  ///< that a window opens with: a software rasteriser draws it
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -28,14 +29,11 @@ std::string choose_usual(const filters::Catalogue& catalogue, const ViewOptions&
   return usual != catalogue.filters().end() ? usual->id : catalogue.filters().front().id;
 }
 
-/// A side that shows the truth keeps a filter, for when it shows one.
-Side make_side(const filters::Catalogue& catalogue, const std::string& text) {
-  const bool truth = text == kTruthName;
-  const std::vector<filters::FilterRequest> requests = catalogue.parse_requests(truth ? "none" : text);
-  if (requests.size() != 1)
-    throw Error(ErrorKind::kUsage,
-                fmt::format("'{}' names {} filters: a side shows one, or '{}'", text, requests.size(), kTruthName));
-  return {requests.front(), truth};
+/// As large as the screen allows, but for a picture that keeps its size: then no larger than it and the panels are.
+glm::ivec2 choose_window_size(const ViewOptions& options, const glm::ivec2& picture) {
+  const glm::ivec2 panels = Gui::panel_size(options.scale > 0.0f ? options.scale : 1.0f), room = Window::find_room();
+  const glm::ivec2 wanted = options.keeps_size || room.x <= 0 ? picture + panels : kLargestPicture + panels;
+  return room.x > 0 ? glm::min(wanted, room) : wanted;
 }
 
 /// What tests want to know of a frame.
@@ -45,10 +43,14 @@ ViewLog::Frame describe_frame(const Gui& gui, Workbench& bench, double begun_s, 
       {"divider", gui.look().divider}, {"truth", bench.truth_part()}, {"busy", bench.is_busy() ? 1.0 : 0.0}};
   frame.texts["layer"] = Layers::list()[gui.look().layer].id;
   frame.texts["message"] = bench.message();
+  frame.texts["scene"] = bench.state().scene.name;
+  frame.texts["lesson"] = gui.lesson();
+  frame.numbers["width"] = bench.state().options.width;
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::string name = kSideNames[side];
     const Side& shown = bench.state().sides[side];
     frame.texts[name] = shown.truth ? kTruthName : shown.filter.spec.id;
+    if (const auto rmse = gui.errors().rmse(side)) frame.numbers[name + ".rmse"] = *rmse;
     frame.texts[name + ".fault"] = bench.stage().fault(side);
     for (const auto& [param, value] : shown.filter.values) frame.texts[name + "." + param] = filters::to_string(value);
   }
@@ -66,8 +68,7 @@ void run_view(const ViewOptions& options) {
   };
   ViewState state = make_view_state(std::move(run), options.scene, {make(options.sides[0]), make(options.sides[1])});
   check(state);
-  const glm::ivec2 size =
-      Gui::window_size({state.options.width, state.options.height}, options.scale > 0.0f ? options.scale : 1.0f);
+  const glm::ivec2 size = choose_window_size(options, {state.options.width, state.options.height});
   auto context =
       std::make_unique<gl::GlfwContext>(gl::WindowShape{size.x, size.y, "shadowbench: " + state.scene.name, true});
   gl::GlfwContext& shown = *context;
@@ -88,6 +89,7 @@ void run_view(const ViewOptions& options) {
     const bool drawn = bench.draw();
     gui.draw_picture();
     window.end_frame();
+    gui.note_frame(1e3 * (now_s() - begun), drawn);
     if (log.is_on()) log.end_frame(describe_frame(gui, bench, begun, drawn));
     shown.require_no_gl_errors();
     if (options.close_after_s > 0.0 && now_s() - opened > options.close_after_s) window.close();

@@ -8,9 +8,6 @@
 
 namespace shadowbench::view {
 
-/// What a side is called that shows the truth.
-inline constexpr const char* kTruthName = "truth";
-
 /// What `shadowbench view` is told.
 struct ViewOptions {
   options::RunOptions run;  ///< its `out` is where files are saved

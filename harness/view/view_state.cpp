@@ -1,10 +1,25 @@
 #include "harness/view/view_state.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "base/error.h"
+#include "harness/render/gbuffer.h"
 #include "harness/run/scene_loading.h"
 
 namespace shadowbench::view {
+
+Side make_side(const filters::Catalogue& catalogue, const std::string& text) {
+  const bool truth = text == kTruthName;
+  const std::vector<filters::FilterRequest> requests = catalogue.parse_requests(truth ? "none" : text);
+  if (requests.size() != 1)
+    throw Error(ErrorKind::kUsage,
+                fmt::format("'{}' names {} filters: a side shows one, or '{}'", text, requests.size(), kTruthName));
+  return {requests.front(), truth};
+}
 
 ViewState make_view_state(options::RunOptions options, const std::string& scene_argument,
                           std::array<Side, kSides> sides) {
@@ -40,6 +55,29 @@ void set_fit(ViewSettings& settings, const std::string& text) {
 void set_bias(ViewSettings& settings, const std::vector<std::string>& texts) {
   settings.options.bias = render::parse_bias(texts);
   settings.options.bias_texts = texts;
+}
+
+void halve(ViewSettings& settings, bool map) {
+  options::RunOptions& options = settings.options;
+  options.width = std::max(options.width / 2, 1);
+  options.height = std::max(options.height / 2, 1);
+  options.sizes = {{options.width, options.height}};
+  if (!map) return;
+  options.map_sizes = {std::max(settings.map_size() / 2, 1)};
+  for (Side& side : settings.sides) {
+    const auto* radius = std::get_if<std::string>(&side.filter.spec.radius_texels);
+    const filters::ParamSpec* param = radius ? side.filter.spec.find_param(*radius) : nullptr;
+    double* value = param ? std::get_if<double>(&side.filter.values.at(*radius)) : nullptr;
+    if (!value || !param->choices.empty()) continue;
+    *value = std::max(param->integer ? std::round(0.5 * *value) : 0.5 * *value, param->min.value_or(0.0));
+  }
+}
+
+glm::vec2 find_place(const ViewState& state, const glm::vec3& point_ws) {
+  const double aspect = static_cast<double>(state.options.width) / static_cast<double>(state.options.height);
+  const glm::vec4 clip =
+      render::clip_from_world(state.active_camera(), state.scene.bounds(), aspect) * glm::vec4(point_ws, 1.0f);
+  return glm::vec2(0.5f) + glm::vec2(0.5f, -0.5f) * glm::vec2(clip) / clip.w;
 }
 
 void check(const ViewSettings& settings) {

@@ -14,14 +14,21 @@ namespace shadowbench::view {
 inline constexpr std::size_t kSides = 2;
 inline constexpr std::array<const char*, kSides> kSideNames = {"left", "right"};
 
+/// What a side is called that shows the truth.
+inline constexpr const char* kTruthName = "truth";
+
 /// What one side shows.
 struct Side {
   filters::FilterRequest filter;
   bool truth = false;  ///< ray-traced visibility, in place of the filter's
 
   /// For titles: "truth", or the filter with the parameters that were asked for.
-  std::string label() const { return truth ? "truth" : filter.label(); }
+  std::string label() const { return truth ? kTruthName : filter.label(); }
 };
+
+/// The side that a text asks for: a filter with parameters, or "truth". A side that shows the truth keeps a filter, for
+/// when it shows one. Throws Error(kUsage) as Catalogue::parse_requests(), and where the text names several filters.
+Side make_side(const filters::Catalogue& catalogue, const std::string& text);
 
 /// What can be changed in the window.
 struct ViewSettings {
@@ -54,6 +61,13 @@ void apply(ViewState& state, ViewSettings settings);
 /// Take over what `--fit` and `--bias` take. Throw Error(kUsage) as parsing these does.
 void set_fit(ViewSettings& settings, const std::string& text);
 void set_bias(ViewSettings& settings, const std::vector<std::string>& texts);
+
+/// Halves the picture's sides, and with `map` those of the map, with the widths of kernels that parameters set: shadows
+/// stay about as wide.
+void halve(ViewSettings& settings, bool map);
+
+/// Where the active camera sees a point, in parts of the picture from its upper left corner; may lie outside.
+glm::vec2 find_place(const ViewState& state, const glm::vec3& point_ws);
 
 /// Throws Error(kUsage) for settings that a run would refuse: a bias that a filter or the map cannot have.
 void check(const ViewSettings& settings);

@@ -17,6 +17,7 @@ namespace shadowbench::view {
 namespace {
 
 constexpr float kTextPixels = 14.0f;
+constexpr float kShareOfScreen = 0.96f;  ///< that a window takes at most: its frame needs the rest
 
 float find_scale(GLFWwindow* window, float asked) {
   if (asked > 0.0f) return asked;
@@ -54,6 +55,18 @@ Window::~Window() {
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
+}
+
+glm::ivec2 Window::find_room() {
+  const gl::GlfwLibrary library;
+  glm::ivec2 corner(0), room(0);
+  if (GLFWmonitor* screen = glfwGetPrimaryMonitor())
+    glfwGetMonitorWorkarea(screen, &corner.x, &corner.y, &room.x, &room.y);
+  return glm::vec2(room) * kShareOfScreen;
+}
+
+void Window::set_title(const std::string& title) {
+  if (std::exchange(title_, title) != title) glfwSetWindowTitle(window_, title.c_str());
 }
 
 bool Window::is_closing() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "harness/gl/context/context_glfw.h"
@@ -16,6 +17,11 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
   ~Window();
+
+  /// The size that a window may have on the first screen, with room for its frame.
+  static glm::ivec2 find_room();
+
+  void set_title(const std::string& title);
 
   bool is_closing() const;
   void close();
@@ -48,6 +54,7 @@ class Window {
   GLFWwindow* window_;
   float scale_ = 1.0f;
   std::vector<KeyPress> keys_;
+  std::string title_;
 
   static void note_key(GLFWwindow* window, int key, int scancode, int action, int modifiers);
 };

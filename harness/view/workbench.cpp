@@ -43,11 +43,30 @@ Workbench::Workbench(measure::Renderer& renderer, ViewState state, filters::Cata
       filter_files_(std::move(filter_files)),
       catalogue_(std::move(catalogue)),
       state_(std::move(state)),
+      first_(state_),
       drawn_(state_),
-      stage_(renderer, state_.scene),
-      cache_(state_.options.cache, [](const std::string&) {}),  // one that cannot be written costs time alone
-      truth_([this] { return scene::list_occluders(state_.scene); }, cache_, state_.options.seed) {
+      stage_(std::make_unique<Stage>(renderer, state_.scene)),
+      cache_(state_.options.cache, [](const std::string&) {}) {  // one that cannot be written costs time alone
+  start_tracer();
   watch_sides();
+}
+
+void Workbench::start_tracer() {
+  truth_ = std::make_unique<BackgroundTruth>([this] { return scene::list_occluders(state_.scene); }, cache_,
+                                             state_.options.seed);
+}
+
+void Workbench::show(ViewState state) {
+  auto stage = std::make_unique<Stage>(renderer_, state.scene);
+  stage->draw(state, Changes::all());
+  say({});
+  truth_.reset();  // its thread reads the scene
+  state_ = std::move(state);
+  first_ = drawn_ = state_;
+  stage_ = std::move(stage);
+  start_tracer();
+  watch_sides();
+  changes_ = {.camera = true, .light = true};  // the next draw() begins anew what follows from a drawing
 }
 
 void Workbench::watch_sides() {
@@ -85,39 +104,39 @@ void Workbench::age_truth(const Changes& changes) {
   if (changes.camera) surfaces_.reset();
   if (!changes.camera && !changes.light && !(changes.map && wants_coverage_)) return;
   truth_is_old_ = true;
-  truth_.stop();
+  truth_->stop();
   shown_truth_ = {};
-  stage_.set_truth({});
+  stage_->set_truth({});
 }
 
 void Workbench::follow_truth(double now_s) {
   if (std::exchange(was_changed_, false)) last_change_s_ = now_s;
   if (truth_is_old_ && now_s - last_change_s_ >= kSecondsBeforeTruth) start_truth();
-  std::optional<BackgroundTruth::Shown> more = truth_.take();
+  std::optional<BackgroundTruth::Shown> more = truth_->take();
   if (!more) return;
   shown_truth_ = std::move(*more);
   if (!shown_truth_.error.empty()) say("the truth: " + shown_truth_.error);
-  stage_.set_truth(shown_truth_.visibility);
+  stage_->set_truth(shown_truth_.visibility);
   ++drawings_;
 }
 
 void Workbench::start_truth() {
   truth_is_old_ = false;
-  if (!surfaces_) surfaces_ = std::make_shared<measure::ViewSurfaces>(measure::read_view_surfaces(stage_.gbuffer()));
+  if (!surfaces_) surfaces_ = std::make_shared<measure::ViewSurfaces>(measure::read_view_surfaces(stage_->gbuffer()));
   TruthJob job{surfaces_, state_.scene.light};
   if (wants_coverage_) {
-    const measure::LightMap& light = stage_.light_map();
+    const measure::LightMap& light = stage_->light_map();
     job.map = {
         state_.active_camera(),
-        measure::list_traced_layers(renderer_.shaders, stage_.gbuffer(),
+        measure::list_traced_layers(renderer_.shaders, stage_->gbuffer(),
                                     measure::make_unbiased_light(state_.options, state_.scene.light, light.layers)),
         measure::read_linear_depth(light.map)};
   }
-  truth_.start(std::move(job));
+  truth_->start(std::move(job));
 }
 
 std::string Workbench::explain_no_truth() const {
-  if (stage_.truth() != nullptr) return {};
+  if (stage_->truth() != nullptr) return {};
   if (!shown_truth_.error.empty()) return "the truth cannot be traced";
   return shown_truth_.truth ? shown_truth_.truth->absent : "the truth is being traced";
 }
@@ -166,7 +185,7 @@ void Workbench::reload_filters() {
   for (std::size_t side = 0; side < kSides; ++side) {
     const filters::FilterRequest& shown = state_.sides[side].filter;
     const filters::FilterSpec& spec = catalogue_.find(shown.spec.id);
-    if (spec == shown.spec && stage_.fault(side).empty()) continue;
+    if (spec == shown.spec && stage_->fault(side).empty()) continue;
     Changes changes;
     changes.filter[side] = true;
     change(changes, [&](ViewSettings& settings) { settings.sides[side].filter = renew(shown, spec); });
@@ -181,13 +200,13 @@ bool Workbench::draw() {
   measurement_.cancel();
   measured_ = SideMeasurement::State::kIdle;
   try {
-    stage_.draw(state_, changes);
+    stage_->draw(state_, changes);
     drawn_ = state_;
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::kContext || drawings_ == 0) throw;
     say(error.what());
     apply(state_, ViewSettings(drawn_));
-    stage_.draw(state_, Changes::all());
+    stage_->draw(state_, Changes::all());
   }
   ++drawings_;
   return true;

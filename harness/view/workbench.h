@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +43,9 @@ inline constexpr double kSecondsBetweenLooks = 0.1;
 /// The truth waits for this long after the last change: a picture that moves would only throw it away.
 inline constexpr double kSecondsBeforeTruth = 0.15;
 
+/// The most that is said of the truth before all of it is there: what follows the last ray takes a while.
+inline constexpr double kAlmostAll = 0.99;
+
 /// A run of its own takes seconds: it waits for longer.
 inline constexpr double kSecondsBeforeMeasurement = 0.5;
 
@@ -57,7 +62,7 @@ class Workbench {
             std::vector<std::filesystem::path> filter_files);
 
   const ViewState& state() const { return state_; }
-  Stage& stage() { return stage_; }
+  Stage& stage() { return *stage_; }
   measure::Renderer& renderer() { return renderer_; }
   const filters::Catalogue& catalogue() const { return catalogue_; }
 
@@ -67,6 +72,15 @@ class Workbench {
   /// Changes settings; drawn with the next draw(). What a run would refuse is not taken over, and what cannot be drawn
   /// is taken back there, with a message.
   void change(const Changes& what, const std::function<void(ViewSettings& settings)>& edit);
+
+  /// Shows another state, of any scene. Throws Error where it cannot be drawn, and goes on to show what it showed.
+  void show(ViewState state);
+
+  /// The state that was shown first, before anything was changed.
+  const ViewSettings& first() const { return first_; }
+
+  /// What the next draw() will draw anew.
+  const Changes& changes() const { return changes_; }
 
   /// Reads files that were saved, and takes over what was traced and measured meanwhile. To be called once a frame.
   void update(double now_s);
@@ -83,7 +97,10 @@ class Workbench {
 
   /// What is traced of the truth; it starts anew when camera or light change.
   const BackgroundTruth::Shown& truth() const { return shown_truth_; }
-  double truth_part() const { return shown_truth_.truth || !shown_truth_.error.empty() ? 1.0 : shown_truth_.part; }
+  double truth_part() const {
+    const bool is_over = shown_truth_.truth || !shown_truth_.error.empty();
+    return is_over ? 1.0 : std::min(shown_truth_.part, kAlmostAll);
+  }
 
   /// Why there is no truth to be seen; empty where there is.
   std::string explain_no_truth() const;
@@ -107,8 +124,9 @@ class Workbench {
   std::vector<std::filesystem::path> filter_files_;
   filters::Catalogue catalogue_;
   ViewState state_;
+  ViewSettings first_;
   ViewSettings drawn_;  ///< what was drawn last
-  Stage stage_;
+  std::unique_ptr<Stage> stage_;
   FileWatch watch_;
   double next_look_s_ = 0.0;  ///< at the files
   Changes changes_ = Changes::all();
@@ -116,7 +134,7 @@ class Workbench {
   bool was_changed_ = true;
   double last_change_s_ = 0.0;
   truth::TruthCache cache_;
-  BackgroundTruth truth_;
+  std::unique_ptr<BackgroundTruth> truth_;
   BackgroundTruth::Shown shown_truth_;
   std::shared_ptr<const measure::ViewSurfaces> surfaces_;  ///< of the camera that is looked through; null: not read yet
   bool truth_is_old_ = true;
@@ -126,6 +144,7 @@ class Workbench {
   bool wants_measurement_ = false;
   std::uint64_t drawings_ = 0;
 
+  void start_tracer();
   void watch_sides();
   void reload_filters();
   void age_truth(const Changes& changes);

@@ -22,6 +22,7 @@ from recompute import ExrFile  # noqa: E402
 from window import Display, Window  # noqa: E402
 
 FIXED = ["--size", "480x270", "--map-size", "256"]
+TALL = ["--size", "480x850", "--map-size", "256"]  # all widgets of the panels are seen
 FILTER = """/*+++
 title = "Halved"
 source = "none"
@@ -131,7 +132,7 @@ def test_saved_filter_is_live(program, folder):
 
 def test_built_in_filter_of_a_tree_is_live_too(program, folder):
     tree = folder / "tree"
-    for name in ("filters", "shaders", "data/scenes", "data/experiments", "data/gpus"):
+    for name in ("filters", "shaders", "data"):
         shutil.copytree(Path(__file__).resolve().parents[2] / name, tree / name)
     file = tree / "filters" / "none.glsl"
     window = Window(program, folder, ["cubes", *FIXED, "--left", "none", "--right", "tent3x3"], {"SHADOWBENCH_ROOT": str(tree)})
@@ -194,9 +195,78 @@ def test_every_key_and_panel(program, folder):
     window.close()
 
 
+def test_window_opens_as_large_as_the_screen_allows(program, folder):
+    window = Window(program, folder, ["cubes"])
+    shape = window.geometry()
+    assert 0.9 * Display.WIDTH < shape[0] <= Display.WIDTH and 0.9 * Display.HEIGHT < shape[1] <= Display.HEIGHT, shape
+    window.wait("an error", lambda frame: "left.rmse" in frame, 120.0)
+    cut = {name: place for name, place in window.widgets.items() if place[2] > shape[0] or place[3] > shape[1]}
+    assert "bias" in window.widgets and not cut, cut
+    window.close()
+
+
+def test_scenes_and_lessons_are_chosen(program, folder):
+    window = Window(program, folder, ["cubes", *TALL, "--left", "vsm"])
+    window.choose("scene", "lantern")
+    window.wait("a scene of teaching", lambda frame: frame["scene"] == "lantern" and frame["left"] == "vsm" and not frame["message"])
+    window.choose("lesson", "Acne against contact gap")
+    frame = window.wait("a lesson", lambda frame: frame["lesson"] and frame["scene"] == "cubes" and "left.rmse" in frame, 60.0)
+    assert frame["left"] == "none" and "map.image" in window.widgets, frame
+    window.click("lesson.instead", 0.05)
+    window.wait("less acne", lambda seen: seen.get("left.rmse", 1.0) < 0.5 * frame["left.rmse"], 30.0)
+    window.close()
+
+
+def test_picture_is_halved_while_something_is_dragged(program, folder):
+    window = Window(program, folder, ["cubes", *FIXED, "--left", "vsm:radius=6", "--right", "none"])
+    for shift, radius in (("keyup", "6"), ("keydown", "3")):
+        window.send(shift, "shift")
+        window.move(120, 200)
+        window.pause(0.3)
+        since = window.now()
+        window.send("mousedown", 1)
+        window.pause(0.3)
+        window.send("mousemove_relative", "--", 20, 0)
+        moving = window.wait("half of the picture", lambda frame: frame["width"] == 240, since=since)
+        assert moving["left.radius"] == radius, "a map that is filtered is halved with its kernel where the light moves"
+        window.wait("all of it again, at rest", lambda frame: frame["width"] == 480 and frame["left.radius"] == "6", since=window.now())
+        window.send("mouseup", 1)
+    window.send("keyup", "shift")
+    since = window.now()
+    window.click("divider")
+    assert all(frame["width"] == 480 for frame in window.frames[since:]), "a click moves nothing"
+    window.close()
+
+
+def test_light_is_saved_as_a_scene(program, folder):
+    window = Window(program, folder, ["cubes", *TALL, "--right", "none"])
+    window.click("azimuth", 0.2)
+    window.click("light.save", 0.5)
+    scene = Path(window.wait_event("saved scene") + ".toml")
+    window.close()
+    again = Window(program, folder, [str(scene), *TALL, "--right", "none"])
+    assert again.last()["scene"] == scene.stem
+    saved = read_part(again.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
+    again.close()
+    first = Window(program, folder, ["cubes", *TALL, "--right", "none"])
+    assert saved != read_part(first.save("ctrl+p", "picture") + ".exr", "left.visibility", folder), "another light"
+    first.close()
+
+
+def test_saved_picture_has_the_captions_of_both_sides(program, folder):
+    window = Window(program, folder, ["cubes", *FIXED, "--left", "none", "--right", "vsm"])
+    window.wait("errors", lambda frame: "right.rmse" in frame, 60.0)
+    picture = window.save("ctrl+p", "picture") + ".png"
+    window.close()
+    for place in ("70x10+6+8", "70x10+404+8"):
+        subprocess.run(["oiiotool", picture, "--cut", place, "-o", str(folder / "cut.ppm")], check=True)
+        codes = (folder / "cut.ppm").read_bytes().split(b"255\n", 1)[1]
+        assert min(codes) < 40 and max(codes) > 220, f"no text on a dark ground at {place}"
+
+
 def measure_figures(program, folder):
     size = ["--size", "960x540"]
-    window = Window(program, folder, ["cubes", *size])
+    window = Window(program, folder, ["stack", *size, "--left", "vsm:radius=6", "--right", "tent3x3"])
     window.wait("the whole truth", lambda frame: frame["busy"] == 0.0, 120.0)
     for what, shift in (("camera", False), ("light", True)):
         if shift:

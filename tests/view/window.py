@@ -74,6 +74,14 @@ class Window:
     def send(*words):
         subprocess.run(["xdotool", *map(str, words)], check=True)
 
+    @staticmethod
+    def geometry():
+        """Width and height in pixels."""
+        told = subprocess.run(["xdotool", "search", "--name", "^shadowbench: ", "getwindowgeometry", "--shell"], check=True,
+                              capture_output=True, text=True).stdout
+        sizes = dict(line.split("=") for line in told.splitlines())
+        return int(sizes["WIDTH"]), int(sizes["HEIGHT"])
+
     def key(self, name):
         self.send("key", name)
 
@@ -135,9 +143,11 @@ class Window:
 class Display:
     """An X server that nobody sees."""
 
-    def __init__(self, size="1700x1000x24"):
+    WIDTH, HEIGHT = 1700, 1000
+
+    def __init__(self):
         reader, writer = os.pipe()
-        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", size, "-nolisten", "tcp"],
+        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{self.WIDTH}x{self.HEIGHT}x24", "-nolisten", "tcp"],
                                        pass_fds=[writer], stderr=subprocess.DEVNULL)
         os.close(writer)
         with os.fdopen(reader) as file:

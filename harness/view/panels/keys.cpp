@@ -42,11 +42,11 @@ const std::vector<Gui::Key>& Gui::list_keys() {
       {GLFW_KEY_R, false, "R", "camera and light as the scene has them",
        [](Gui& gui) {
          gui.bench_.change(Changes::all(), [&](ViewSettings& s) {
-           s.cameras = gui.first_.cameras;
-           s.lights = gui.first_.lights;
+           s.cameras = gui.bench_.first().cameras;
+           s.lights = gui.bench_.first().lights;
          });
        }},
-      {GLFW_KEY_P, true, "Ctrl+P", "save the picture, and the float images of both sides",
+      {GLFW_KEY_P, true, "Ctrl+P", "save the picture with captions, and the float images of both sides",
        [](Gui& gui) { gui.save("picture", [&](const auto& stem) { gui.save_picture(stem); }); }},
       {GLFW_KEY_S, true, "Ctrl+S", "save the scene with this camera and light",
        [](Gui& gui) { gui.save_state("scene", save_scene); }},

@@ -14,7 +14,7 @@
 namespace shadowbench::view {
 namespace {
 
-constexpr float kLargestSide = 400.0f;
+constexpr float kLargestSide = 400.0f, kShareOfWindow = 0.2f;  ///< the map's side is no larger
 constexpr ImU32 kReceiverInk = IM_COL32(255, 60, 60, 255);
 constexpr ImU32 kKernelInk = IM_COL32(255, 200, 40, 255);
 constexpr ImU32 kReadInk = IM_COL32(255, 255, 255, 200);
@@ -22,13 +22,14 @@ constexpr ImU32 kReadInk = IM_COL32(255, 255, 255, 200);
 }  // namespace
 
 void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::size_t side, float scale) {
+  const glm::vec2 pixels(bench_.state().options.width, bench_.state().options.height);
   if (pixel) {
-    last_pixel_ = *pixel;
+    last_place_ = (glm::vec2(*pixel) + 0.5f) / pixels;
     last_side_ = side;
   }
   ImGui::SetNextWindowPos({20.0f * scale, 60.0f * scale}, ImGuiCond_Appearing);
   ImGui::Begin("Shadow map", &look.map, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  footprint_ = footprints_.find(last_side_, last_pixel_);
+  footprint_ = footprints_.find(last_side_, glm::clamp(last_place_ * pixels, glm::vec2(0.0f), pixels - 1.0f));
   std::vector<std::string> contents = {"depth, linear"};
   if (const render::FilterPasses* passes = bench_.stage().passes(last_side_); passes && passes->encoded_format())
     for (int channel = 0; channel < gl::pixel_format(*passes->encoded_format()).channels; ++channel)
@@ -39,9 +40,17 @@ void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::
                  "Around the receiver under the pointer.");
   // What stands above and below the map takes ten lines.
   const float room = ImGui::GetIO().DisplaySize.y - 60.0f * scale - 10.0f * ImGui::GetTextLineHeightWithSpacing();
-  const float side_pixels = std::clamp(room, 100.0f * scale, kLargestSide * scale);
+  const float largest = std::min(kLargestSide * scale, kShareOfWindow * ImGui::GetIO().DisplaySize.x);
+  const float side_pixels = std::clamp(std::min(room, largest), 100.0f * scale, kLargestSide * scale);
   show_map(static_cast<int>(side_pixels), footprint_ ? footprint_->receiver.layer : 0);
   ImGui::End();
+}
+
+void MapPanel::look_at(const MapReading& reading) {
+  last_place_ = find_place(bench_.state(), reading.place_ws);
+  last_side_ = reading.side;
+  zoom_ = reading.zoom;
+  content_ = reading.content;
 }
 
 images::Image MapPanel::read_content(int layer) const {

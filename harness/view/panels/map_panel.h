@@ -11,6 +11,7 @@
 #include "filters/receiver.h"
 #include "harness/render/display_pass.h"
 #include "harness/view/layers.h"
+#include "harness/view/lessons.h"
 #include "harness/view/look.h"
 #include "harness/view/panels/widgets.h"
 #include "harness/view/workbench.h"
@@ -66,6 +67,9 @@ class MapPanel {
   /// is seen there; nothing: the pointer is elsewhere, and what was under it last is shown.
   void lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::size_t side, float scale);
 
+  /// Shows this from the next time on, until the pointer is over the picture.
+  void look_at(const MapReading& reading);
+
  private:
   Workbench& bench_;
   Layers& layers_;
@@ -75,7 +79,7 @@ class MapPanel {
   std::optional<render::ImageTarget> target_;
   std::size_t content_ = 0;  ///< 0: depth; else a channel of the stored map, from 1 on
   double zoom_ = 1.0;
-  glm::ivec2 last_pixel_{0};
+  glm::vec2 last_place_{0.0f};  ///< in parts of the picture
   std::size_t last_side_ = 0;
   std::optional<Footprint> footprint_;
 

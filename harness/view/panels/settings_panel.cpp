@@ -4,6 +4,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "harness/gl/pixel_format.h"
@@ -30,9 +33,18 @@ Widgets::SliderLimits bias_limits(const std::string& key) {
   return {.max = 10.0, .unit = key};
 }
 
+/// The amount in "constant:depth=0.025"; nothing where another unit stands there, or more than that.
+std::optional<double> find_amount(const std::vector<std::string>& texts, const std::string& key) {
+  if (texts.size() != 1) return std::nullopt;
+  const std::size_t begin = texts.front().find(":" + key + "=");
+  if (begin == std::string::npos) return std::nullopt;
+  return std::strtod(texts.front().c_str() + begin + key.size() + 2, nullptr);
+}
+
 }  // namespace
 
-SettingsPanel::SettingsPanel(Workbench& bench, Widgets widgets) : bench_(bench), widgets_(widgets) {}
+SettingsPanel::SettingsPanel(Workbench& bench, Widgets widgets, std::function<void()> save_scene)
+    : bench_(bench), widgets_(widgets), save_scene_(std::move(save_scene)) {}
 
 void SettingsPanel::lay_out(Look& look) {
   choices_ = {kTruth};
@@ -74,7 +86,11 @@ void SettingsPanel::show_side(std::size_t side) {
       Changes changes;
       const bool compiles = spec.is_const || std::holds_alternative<std::string>(value);
       (compiles ? changes.filter : changes.values)[side] = true;
-      bench_.change(changes, [&](ViewSettings& settings) { settings.sides[side].filter.values[spec.name] = value; });
+      bench_.change(changes, [&](ViewSettings& settings) {
+        filters::FilterRequest& filter = settings.sides[side].filter;
+        filter.values[spec.name] = value;
+        if (std::ranges::count(filter.set_by_user, spec.name) == 0) filter.set_by_user.push_back(spec.name);
+      });
     }
   }
   ImGui::PopID();
@@ -123,6 +139,9 @@ void SettingsPanel::show_light() {
     changed = true;
   }
   if (changed) bench_.change({.light = true}, [&](ViewSettings& settings) { settings.lights[settings.light] = light; });
+  if (widgets_.press("light.save", "save as a scene (Ctrl+S)",
+                     "Writes a scene file with this light and camera; `shadowbench view` and `run --scene` take it."))
+    save_scene_();
 }
 
 void SettingsPanel::show_map() {
@@ -174,6 +193,7 @@ void SettingsPanel::show_bias() {
   bool changed = other;
   if (has_amount) {
     const Widgets::SliderLimits limits = bias_limits(mode->key);
+    bias_amount_ = find_amount(texts, mode->key).value_or(bias_amount_);
     if (other) bias_amount_ = limits.logarithmic ? 1e-3 : 1.0;
     changed |= widgets_.slide("bias.amount", mode->key, limits, bias_amount_, mode->meaning);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace shadowbench::view {
 /// The widgets that change the state: filters with their parameters, light, map, camera; and what is seen of it.
 class SettingsPanel {
  public:
-  SettingsPanel(Workbench& bench, Widgets widgets);
+  /// `save_scene` saves the scene with the light as it is.
+  SettingsPanel(Workbench& bench, Widgets widgets, std::function<void()> save_scene);
 
   /// Lays out the widgets in the current ImGui window.
   void lay_out(Look& look);
@@ -20,6 +22,7 @@ class SettingsPanel {
  private:
   Workbench& bench_;
   Widgets widgets_;
+  std::function<void()> save_scene_;
   std::vector<std::string> choices_;  ///< of a side: the truth, and the filters by id
   double bias_amount_ = 0.0;
 

@@ -108,6 +108,12 @@ bool Widgets::tick(const std::string& name, const std::string& label, bool& valu
   return changed;
 }
 
+bool Widgets::press(const std::string& name, const std::string& label, const std::string& help) {
+  const bool pressed = ImGui::Button(label_of(name, label).c_str());
+  finish(name, help);
+  return pressed;
+}
+
 void Widgets::show(const std::string& name, const gl::Texture& texture) {
   ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.id())),
                {static_cast<float>(texture.width()), static_cast<float>(texture.height())}, {0.0f, 1.0f}, {1.0f, 0.0f});

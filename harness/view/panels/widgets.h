@@ -35,6 +35,10 @@ class Widgets {
   bool drag(const std::string& name, const std::string& label, const std::string& unit, float& value, float speed);
 
   bool tick(const std::string& name, const std::string& label, bool& value, const std::string& help = {});
+
+  /// A button.
+  bool press(const std::string& name, const std::string& label, const std::string& help = {});
+
   /// A filter's parameter, by what its front matter says of it.
   bool parameter(const std::string& name, const filters::ParamSpec& spec, filters::ParamValue& value);
 

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <glm/vec2.hpp>
+#include <string>
+
+#include "harness/view/layers.h"
+#include "harness/view/view_state.h"
+#include "report/images/color_values.h"
+#include "report/images/image.h"
+
+namespace shadowbench::view {
+
+/// The size of a text in the window, in lines of at most `room` pixels; 0: of one line.
+glm::vec2 text_size(const std::string& text, float room = 0.0f);
+
+/// Draws a text on a dark ground of this size behind the panels.
+void draw_caption(const glm::vec2& corner, const std::string& text, const glm::vec2& size);
+
+/// What a layer's colours mean: its name, and the colours between what their ends stand for.
+struct ScaleCaption {
+  std::string low, high;
+  images::Colors color;
+
+  ScaleCaption(const Layer& layer, const render::DisplayedValues& values);
+
+  bool operator==(const ScaleCaption& other) const { return low == other.low && high == other.high; }
+
+  /// Draws it from its upper left corner on; returns its size.
+  glm::vec2 draw(const glm::vec2& corner) const;
+};
+draw_caption(corner, low, size);
+ImDrawList* list = ImGui::GetBackgroundDrawList();
+for (int i = 0; i < kScaleSteps; ++i) {
+  const images::Rgb rgb = color((static_cast<float>(i) + 0.5f) / kScaleSteps);
+  const float x = corner.x + before + static_cast<float>(i) * step;
+  list->AddRectFilled({x, corner.y + 1.0f}, {x + step, corner.y + size.y - 1.0f},
+                      ImGui::ColorConvertFloat4ToU32({rgb[0], rgb[1], rgb[2], 1.0f}));
+}
+list->AddText({corner.x + before + bar + gap, corner.y}, kCaptionInk, high.c_str());
+return size;
+}
+}
+;
+
+/// Writes the captions of both sides into a picture, side by side where there is room; an empty one is left out.
+void draw_captions(images::Image& picture, const std::array<std::string, kSides>& texts);
+
+}  // namespace shadowbench::view
