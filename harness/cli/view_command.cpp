@@ -57,7 +57,8 @@ Command make_view_command() {
   Command command{"view", "Look at a scene through any two filters, or one and the truth, in a window"};
   command.about =
       "Opens a window: a divider between two filters, or a filter and ray-traced truth; camera, light, map and every "
-      "parameter by mouse; errors, their causes, times. F1 lists the keys. A filter's file is compiled again when it "
+      "parameter by mouse; errors, their causes, times; scenes, and lessons on what goes wrong. F1 lists the keys. A "
+      "filter's file is compiled again when it "
       "is saved.";
   auto a = std::make_shared<ViewArguments>();
   a->out = "report/out/view";

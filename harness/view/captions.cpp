@@ -12,6 +12,7 @@ namespace {
 constexpr int kScaleSteps = 64;
 constexpr ImU32 kCaptionBack = IM_COL32(20, 20, 22, 220);
 constexpr ImU32 kCaptionInk = IM_COL32(240, 240, 240, 255);
+constexpr ImU32 kHiddenInk = IM_COL32(150, 150, 150, 255);
 constexpr images::Rgb kLabelBack{0.08f, 0.08f, 0.09f}, kLabelInk{0.94f, 0.94f, 0.94f};
 
 }  // namespace
@@ -21,12 +22,13 @@ glm::vec2 text_size(const std::string& text, float room) {
   return {size.x, size.y};
 }
 
-void draw_caption(const glm::vec2& corner, const std::string& text, const glm::vec2& size) {
+void draw_caption(const glm::vec2& corner, const std::string& text, const glm::vec2& size, bool is_hidden) {
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   const float edge = 0.3f * ImGui::GetFontSize();
   list->AddRectFilled({corner.x - edge, corner.y - edge}, {corner.x + size.x + edge, corner.y + size.y + edge},
                       kCaptionBack, 3.0f);
-  list->AddText(nullptr, 0.0f, {corner.x, corner.y}, kCaptionInk, text.c_str(), nullptr, size.x + 1.0f);
+  list->AddText(nullptr, 0.0f, {corner.x, corner.y}, is_hidden ? kHiddenInk : kCaptionInk, text.c_str(), nullptr,
+                size.x + 1.0f);
 }
 
 ScaleCaption::ScaleCaption(const Layer& layer, const render::DisplayedValues& values)

@@ -14,8 +14,8 @@ namespace shadowbench::view {
 /// The size of a text in the window, in lines of at most `room` pixels; 0: of one line.
 glm::vec2 text_size(const std::string& text, float room = 0.0f);
 
-/// Draws a text on a dark ground of this size behind the panels.
-void draw_caption(const glm::vec2& corner, const std::string& text, const glm::vec2& size);
+/// Draws a text on a dark ground of this size behind the panels; that of what is hidden in grey.
+void draw_caption(const glm::vec2& corner, const std::string& text, const glm::vec2& size, bool is_hidden = false);
 
 /// What a layer's colours mean: its name, and the colours between what their ends stand for.
 struct ScaleCaption {

@@ -137,7 +137,9 @@ void Gui::note_frame(double ms, bool is_drawn) {
 void Gui::lay_out(double now_s) {
   const double seconds = std::exchange(last_s_, now_s) == 0.0 ? 0.0 : now_s - last_s_;
   const std::vector<Window::KeyPress> keys = window_.take_keys();
-  if (!keys.empty()) draw_finely();
+  // What is chosen or saved is not the half that is drawn at present.
+  if (!keys.empty() || ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseReleased(ImGuiMouseButton_Left))
+    draw_finely();
   for (const Window::KeyPress& press : keys) obey(press);
   input_.take(place(), look_, seconds);
   if (look_.panels) {
@@ -264,18 +266,18 @@ std::string Gui::make_caption(std::size_t side) const {
   return shown_[side].absent.empty() ? text : text + ": " + shown_[side].absent;
 }
 
-/// The captions of both sides, below them what colours mean, and what a frame takes.
+/// The captions of both sides, that of a hidden one in grey; below them what colours mean; and what a frame takes.
 void Gui::lay_out_captions() {
   const PicturePlace at = place();
   const float edge = 0.6f * ImGui::GetFontSize();
   float below = at.corner.y + edge;
   for (std::size_t side = 0; side < kSides; ++side) {
-    if (look_.sharing == Sharing::kFlip && side != look_.flipped_to) continue;
+    const bool is_hidden = look_.sharing == Sharing::kFlip && side != look_.flipped_to;
     const std::string text = make_caption(side);
     const float room = 0.5f * at.size().x - 2.0f * edge;  // the other side has the rest
     const glm::vec2 size = text_size(text, room);
     const float x = side == 0 ? at.corner.x + edge : at.corner.x + at.size().x - size.x - edge;
-    draw_caption({x, at.corner.y + edge}, text, size);
+    draw_caption({x, at.corner.y + edge}, text, size, is_hidden);
     below = std::max(below, at.corner.y + size.y + 2.0f * edge);
   }
   lay_out_scales({at.corner.x + edge, below + 0.3f * ImGui::GetFontSize()});

@@ -206,7 +206,9 @@ def test_window_opens_as_large_as_the_screen_allows(program, folder):
 
 
 def test_scenes_and_lessons_are_chosen(program, folder):
-    window = Window(program, folder, ["cubes", *TALL, "--left", "vsm"])
+    own = folder / "mine.toml"
+    shutil.copy(Path(__file__).resolve().parents[2] / "data/scenes/ball.toml", own)
+    window = Window(program, folder, [str(own), *TALL, "--left", "vsm"])
     window.choose("scene", "lantern")
     window.wait("a scene of teaching", lambda frame: frame["scene"] == "lantern" and frame["left"] == "vsm" and not frame["message"])
     window.choose("lesson", "Acne against contact gap")
@@ -214,6 +216,9 @@ def test_scenes_and_lessons_are_chosen(program, folder):
     assert frame["left"] == "none" and "map.image" in window.widgets, frame
     window.click("lesson.instead", 0.05)
     window.wait("less acne", lambda seen: seen.get("left.rmse", 1.0) < 0.5 * frame["left.rmse"], 30.0)
+    own.unlink()
+    window.choose("scene", str(own))
+    window.wait("a message", lambda frame: own.name in frame["message"] and frame["scene"] == "cubes")
     window.close()
 
 
