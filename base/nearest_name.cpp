@@ -31,7 +31,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& known) {
+std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& known,
+                                        std::size_t part) {
   constexpr std::size_t kLongestName = 256;
   if (name.size() > kLongestName) return std::nullopt;
   const std::string wanted = to_lower(name);
@@ -40,7 +41,7 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
   for (const std::string& candidate : known) {
     if (candidate.size() > kLongestName) continue;
     const std::size_t distance = edit_distance(wanted, to_lower(candidate));
-    const std::size_t limit = std::max<std::size_t>(1, std::max(wanted.size(), candidate.size()) / 2);
+    const std::size_t limit = std::max<std::size_t>(1, std::max(wanted.size(), candidate.size()) / part);
     if (distance > limit || distance >= nearest_distance) continue;
     nearest = candidate;
     nearest_distance = distance;
@@ -48,8 +49,8 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
   return nearest;
 }
 
-std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
-  const std::optional<std::string> near = nearest_name(name, known);
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& known, std::size_t part) {
+  const std::optional<std::string> near = nearest_name(name, known, part);
   return near ? fmt::format("; did you mean '{}'?", *near) : "";
 }
 

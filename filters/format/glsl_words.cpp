@@ -3,12 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 namespace shadowbench::filters {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\n\v\f";
+
+constexpr std::string_view kTypes =
+    "void bool int uint float vec2 vec3 vec4 ivec2 ivec3 ivec4 uvec2 uvec3 uvec4 bvec2 bvec3 bvec4 mat2 mat3 mat4 "
+    "sampler2D usampler2D sampler2DShadow struct";
+constexpr std::string_view kOtherWords =
+    "if else for while do return break continue switch case default discard const in out inout true false radians "
+    "degrees sin cos tan asin acos atan sinh cosh tanh pow exp log exp2 log2 sqrt inversesqrt abs sign floor trunc "
+    "round roundEven ceil fract mod modf min max clamp mix step smoothstep isnan isinf fma length distance dot cross "
+    "normalize faceforward reflect refract transpose determinant inverse lessThan lessThanEqual greaterThan "
+    "greaterThanEqual equal notEqual any all not texture textureLod textureGrad textureSize textureGather texelFetch "
+    "dFdx dFdy fwidth bitCount findLSB findMSB floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat";
+
+constexpr std::string_view kMapNames =
+    "compare_nearest compare_2x2 fetch_depth gather_compare gather_depth nearest_depth corner_depth fetch_map "
+    "load_depth "
+    "load_map texel_fraction texels_per_pixel random_turn interleaved_gradient_turn blue_noise_turn map_depth "
+    "map_compare map_compare_nearest map_stored map_texel_uv";
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }
@@ -44,6 +62,18 @@ std::string blank_comments(const std::string& glsl) {
     --i;
   }
   return code;
+}
+
+/// Words, and what else is no blank, character by character.
+std::vector<std::string> split_tokens(std::string_view code) {
+  std::vector<std::string> tokens;
+  for (std::size_t at = code.find_first_not_of(kBlank); at < code.size();) {
+    std::size_t end = at + 1;
+    while (is_word_character(code[at]) && end < code.size() && is_word_character(code[end])) ++end;
+    tokens.emplace_back(code.substr(at, end - at));
+    at = code.find_first_not_of(kBlank, end);
+  }
+  return tokens;
 }
 
 /// Where a loop's condition is; empty where there is none to be found.
@@ -132,6 +162,28 @@ bool has_function(std::string_view code, std::string_view type, std::string_view
     if (left.ends_with(type) && is_whole) return true;
   }
   return false;
+}
+
+std::vector<std::string> list_language_words() {
+  std::vector<std::string> words = split_tokens(kTypes);
+  std::ranges::move(split_tokens(kOtherWords), std::back_inserter(words));
+  return words;
+}
+
+std::vector<std::string> list_map_names() { return split_tokens(kMapNames); }
+
+std::vector<std::string> list_declared_names(const std::string& glsl) {
+  const std::vector<std::string> tokens = split_tokens(strip_comments(glsl));
+  std::vector<std::string> types = split_tokens(kTypes), names;
+  const auto is_capital = [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; };
+  for (std::size_t i = 1; i < tokens.size(); ++i) {
+    const std::string &before = tokens[i - 1], &token = tokens[i];
+    if (!is_letter(token.front())) continue;
+    if (before == "struct") types.push_back(token);
+    const bool is_macro = before == "define" && !std::ranges::all_of(token, is_capital);
+    if (is_macro || std::ranges::count(types, before) > 0) names.push_back(token);
+  }
+  return names;
 }
 
 bool is_identifier(const std::string& name) {

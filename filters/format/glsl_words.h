@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace shadowbench::filters {
 
@@ -22,6 +23,16 @@ bool has_function(std::string_view code, std::string_view type, std::string_view
 
 /// Whether GLSL takes this for a name of one's own.
 bool is_identifier(const std::string& name);
+
+/// Words of the language itself that a filter may write: types, statements, and functions.
+std::vector<std::string> list_language_words();
+
+/// Functions and variables that every filter may use; shaders/lib has them, and filters/README.md tells of them.
+std::vector<std::string> list_map_names();
+
+/// Names that the code declares behind a type: functions, variables, parameters, members, constants; structures; and
+/// macros, but for those in capitals alone. Of "float a, b;" the first alone. Some are listed twice.
+std::vector<std::string> list_declared_names(const std::string& glsl);
 
 /// A filter's GLSL in which loops count.
 struct CountedLoops {

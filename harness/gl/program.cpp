@@ -24,7 +24,7 @@ std::string read_log(GLuint id, decltype(glGetShaderInfoLog) read, GLint length)
   ShaderLog translated = translate_log(log, files);
   if (translated.message.empty()) translated.message = "the driver gives no reason";
   const std::string message = fmt::format("{}: {}", what, translated.message);
-  if (blame) throw Error(*blame, message, translated.where);
+  if (blame) throw CompileError(*blame, message, std::move(translated));
   throw std::logic_error(translated.where.empty() ? message : translated.where + ": " + message);
 }
 

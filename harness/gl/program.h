@@ -6,20 +6,35 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "harness/gl/handle.h"
+#include "harness/gl/shader_log.h"
 #include "harness/gl/shader_source.h"
 
 namespace shadowbench::gl {
+
+/// GLSL that does not compile or link; the message is the compiler's log.
+class CompileError : public Error {
+ public:
+  CompileError(ErrorKind kind, std::string message, ShaderLog log)
+      : Error(kind, std::move(message), std::move(log.where)), complaints_(std::move(log.complaints)) {}
+
+  /// All that the compiler complained of, in its order.
+  const std::vector<Complaint>& complaints() const { return complaints_; }
+
+ private:
+  std::vector<Complaint> complaints_;
+};
 
 /// Owns a linked program. Uniforms are set by name, at any time, without `use()`.
 class Program {
  public:
   /// Compiles and links a vertex and a fragment shader, with a geometry shader between them where there is one.
-  /// Throws on errors: with `blame` (kFilter where a user's file is part of it) Error of that kind, its `where` the
-  /// first error's file and line; without, std::logic_error: a shader of ours that does not compile is a bug.
+  /// Throws on errors: with `blame` (kFilter where a user's file is part of it) CompileError of that kind, its `where`
+  /// the first error's file and line; without, std::logic_error: a shader of ours that does not compile is a bug.
   Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
           std::optional<ErrorKind> blame = std::nullopt, const std::optional<ShaderSource>& geometry = std::nullopt);
 

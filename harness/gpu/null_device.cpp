@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "harness/gl/fullscreen.h"
+#include "harness/gl/shader_log.h"
 #include "harness/gl/shader_source.h"
 #include "harness/gpu/machine_code.h"
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "harness/gl/fullscreen.h"
+#include "harness/render/filter_mistakes.h"
 
 namespace shadowbench::render {
 namespace {
@@ -15,39 +16,6 @@ std::string variant_name(const std::string& file, const Defines& defines) {
   std::string name = file;
   for (const auto& [key, value] : defines) name += " " + key;
   return name;
-}
-
-/// The line of a filter that first has a word; its last one where none has.
-std::ptrdiff_t find_line(const gl::Piece& filter, std::string_view word) {
-  const auto end =
-      filter.text.begin() + static_cast<std::ptrdiff_t>(std::min(filter.text.find(word), filter.text.size()));
-  return filter.first_line + std::count(filter.text.begin(), end, '\n');
-}
-
-/// Drivers say which function calls itself, as in "function `float f(int)' has static recursion", but not where.
-Error blame_recursion(const std::string& message, const gl::Piece& filter) {
-  const std::size_t parenthesis = message.find('(', message.find('`'));
-  const std::size_t blank = message.rfind(' ', parenthesis);
-  const bool is_named = parenthesis != std::string::npos && blank != std::string::npos;
-  const std::string name = is_named ? message.substr(blank + 1, parenthesis - blank - 1) : std::string();
-  return Error(ErrorKind::kFilter,
-               fmt::format("{} calls itself, directly or through others, and GLSL has no recursion: write a loop",
-                           is_named ? "'" + name + "'" : "a function"),
-               fmt::format("{}:{}", filter.display_name, find_line(filter, name)));
-}
-
-/// The compiler notices a missing brace only in the code after the filter's; the message names the end of the filter
-/// instead.
-Error blame_filter(const Error& error, const gl::Piece& filter) {
-  if (error.kind() != ErrorKind::kFilter || error.where().rfind(filter.display_name, 0) == 0) return error;
-  if (error.message().find("recursion") != std::string::npos) return blame_recursion(error.message(), filter);
-  const auto lines = std::count(filter.text.begin(), filter.text.end(), '\n');
-  return Error(
-      ErrorKind::kFilter,
-      fmt::format("the GLSL breaks the code after it, at or before this line (a missing brace, or a name that the "
-                  "program uses itself?): {}",
-                  error.message()),
-      fmt::format("{}:{}", filter.display_name, filter.first_line + static_cast<int>(lines) - 1));
 }
 
 }  // namespace
@@ -95,11 +63,11 @@ gl::Program& ShaderLibrary::keep(const std::string& name, const Defines& defines
 gl::Program ShaderLibrary::compile_filter(const std::string& label, const std::string& fragment_file,
                                           const Defines& defines, const std::vector<gl::Piece>& pieces) {
   ++compiled_;
+  const gl::ShaderSource fragment = source(fragment_file, defines, pieces);
   try {
-    return gl::Program(label, gl::FullscreenTriangle::vertex_source(), source(fragment_file, defines, pieces),
-                       ErrorKind::kFilter);
-  } catch (const Error& error) {
-    throw blame_filter(error, pieces.back());
+    return gl::Program(label, gl::FullscreenTriangle::vertex_source(), fragment, ErrorKind::kFilter);
+  } catch (const gl::CompileError& error) {
+    throw explain_mistakes(error, pieces, fragment);
   }
 }
 

@@ -28,6 +28,12 @@ TEST(NearestNameTest, NothingLike_GivesNothing) {
   EXPECT_EQ(nearest_name(std::string(256, 'x'), {std::string(300, 'x')}), std::nullopt);
 }
 
+TEST(NearestNameTest, AmongManyNames_FewerLettersMayDiffer) {
+  EXPECT_EQ(nearest_name("depht_at", {"depth_at"}, 3), "depth_at");
+  EXPECT_EQ(nearest_name("deep", {"step"}), "step");
+  EXPECT_EQ(nearest_name("deep", {"step"}, 3), std::nullopt);
+}
+
 TEST(NearestNameTest, Message_NamesTheNearestOrAll) {
   EXPECT_EQ(did_you_mean("vssm", kNames), "; did you mean 'vsm'?");
   EXPECT_EQ(did_you_mean("chandelier", kNames), "");

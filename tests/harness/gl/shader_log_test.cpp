@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
+#include "harness/gl/shader_log.h"
 
-#include "harness/gl/shader_source.h"
+#include <gtest/gtest.h>
 
 namespace shadowbench::gl {
 namespace {
