@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "base/split_list.h"
+#include "filters/filter_errors.h"
 #include "filters/format/front_matter.h"
 #include "filters/format/glsl_words.h"
 #include "filters/kernel_width.h"
@@ -172,6 +173,19 @@ void Catalogue::add_user_file(const std::filesystem::path& path) {
     if (make_model(known.id) && strip(known) == strip(spec)) spec.copy_of = known.id;
   user_ids_.push_back(spec.id);
   filters_.push_back(std::move(spec));
+}
+
+void Catalogue::add_user_files(const std::vector<std::string>& paths) {
+  std::vector<FilterMistake> mistakes;
+  for (const std::string& path : paths) {
+    try {
+      add_user_file(path);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kFilter) throw;
+      mistakes.push_back({std::filesystem::path(path).stem().string(), path, error.what()});
+    }
+  }
+  if (!mistakes.empty()) throw FilterErrors(std::move(mistakes));
 }
 
 FilterRequest Catalogue::make_request(const std::string& id) const {

@@ -39,6 +39,9 @@ class Catalogue {
   /// Throws as load_filter, and Error(kUsage) when its id is taken.
   void add_user_file(const std::filesystem::path& path);
 
+  /// Adds many. Throws FilterErrors with what is wrong in any of them, and likewise where an id is taken.
+  void add_user_files(const std::vector<std::string>& paths);
+
   /// Parses `a,b:param=value,param=value,c`. In place of a radius a filter takes `width=`, as solve_radius() does.
   /// `all` stands for every filter but those for teaching, at its defaults, and `teaching` for these; an empty text is
   /// `all`. Throws Error(kUsage) for an unknown filter or parameter (with the nearest name) and for a value out of

@@ -92,8 +92,38 @@ class TerminalBar final : public options::Progress {
   }
 };
 
-/// Prints one line for each step, for logs, and one now and then while a step goes on.
-class PlainLines final : public options::Progress {
+/// Prints what is worth a line of a log: every note, and how far the work is at each fifth of it.
+class LogLines final : public options::Progress {
+ public:
+  void begin(int cells, int finished) override {
+    position_.begin(cells, finished);
+    fifths_ = 0;
+  }
+
+  void show(int done, const std::string& what, const std::optional<options::WorkAhead>& ahead) override {
+    const double share = position_.share(done, ahead);
+    const int fifths = static_cast<int>(std::floor(5.0 * share));
+    if (fifths <= fifths_) return;
+    fifths_ = fifths;
+    if (share < 1.0 && lines_ >= kMostLines - kLastLines) return;
+    note(fmt::format("{} {}{}", position_.count(done, ahead), what, position_.describe_left(done, ahead)));
+  }
+
+  void note(const std::string& message) override {
+    ++lines_;
+    fmt::print(stderr, "{}\n", message);
+  }
+
+ private:
+  static constexpr int kMostLines = 10;  ///< of a run; progress is left out where notes are many
+  static constexpr int kLastLines = 2;   ///< "done", and where the report is
+  Position position_;
+  int fifths_ = 0;  ///< of the work, that were told
+  int lines_ = 0;
+};
+
+/// Prints one line for each step, for the window and for tests, and one now and then while a step goes on.
+class StepLines final : public options::Progress {
  public:
   void begin(int cells, int finished) override { position_.begin(cells, finished); }
 
@@ -116,9 +146,10 @@ class PlainLines final : public options::Progress {
 
 }  // namespace
 
-std::unique_ptr<options::Progress> make_progress() {
+std::unique_ptr<options::Progress> make_progress(bool every_step) {
   if (isatty(STDERR_FILENO)) return std::make_unique<TerminalBar>();
-  return std::make_unique<PlainLines>();
+  if (every_step) return std::make_unique<StepLines>();
+  return std::make_unique<LogLines>();
 }
 
 }  // namespace shadowbench::cli

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -42,6 +43,7 @@ regress::RegressOptions make_regress_options(const RegressArguments& a, const st
   options.accept = a.accept;
   options.remove_missing = a.remove_missing;
   if (!a.junit.empty()) options.junit = a.junit;
+  options.brief = isatty(STDOUT_FILENO) == 0;
   options.command = words;
   if (a.remove_missing && !a.accept) fail("--remove-missing changes the baseline: add --accept");
   return options;
@@ -56,7 +58,7 @@ int regress(const RegressArguments& arguments, const std::vector<std::string>& w
   }
   fmt::print("{}", arguments.json ? outcome.json : outcome.text);
   if (outcome.failure.empty()) return 0;
-  throw Error(ErrorKind::kLimit, outcome.failure);
+  throw Error(outcome.kind, outcome.failure);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ std::vector<filters::FilterRequest> parse_pair(const filters::Catalogue& catalog
 /// The filters that are told by name, and those whose files are told.
 void choose_filters(options::RunOptions& options, RunArguments& arguments) {
   filters::Catalogue catalogue(options.resources.filters);
-  for (const std::string& file : options.filter_files) catalogue.add_user_file(file);
+  catalogue.add_user_files(options.filter_files);
   options.reference = catalogue.parse_requests(kReferenceFilter).front();
   options.filters = catalogue.parse_requests(options::find_told<std::string>(arguments.told, "--filters"));
   for (const std::string& file : options.filter_files) {
@@ -74,7 +74,9 @@ void add_run_options(Command& command, RunArguments& a) {
               "same");
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");
   command.add("--worker", &a.worker, "").hide();
+  command.add("--check", &a.check, "").hide();
   command.add("--task", &a.task, "").hide();
+  command.add("--every-step", &a.every_step, "").hide();
 }
 
 std::string apply_experiment(const CommandLine& line, RunArguments& arguments) {
@@ -94,8 +96,7 @@ std::string apply_experiment(const CommandLine& line, RunArguments& arguments) {
     return experiment.title;
   }
   filters::Catalogue catalogue(resources.filters);
-  for (const std::string& file : options::find_told<std::vector<std::string>>(arguments.told, "--filter-file"))
-    catalogue.add_user_file(file);
+  catalogue.add_user_files(options::find_told<std::vector<std::string>>(arguments.told, "--filter-file"));
   options::find_told<std::string>(arguments.told, "--filters") = options::expand_filters(experiment, catalogue);
   return experiment.title;
 }
@@ -109,6 +110,7 @@ options::RunOptions make_run_options(RunArguments& arguments, std::vector<std::s
   options::check_run_options(options);
   options.command = std::move(words);
   if (arguments.worker) options.part.product = options::Product::kImages;
+  if (arguments.check) options.part.product = options::Product::kPrograms;
   return options;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "filters/filter_errors.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
@@ -11,6 +12,7 @@
 #include "harness/run/run_experiment.h"
 #include "harness/run/until_different.h"
 #include "harness/submit/sweep_jobs.h"
+#include "report/records/filter_mistakes.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::cli {
@@ -36,6 +38,24 @@ void require_no_warnings(const std::filesystem::path& out) {
                                              complaints.size() == 1 ? "" : "s, the first", complaints.front()));
 }
 
+/// Leaves in the run's folder which filters cannot be used, for `regress`, where that is what ended the run.
+void note_filter_mistakes(const std::filesystem::path& out, const std::exception& caught) {
+  const auto* error = dynamic_cast<const Error*>(&caught);
+  if (!error || error->kind() != ErrorKind::kFilter || std::filesystem::exists(out / run::kSweepFile)) return;
+  std::vector<filters::FilterMistake> mistakes;
+  if (const auto* all = dynamic_cast<const filters::FilterErrors*>(error)) {
+    mistakes = all->mistakes();
+  } else {
+    const std::string file = error->where().substr(0, error->where().rfind(':'));
+    mistakes = {{std::filesystem::path(file).stem().string(), file, error->what()}};
+  }
+  try {
+    records::write_filter_mistakes(out, mistakes);
+  } catch (const Error&) {
+    // What is wrong with the filters is to be told first; the folder is complained of once they are right.
+  }
+}
+
 /// Does a task of a sweep, in its folder.
 int run_as_task(const options::RunOptions& options, const std::filesystem::path& task) {
   const Interruption interruption(options.out, "what was finished stays, and the task goes on from there",
@@ -54,13 +74,13 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
   options::RunOptions options = make_run_options(arguments, line.words());
   options.title = title;
   if (!arguments.task.empty()) return run_as_task(options, arguments.task);
-  if (arguments.worker) {
+  if (options.part.is_worker()) {
     run_with_notes(options, *make_progress());
     return 0;
   }
   work_with_progress(
       options.out, [&](options::Progress& progress) { run_with_notes(options, progress); },
-      "what was finished stays, and the same command goes on from there");
+      "what was finished stays, and the same command goes on from there", arguments.every_step);
   fmt::print("report: {}\n", (options.out / "index.html").string());
   if (arguments.strict) require_no_warnings(options.out);
   return 0;
@@ -70,7 +90,10 @@ int run(const CommandLine& line, RunArguments& arguments) {
   try {
     return run_experiment(line, arguments);
   } catch (const std::exception& error) {
-    if (!arguments.task.empty()) submit::note_failed_task(arguments.task, error);
+    if (!arguments.task.empty())
+      submit::note_failed_task(arguments.task, error);
+    else if (!arguments.worker && !arguments.check)
+      note_filter_mistakes(arguments.out, error);
     throw;
   }
 }

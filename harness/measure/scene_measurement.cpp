@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "filters/filter_errors.h"
 #include "filters/kernel_width.h"
 #include "filters/model.h"
 #include "filters/random.h"
@@ -41,19 +42,18 @@ class SceneBench {
 
   SceneMeasurement run() {
     SceneMeasurement result;
-    std::vector<std::unique_ptr<render::FilterPasses>> filters;
+    const std::vector<std::unique_ptr<render::FilterPasses>> filters = compile();
     StabilityMeter stability(renderer_, options_, task_, assets_);
-    for (const auto& request : task_.filters) {
-      listener_.begin(options::Work::kDrawing, 1, request.label());
-      filters.push_back(make_passes(request));
-      result.cells.push_back(draw(*filters.back()));
-      const int prefilter = filters.back()->prefilter_passes();
+    for (const auto& filter : filters) {
+      listener_.begin(options::Work::kDrawing, 1, filter->request().label());
+      result.cells.push_back(draw(*filter));
+      const int prefilter = filter->prefilter_passes();
       result.passes_run += 1 + prefilter;
       result.passes_skipped += std::max(0, 3 - prefilter);
-      stability.warn(result.cells.back(), *filters.back());
-      if (options_.stability) stability.measure(result.cells.back(), *filters.back());
-      if (options_.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filters.back());
-      if (options_.truth || options_.part.is_worker()) result.cells.back().unbiased = draw_unbiased(*filters.back());
+      stability.warn(result.cells.back(), *filter);
+      if (options_.stability) stability.measure(result.cells.back(), *filter);
+      if (options_.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filter);
+      if (options_.truth || options_.part.is_worker()) result.cells.back().unbiased = draw_unbiased(*filter);
     }
     time(result, filters);
     draw_phases(result, filters);
@@ -73,6 +73,22 @@ class SceneBench {
   render::ImageTarget target_;
   std::int64_t receivers_ = -1;
   double drawn_ms_ = 0.0;  ///< of all filters' passes, once
+
+  /// Throws FilterErrors with what is wrong in any of the filters, before one of them is drawn.
+  std::vector<std::unique_ptr<render::FilterPasses>> compile() {
+    std::vector<std::unique_ptr<render::FilterPasses>> compiled;
+    std::vector<filters::FilterMistake> mistakes;
+    for (const filters::FilterRequest& request : task_.filters) {
+      try {
+        compiled.push_back(make_passes(request));
+      } catch (const Error& error) {
+        if (error.kind() != ErrorKind::kFilter) throw;
+        mistakes.push_back({request.spec.id, request.spec.path, error.what()});
+      }
+    }
+    if (!mistakes.empty()) throw filters::FilterErrors(std::move(mistakes));
+    return compiled;
+  }
 
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
     return make_filter_passes(renderer_, options_, *task_.scene, light_, request);

@@ -59,11 +59,12 @@ enum class TruthWeight {
 
 /// What a run leaves of the cells that it does.
 enum class Product {
-  kReport,  ///< a folder of its own, and a report once all of them are there
-  kCells,   ///< a task's: files in a folder that the other tasks of a sweep write into at the same time. It takes no
-            ///< lock, deletes nothing of theirs, and makes no report
-  kTruth,   ///< a task's: what the cells share, in the cache
-  kImages,  ///< a worker's: records and float images, which the run that started it scores and draws
+  kReport,    ///< a folder of its own, and a report once all of them are there
+  kCells,     ///< a task's: files in a folder that the other tasks of a sweep write into at the same time. It takes no
+              ///< lock, deletes nothing of theirs, and makes no report
+  kTruth,     ///< a task's: what the cells share, in the cache
+  kImages,    ///< a worker's: records and float images, which the run that started it scores and draws
+  kPrograms,  ///< a worker's: nothing, but that the filters compile
 };
 
 /// The part of an experiment that a run does.
@@ -79,7 +80,7 @@ struct Part {
   int shards() const { return cells.front().step; }
 
   bool is_task() const { return product == Product::kCells || product == Product::kTruth; }
-  bool is_worker() const { return product == Product::kImages; }
+  bool is_worker() const { return product == Product::kImages || product == Product::kPrograms; }
 };
 
 /// The most places of the map's grid that a run may average errors over.

@@ -12,8 +12,10 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "harness/measure/cell_analysis.h"
+#include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/all_lights.h"
+#include "harness/run/filter_check.h"
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
 #include "harness/run/run_progress.h"
@@ -26,6 +28,7 @@
 #include "report/analysis/summary.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
+#include "report/records/filter_mistakes.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
 
@@ -64,11 +67,16 @@ class Experiment {
     require_writable(options_.out);
     if (plan.finished == plan.own_cells && (options_.part.is_task() || has_report(plan))) {
       progress_.note("nothing is left to do");
+      if (!options_.part.is_task()) records::write_filter_mistakes(options_.out, {});
       if (options_.part.is_task())
         std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
       return run_;
     }
     try {
+      if (options_.part.product == options::Product::kReport) {
+        check_user_filters(plan, renderer_.context->info().backend);
+        records::write_filter_mistakes(options_.out, {});
+      }
       measure(plan);
     } catch (const std::exception&) {
       require_in_place();  // else this is why a file cannot be written, or a cell is missing
@@ -288,6 +296,12 @@ class Experiment {
     const measure::CellAnalyser traces(renderer_, planned.options, task, assets, truth);
   }
 
+  void compile(const PlannedScene& planned, const measure::SceneTask& task, measure::SceneAssets& assets) {
+    const measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
+    for (const filters::FilterRequest& request : task.filters)
+      measure::make_filter_passes(renderer_, planned.options, planned.scene, light, request);
+  }
+
   void run_scene(const RunPlan& plan, std::size_t index) {
     const PlannedScene& planned = plan.scenes[index];
     note_scene(planned);
@@ -297,6 +311,8 @@ class Experiment {
       if (!assets) assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(options_));
       if (options_.part.product == options::Product::kTruth)
         trace_shared(planned, each.task, *assets);
+      else if (options_.part.product == options::Product::kPrograms)
+        compile(planned, each.task, *assets);
       else
         measure_task({renderer_, planned, each, *assets, run_, listener_, gpus_});
     }

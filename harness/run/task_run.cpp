@@ -128,7 +128,7 @@ class TaskRun {
 
   measure::MeasuredCell measure_user_cell(const filters::FilterRequest& request) {
     begin(options::Work::kTiming, 1, request.label());
-    return measure_user_filter(options_, task_, request, bench_.planned.argument, renderer_.context->info().backend);
+    return measure_user_filter(options_, task_, request, {bench_.planned.argument, renderer_.context->info().backend});
   }
 
   /// Scores each cell against the truth, and takes its error apart.

@@ -21,6 +21,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/temporary_files.h"
+#include "filters/filter_errors.h"
 #include "harness/options/experiment_file.h"
 #include "harness/run/task_images.h"
 #include "report/images/picture_io.h"
@@ -64,6 +65,23 @@ options::RunOptions make_worker_options(const options::RunOptions& options, cons
   own.truth = own.border_page = false;
   own.out = folder;
   return own;
+}
+
+/// Gives a user's filter to a worker. Throws Error with its message where it refuses the filter or anything else.
+WorkerOutcome run_filter_worker(const options::RunOptions& own, const filters::FilterRequest& request,
+                                const WorkerScene& scene, const char* what) {
+  const std::filesystem::path experiment = own.out / "experiment.toml";
+  write_text_file(experiment, options::write_experiment(own));
+  WorkerOutcome outcome =
+      run_worker({"run", experiment.string(), what, "--scene=" + scene.argument, "--filter-file=" + request.spec.path,
+                  "--gl", scene.backend, cache_word(own.cache), "--out", own.out.string()},
+                 own.cell_timeout_s);
+  const int code = outcome.exit_code.value_or(0);
+  if (code == static_cast<int>(ErrorKind::kFilter))
+    throw filters::FilterErrors({{request.spec.id, request.spec.path, clean_message(outcome.error_text)}});
+  if (code >= static_cast<int>(ErrorKind::kUsage) && code <= static_cast<int>(ErrorKind::kOutput))
+    throw Error(static_cast<ErrorKind>(code), clean_message(outcome.error_text));
+  return outcome;
 }
 
 measure::MeasuredCell failed_cell(const options::RunOptions& options, const measure::SceneTask& task,
@@ -184,21 +202,17 @@ WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeo
 }
 
 measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
-                                          const filters::FilterRequest& request, const std::string& scene_argument,
-                                          const std::string& backend) {
+                                          const filters::FilterRequest& request, const WorkerScene& scene) {
   const ScratchFolder folder(make_temporary_folder_path(options.out, "worker"));
   const options::RunOptions own = make_worker_options(options, task, request, folder.path());
-  const std::filesystem::path experiment = folder.path() / "experiment.toml";
-  write_text_file(experiment, options::write_experiment(own));
-  const WorkerOutcome outcome = run_worker(
-      {"run", experiment.string(), "--worker", "--scene=" + scene_argument, "--filter-file=" + request.spec.path,
-       "--gl", backend, cache_word(options.cache), "--out", folder.path().string()},
-      options.cell_timeout_s);
-  if (outcome.exit_code == 0) return read_cell(own, task, request);
-  const int code = outcome.exit_code.value_or(0);
-  if (code >= static_cast<int>(ErrorKind::kUsage) && code <= static_cast<int>(ErrorKind::kOutput))
-    throw Error(static_cast<ErrorKind>(code), clean_message(outcome.error_text));
-  return failed_cell(options, task, request, outcome);
+  const WorkerOutcome outcome = run_filter_worker(own, request, scene, "--worker");
+  return outcome.exit_code == 0 ? read_cell(own, task, request) : failed_cell(options, task, request, outcome);
+}
+
+void check_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
+                       const filters::FilterRequest& request, const WorkerScene& scene) {
+  const ScratchFolder folder(make_temporary_folder_path(options.out, "worker"));
+  run_filter_worker(make_worker_options(options, task, request, folder.path()), request, scene, "--check");
 }
 
 }  // namespace shadowbench::run

@@ -62,13 +62,23 @@ std::string clean_message(const std::string& text);
 /// Throws Error(kOutput) when no process can be started.
 WorkerOutcome run_worker(const std::vector<std::string>& arguments, double timeout_s);
 
+/// What a worker is told of its scene and its OpenGL.
+struct WorkerScene {
+  std::string argument;  ///< what the command line calls the scene
+  std::string backend;
+};
+
 /// Measures a user's filter, beside `none`, in a process of its own, so that an endless loop or a driver that crashes
-/// costs this cell and nothing else. `scene_argument` is what the command line calls the scene.
+/// costs this cell and nothing else.
 ///
 /// Returns the cell; its status says `timeout` or `crashed` where the process did not finish.
-/// Throws Error(kFilter) for the filter's GLSL, with the worker's message, and what else the worker refuses.
+/// Throws FilterErrors for the filter's GLSL, with the worker's message, and Error for what else the worker refuses.
 measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
-                                          const filters::FilterRequest& request, const std::string& scene_argument,
-                                          const std::string& backend);
+                                          const filters::FilterRequest& request, const WorkerScene& scene);
+
+/// Compiles a user's filter in a process of its own. A process that does not finish is left to the cell to tell of.
+/// Throws likewise.
+void check_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
+                       const filters::FilterRequest& request, const WorkerScene& scene);
 
 }  // namespace shadowbench::run

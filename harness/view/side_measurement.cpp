@@ -46,6 +46,7 @@ std::vector<std::string> list_arguments(const options::RunOptions& options, cons
           std::string(gl::backend_name(options.backend)),
           run::cache_word(options.cache),
           "--fresh",
+          "--every-step",
           "--no-pictures"};
 }
 

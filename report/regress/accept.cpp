@@ -99,7 +99,8 @@ void Accepter::drop(Comparison& comparison) {
 void Accepter::log(Comparison& comparison, const std::string& what) {
   comparison.accepted = true;
   std::string line = fmt::format("{}: {} {} ({})", what, comparison.scene, comparison.label, comparison.settings);
-  for (const Finding& finding : comparison.findings) line += "\n  - " + finding.text;
+  if (comparison.outcome != Outcome::kExtra)
+    for (const Finding& finding : comparison.findings) line += "\n  - " + finding.text;
   lines_.push_back(std::move(line));
 }
 

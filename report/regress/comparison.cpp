@@ -38,7 +38,7 @@ class CellComparer {
         expected_(expected),
         images_(images),
         tolerances_(tolerances),
-        result_(name_comparison(expected)) {}
+        result_(name_comparison(actual.record)) {}
 
   Comparison compare() {
     compare_images();
@@ -270,7 +270,8 @@ std::string find_obstacle(const TruthImages& actual, const TruthImages& expected
 }  // namespace
 
 std::string name_of(Outcome outcome) {
-  constexpr const char* kNames[] = {"same", "slower", "changed", "less accurate", "extra", "missing", "unreadable"};
+  constexpr const char* kNames[] = {"same",  "slower",  "changed",    "less accurate",
+                                    "extra", "missing", "unreadable", "broken"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 
@@ -280,7 +281,9 @@ void Comparison::add(Outcome worse, Finding finding) {
 }
 
 Comparison name_comparison(const records::CellRecord& record) {
-  return {name_cell(record), describe_cell(record.view, record.map_size, record.width, record.height)};
+  Comparison comparison{name_cell(record), describe_cell(record.view, record.map_size, record.width, record.height)};
+  comparison.measured_s = record.measured_s;
+  return comparison;
 }
 
 Comparison name_truth(const records::CellRecord& record) {
@@ -296,7 +299,7 @@ Comparison compare_cell(const ActualCell& actual, const BaselineCell& expected, 
                         const Tolerances& tolerances) {
   const std::string obstacle = find_obstacle(actual, expected_images);
   if (obstacle.empty()) return CellComparer(actual, expected, expected_images, tolerances).compare();
-  Comparison comparison = name_comparison(expected);
+  Comparison comparison = name_comparison(actual.record);
   comparison.add(Outcome::kUnreadable, obstacle);
   return comparison;
 }

@@ -10,9 +10,10 @@
 namespace shadowbench::regress {
 
 /// How a cell stands to its baseline, the worst last.
-enum class Outcome { kSame, kSlower, kChanged, kLessAccurate, kExtra, kMissing, kUnreadable };
+enum class Outcome { kSame, kSlower, kChanged, kLessAccurate, kExtra, kMissing, kUnreadable, kBroken };
 
-/// Names an outcome: "same", "slower", "changed", "less accurate", "extra", "missing", "unreadable".
+/// Names an outcome: "same", "slower", "changed", "less accurate", "extra", "missing", "unreadable", "broken" (a filter
+/// whose file has a mistake, so that the run measured nothing).
 std::string name_of(Outcome outcome);
 
 /// One thing that is not as the baseline has it.
@@ -33,6 +34,7 @@ struct Comparison : CellName {  // the filter is "truth" for a view's truth
   std::optional<PixelChange> pixels = {};
   std::optional<std::string> picture = {};  ///< below the folder of the comparison
   bool accepted = false;                    ///< what differs has become the baseline
+  std::optional<double> measured_s = {};    ///< seconds that measuring the run's cell took
 
   bool differs() const { return outcome != Outcome::kSame; }
   bool failed() const { return differs() && !accepted; }

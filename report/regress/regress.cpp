@@ -19,6 +19,7 @@
 #include "report/images/color_values.h"
 #include "report/images/hardest_edge.h"
 #include "report/pages/write_page.h"
+#include "report/records/filter_mistakes.h"
 #include "report/records/format.h"
 #include "report/regress/accept.h"
 #include "report/regress/regress_text.h"
@@ -108,6 +109,7 @@ class Regression {
     if (!options.accept) require_sound(known);
     if (known) tolerances_ = read_tolerances(baseline_.tolerance_file());
     index_ = baseline_.read_index();
+    report_.is_new = options.accept && index_.cells.empty() && index_.unreadable.empty();
     require_known(
         options.selection.filters, "--filters", [](const auto& cell) { return cell.filter; });
     require_known(
@@ -314,6 +316,18 @@ class Regression {
   }
 };
 
+/// What there is to say of a run that ended because of its filters' files.
+RegressReport report_mistakes(const RegressOptions& options, const std::vector<filters::FilterMistake>& mistakes) {
+  RegressReport report;
+  report.options = options;
+  for (const filters::FilterMistake& mistake : mistakes) {
+    Comparison comparison{{.scene = "filters", .filter = mistake.id, .label = mistake.id}, mistake.file};
+    comparison.add(Outcome::kBroken, mistake.message);
+    report.comparisons.push_back(std::move(comparison));
+  }
+  return report;
+}
+
 /// Removes the pictures of an earlier comparison, which would be taken for this one's.
 void remove_old_pictures(const std::filesystem::path& out) {
   require_plain_file(out / "regress.json", 1024 * kMebibyte);
@@ -338,8 +352,10 @@ int RegressReport::failed() const { return static_cast<int>(std::ranges::count_i
 
 RegressOutcome run_regress(const RegressOptions& options) {
   remove_old_pictures(options.out);
-  const RegressReport found = Regression(options).compare();
-  RegressOutcome outcome{make_regress_text(found), make_regress_json(found), describe_failure(found)};
+  const std::vector<filters::FilterMistake> mistakes = records::read_filter_mistakes(options.run);
+  const RegressReport found = mistakes.empty() ? Regression(options).compare() : report_mistakes(options, mistakes);
+  RegressOutcome outcome{make_regress_text(found), make_regress_json(found), describe_failure(found),
+                         mistakes.empty() ? ErrorKind::kLimit : ErrorKind::kFilter};
   pages::write_page(options.out, "regress", make_regress_page(found));
   write_text_file(options.out / "regress.json", outcome.json);
   if (options.junit) write_text_file(*options.junit, make_junit(found));

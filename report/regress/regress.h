@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "report/regress/comparison.h"
 #include "report/regress/run_cells.h"
 
@@ -18,6 +19,7 @@ struct RegressOptions {
   Selection selection;
   bool accept = false;          ///< what differs becomes the baseline
   bool remove_missing = false;  ///< with `accept`: cells that the run lacks leave the baseline
+  bool brief = false;           ///< the text is for a log: a line for each of the worst cells, and no more than ten
   std::optional<std::filesystem::path> junit;
   std::vector<std::string> command;  ///< the command line, to be given again with --accept
 };
@@ -25,6 +27,7 @@ struct RegressOptions {
 /// What a comparison found, the worst first.
 struct RegressReport {
   std::vector<Comparison> comparisons;
+  bool is_new = false;                ///< there was no cell in the baseline, and the run's become it
   std::vector<std::string> accepted;  ///< what became of the baseline, one line each
   Damage damaged;                     ///< files of the baseline that were not as they had been accepted
   Damage left;                        ///< those that accepting could not replace
@@ -33,20 +36,24 @@ struct RegressReport {
 
   int count(Outcome outcome) const;
   int failed() const;
+  /// Whether a cell is one to speak of: it differs, and is none of those that a new baseline is made of.
+  bool is_told(const Comparison& comparison) const { return is_new ? comparison.failed() : comparison.differs(); }
 };
 
 /// What the command line shows of it.
 struct RegressOutcome {
   std::string text;
   std::string json;
-  std::string failure;  ///< one line; empty where nothing is left that differs
+  std::string failure;                 ///< one line; empty where nothing is left that differs
+  ErrorKind kind = ErrorKind::kLimit;  ///< of the failure: kFilter where the run's filters have mistakes
 };
 
-/// Compares a run with its baseline, and writes regress.html, .md, .json, a picture of each cell that moved, and
-/// what else was asked for. Throws Error(kInput) where run or tolerances cannot be read, where nothing is to be
-/// accepted and there is no baseline or one that is not as it was accepted, or for a name that is chosen and nowhere
-/// found; Error(kOutput), also where another process accepts into the same baseline. Cost: memory of one image file of
-/// the run, of one of the baseline, and of all that is accepted.
+/// Compares a run with its baseline, or reports the mistakes in filters' files that ended the run, and writes
+/// regress.html, .md, .json, a picture of each cell that moved, and what else was asked for. Throws Error(kInput) where
+/// run or tolerances cannot be read, where nothing is to be accepted and there is no baseline or one that is not as it
+/// was accepted, or for a name that is chosen and nowhere found; Error(kOutput), also where another process accepts
+/// into the same baseline. Cost: memory of one image file of the run, of one of the baseline, and of all that is
+/// accepted.
 RegressOutcome run_regress(const RegressOptions& options);
 
 }  // namespace shadowbench::regress

@@ -82,8 +82,19 @@ std::string name_cell(const Comparison& comparison) {
   return fmt::format("{} {} ({})", comparison.scene, comparison.label, comparison.settings);
 }
 
+/// What a compiler says of a filter, without the lines of a caret, which point at nothing where letters differ in
+/// width.
+std::vector<std::string> list_lines(const std::string& message) {
+  std::vector<std::string> lines;
+  std::istringstream text(message);
+  for (std::string line; std::getline(text, line);)
+    if (line.find_first_not_of(" ^") != std::string::npos) lines.push_back(line);
+  return lines;
+}
+
 /// What differs in a cell, and what was not compared.
 std::vector<std::string> describe_differences(const Comparison& comparison) {
+  if (comparison.outcome == Outcome::kBroken) return list_lines(comparison.findings.front().text);
   std::vector<std::string> sentences;
   for (std::size_t i = 0; i < std::min(comparison.findings.size(), kMostFindings); ++i)
     sentences.push_back(comparison.findings[i].text);
@@ -95,14 +106,31 @@ std::vector<std::string> describe_differences(const Comparison& comparison) {
 
 /// How to accept what differs, or what was accepted; empty where neither is to be said.
 std::string describe_ending(const RegressReport& report) {
+  if (report.is_new || report.count(Outcome::kBroken) > 0) return "";
   if (!report.options.accept) return report.failed() > 0 ? "if this is meant: " + report.accept_command : "";
   if (report.accepted.empty()) return "nothing to accept";
   return fmt::format("accepted: {} changes of the baseline, logged in {}", report.accepted.size(),
                      (report.options.baseline / "accepted.md").string());
 }
 
+/// "new baseline of 12 cells and the truth of 2 views: expected"
+std::string describe_new_baseline(const RegressReport& report) {
+  const auto is_truth = [](const Comparison& each) { return each.accepted && each.filter == kTruthName; };
+  const auto accepted = std::ranges::count(report.comparisons, true, &Comparison::accepted);
+  const auto truths = std::ranges::count_if(report.comparisons, is_truth);
+  const auto count = [](std::ptrdiff_t number, const char* what) {
+    return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+  };
+  return fmt::format("new baseline of {}{}: {}", count(accepted - truths, "cell"),
+                     truths > 0 ? " and the truth of " + count(truths, "view") : "", report.options.baseline.string());
+}
+
 /// Says in a line how many cells are as they were, and how many are not: "49 compared: 48 same, 1 less accurate".
 std::string describe_counts(const RegressReport& report) {
+  if (report.is_new) return describe_new_baseline(report);
+  if (const int broken = report.count(Outcome::kBroken))
+    return fmt::format("nothing was measured, because {}",
+                       broken == 1 ? "a filter has a mistake" : fmt::format("{} filters have mistakes", broken));
   std::string text = fmt::format("{} compared: {} same", report.comparisons.size(), report.count(Outcome::kSame));
   for (const Outcome outcome : kOutcomes)
     if (const int count = report.count(outcome)) text += fmt::format(", {} {}", count, name_of(outcome));
@@ -113,6 +141,17 @@ std::string describe_counts(const RegressReport& report) {
 std::string describe_worst(const RegressReport& report) {
   const Comparison& worst = *std::ranges::find_if(report.comparisons, &Comparison::failed);
   return fmt::format("{} is {}: {}", name_cell(worst), name_of(worst.outcome), worst.findings.front().text);
+}
+
+/// A cell that differs, for the text: in a line where that is brief, else with all that was found.
+std::string describe_told(const Comparison& comparison, const RegressOptions& options) {
+  if (comparison.outcome == Outcome::kBroken) return comparison.findings.front().text + "\n";
+  const std::string head = fmt::format("{}: {}", name_of(comparison.outcome), name_cell(comparison));
+  if (options.brief) return fmt::format("{}: {}\n", head, comparison.findings.front().text);
+  std::string text = head + "\n";
+  for (const std::string& sentence : describe_differences(comparison)) text += fmt::format("  {}\n", sentence);
+  if (comparison.picture) text += fmt::format("  picture: {}\n", (options.out / *comparison.picture).string());
+  return text;
 }
 
 document::Section make_cell_section(const Comparison& comparison, std::size_t place) {
@@ -138,7 +177,7 @@ std::string describe_excess(const Comparison& comparison) {
 
 document::Section make_answer(const RegressReport& report) {
   std::string text = describe_counts(report) + ".";
-  if (report.failed() > 0) text += " Worst: " + describe_worst(report) + ".";
+  if (report.failed() > 0 && report.count(Outcome::kBroken) == 0) text += " Worst: " + describe_worst(report) + ".";
   if (!report.damaged.empty()) text += " Damaged in the baseline: " + describe_damage(report.damaged) + ".";
   document::Table table{"The worst cell of each scene and filter", {{"scene"}, {}}};
   for (const Comparison& each : report.comparisons)  // the worst first
@@ -158,10 +197,17 @@ std::string clean(const std::string& text) {
   return cleaned;
 }
 
+/// Seconds, as JUnit has them; nothing where they are not known.
+void add_time(pugi::xml_node node, const std::optional<double>& seconds) {
+  if (seconds) node.append_attribute("time") = fmt::format("{:.3f}", *seconds).c_str();
+}
+
 void add_case(pugi::xml_node suite, const Comparison& comparison) {
   pugi::xml_node entry = suite.append_child("testcase");
-  entry.append_attribute("classname") = clean(comparison.scene + "." + comparison.view).c_str();
+  const std::string view = comparison.view.empty() ? "" : "." + comparison.view;
+  entry.append_attribute("classname") = clean(comparison.scene + view).c_str();
   entry.append_attribute("name") = clean(comparison.label + " (" + comparison.settings + ")").c_str();
+  add_time(entry, comparison.measured_s);
   if (!comparison.failed()) return;
   pugi::xml_node failure = entry.append_child("failure");
   failure.append_attribute("type") = name_of(comparison.outcome).c_str();
@@ -191,19 +237,18 @@ std::string describe_damage(const Damage& damage) {
 std::string make_regress_text(const RegressReport& report) {
   std::string text;
   for (const auto& [path, what] : report.damaged) text += fmt::format("damaged: {} {}\n", path, what);
+  const std::size_t most = report.count(Outcome::kBroken) > 0 ? report.comparisons.size()
+                           : report.options.brief             ? kMostListedBriefly
+                                                              : kMostListed;
   std::size_t listed = 0;
-  for (const Comparison& comparison : report.comparisons) {
-    if (!comparison.differs()) continue;
-    if (++listed > kMostListed) continue;
-    text += fmt::format("{}: {}\n", name_of(comparison.outcome), name_cell(comparison));
-    for (const std::string& sentence : describe_differences(comparison)) text += fmt::format("  {}\n", sentence);
-    if (comparison.picture) text += fmt::format("  picture: {}\n", (report.options.out / *comparison.picture).string());
-  }
-  if (listed > kMostListed)
-    text += fmt::format("and {} more cells: see {}\n", listed - kMostListed,
-                        (report.options.out / "regress.json").string());
+  for (const Comparison& comparison : report.comparisons)
+    if (report.is_told(comparison) && ++listed <= most) text += describe_told(comparison, report.options);
+  if (listed > most)
+    text += fmt::format("and {} more cells: see {}\n", listed - most, (report.options.out / "regress.json").string());
   text += describe_counts(report) + "\n";
   if (const std::string ending = describe_ending(report); !ending.empty()) text += ending + "\n";
+  if (report.options.brief && !report.is_new)
+    text += fmt::format("report: {}\n", (report.options.out / "regress.html").string());
   return text;
 }
 
@@ -225,9 +270,14 @@ std::string describe_failure(const RegressReport& report) {
         "accept again",
         report.options.baseline.string(), describe_damage(report.left));
   if (report.failed() == 0) return "";
+  if (report.count(Outcome::kBroken) > 0) {
+    std::vector<std::string> files;
+    for (const Comparison& each : report.comparisons) files.push_back(each.settings);
+    return fmt::format("there is nothing to compare; mend {}, and run again", fmt::join(files, ", "));
+  }
   if (report.options.accept)
     return fmt::format("{} could not be accepted; {}", report.failed(), describe_worst(report));
-  return fmt::format("{}; worst: {}", describe_counts(report), describe_worst(report));
+  return "the baseline is not met; the worst: " + describe_worst(report);
 }
 
 document::Page make_regress_page(const RegressReport& report) {
@@ -236,7 +286,8 @@ document::Page make_regress_page(const RegressReport& report) {
     page.sections.push_back({"accept", "", {document::Paragraph{ending}}, report.failed() > 0});
   std::size_t place = 0;
   for (const Comparison& comparison : report.comparisons)
-    if (comparison.differs() && ++place <= kMostListed) page.sections.push_back(make_cell_section(comparison, place));
+    if (report.is_told(comparison) && ++place <= kMostListed)
+      page.sections.push_back(make_cell_section(comparison, place));
   if (place > kMostListed)
     page.sections.push_back(
         {"rest",
@@ -264,8 +315,13 @@ std::string make_junit(const RegressReport& report) {
     suite.append_attribute("name") = clean(scene).c_str();
     suite.append_attribute("tests") = static_cast<unsigned>(comparisons.size());
     unsigned failures = 0;
-    for (const Comparison* comparison : comparisons) failures += comparison->failed() ? 1 : 0;
+    std::optional<double> seconds;
+    for (const Comparison* comparison : comparisons) {
+      failures += comparison->failed() ? 1 : 0;
+      if (comparison->measured_s) seconds = seconds.value_or(0.0) + *comparison->measured_s;
+    }
     suite.append_attribute("failures") = failures;
+    add_time(suite, seconds);
     for (const Comparison* comparison : comparisons) add_case(suite, *comparison);
   }
   std::ostringstream text;

@@ -8,7 +8,7 @@
 namespace shadowbench::regress {
 
 /// How many cells that differ are described one by one; the others are counted, or listed in a table.
-inline constexpr std::size_t kMostListed = 20;
+inline constexpr std::size_t kMostListed = 20, kMostListedBriefly = 5;
 
 /// The command that accepts what differs, as it would be typed.
 std::string make_accept_command(const RegressOptions& options);

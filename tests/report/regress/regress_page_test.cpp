@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "report/regress/regress_text.h"
 #include "tests/report/pages/answer.h"
 
@@ -73,6 +75,61 @@ TEST(RegressPage, ManyCells_AreCounted_AndStandInTheTable) {
                                                 HasSubstr("2 more cells differ: see regress.json.")));
   EXPECT_EQ(document::verdict_of(page, "cubes", fmt::format("filter{}", kMostListed + 1)).second,
             document::Grade::kBad);
+}
+
+TEST(RegressText, InALog_TakesNineLinesAtMost_TheWorstFirst) {
+  RegressReport report = make_report(kMostListed + 2);
+  report.options.brief = true;
+  report.options.out = "now/regress";
+  const std::string text = make_regress_text(report);
+  EXPECT_LE(std::ranges::count(text, '\n'), 9) << text;
+  EXPECT_THAT(text, ::testing::StartsWith("less accurate: cubes filter0 (view main, map 512, 256 x 144): RMSE is 0.2, "
+                                          "and was 0.1\n"));
+  EXPECT_THAT(text, AllOf(HasSubstr("and 17 more cells: see now/regress/regress.json\n"),
+                          HasSubstr("report: now/regress/regress.html\n")));
+}
+
+TEST(RegressText, Summary_StandsInTheText_AndNotInTheFailure) {
+  const RegressReport report = make_report(2);
+  EXPECT_THAT(make_regress_text(report), HasSubstr("3 compared: 1 same, 2 less accurate\n"));
+  EXPECT_EQ(
+      describe_failure(report),
+      "the baseline is not met; the worst: cubes filter0 (view main, map 512, 256 x 144) is less accurate: RMSE is "
+      "0.2, and was 0.1");
+}
+
+/// The cells of a run and their views' truth, of which there was nothing before.
+RegressReport make_new_baseline() {
+  RegressReport report;
+  for (const char* filter : {"none", "vsm", "truth"}) {
+    Comparison& comparison = report.comparisons.emplace_back(make_difference(filter));
+    comparison.outcome = Outcome::kExtra;
+    comparison.findings = {{.text = "the baseline has no such cell"}};
+    comparison.accepted = true;
+  }
+  report.is_new = report.options.accept = true;
+  report.options.baseline = "expected";
+  return report;
+}
+
+TEST(RegressText, NewBaseline_IsOneLine_ButWhatCouldNotBeAcceptedIsTold) {
+  RegressReport report = make_new_baseline();
+  EXPECT_EQ(make_regress_text(report), "new baseline of 2 cells and the truth of 1 view: expected\n");
+  EXPECT_THAT(document::write_html(make_regress_page(report)),
+              AllOf(HasSubstr("new baseline of 2 cells"), Not(HasSubstr("no such cell"))));
+  report.comparisons[1].accepted = false;
+  EXPECT_THAT(make_regress_text(report), AllOf(HasSubstr("extra: cubes vsm"), HasSubstr("new baseline of 1 cell and")));
+}
+
+TEST(RegressJUnit, CasesHaveTheTimesOfTheirCells_AsFarAsTheyAreKnown) {
+  RegressReport report = make_report(2);
+  for (Comparison& each : report.comparisons) each.scene = "cubes";
+  report.comparisons[0].measured_s = 1.25;
+  report.comparisons[1].measured_s = 0.5;
+  const std::string junit = make_junit(report);
+  EXPECT_THAT(junit, AllOf(HasSubstr("failures=\"2\" time=\"1.750\""), HasSubstr("144)\" time=\"1.250\""),
+                           HasSubstr("144)\" time=\"0.500\"")));
+  EXPECT_THAT(junit, HasSubstr("name=\" ()\" />")) << "the third has none";
 }
 
 TEST(RegressPage, Texts_AreEscaped) {
