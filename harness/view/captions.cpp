@@ -42,10 +42,21 @@ ScaleCaption::ScaleCaption(const Layer& layer, const render::DisplayedValues& va
 glm::vec2 ScaleCaption::draw(const glm::vec2& corner) const {
   const float gap = 0.5f * ImGui::GetFontSize(), bar = 6.0f * ImGui::GetFontSize(), step = bar / kScaleSteps;
   const float before = text_size(low).x + gap;
-  const glm::vec2 size = {
-    before + bar + gap + text_size(high).x,
-    ImGui::GetFontSize() void draw_captions(
-        images::Image & picture, const std::array<std::string, kSides>& texts){const images::Font font{.size = 14};
+  const glm::vec2 size = {before + bar + gap + text_size(high).x, ImGui::GetFontSize()};
+  draw_caption(corner, low, size);
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  for (int i = 0; i < kScaleSteps; ++i) {
+    const images::Rgb rgb = color((static_cast<float>(i) + 0.5f) / kScaleSteps);
+    const float x = corner.x + before + static_cast<float>(i) * step;
+    list->AddRectFilled({x, corner.y + 1.0f}, {x + step, corner.y + size.y - 1.0f},
+                        ImGui::ColorConvertFloat4ToU32({rgb[0], rgb[1], rgb[2], 1.0f}));
+  }
+  list->AddText({corner.x + before + bar + gap, corner.y}, kCaptionInk, high.c_str());
+  return size;
+}
+
+void draw_captions(images::Image& picture, const std::array<std::string, kSides>& texts) {
+  const images::Font font{.size = 14};
   const int edge = font.size / 2, line = images::line_height(font);
   int free = 0, top = edge;
   for (std::size_t side = 0; side < kSides; ++side) {

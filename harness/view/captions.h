@@ -29,19 +29,6 @@ struct ScaleCaption {
   /// Draws it from its upper left corner on; returns its size.
   glm::vec2 draw(const glm::vec2& corner) const;
 };
-draw_caption(corner, low, size);
-ImDrawList* list = ImGui::GetBackgroundDrawList();
-for (int i = 0; i < kScaleSteps; ++i) {
-  const images::Rgb rgb = color((static_cast<float>(i) + 0.5f) / kScaleSteps);
-  const float x = corner.x + before + static_cast<float>(i) * step;
-  list->AddRectFilled({x, corner.y + 1.0f}, {x + step, corner.y + size.y - 1.0f},
-                      ImGui::ColorConvertFloat4ToU32({rgb[0], rgb[1], rgb[2], 1.0f}));
-}
-list->AddText({corner.x + before + bar + gap, corner.y}, kCaptionInk, high.c_str());
-return size;
-}
-}
-;
 
 /// Writes the captions of both sides into a picture, side by side where there is room; an empty one is left out.
 void draw_captions(images::Image& picture, const std::array<std::string, kSides>& texts);
