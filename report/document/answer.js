@@ -256,7 +256,7 @@ const startAnswer = (holder) => {
   };
   const addRow = (scope, judged) => {
     const row = element(table.tBodies[0] ?? element(table, "tbody"), "tr");
-    const title = run.scopes.length < 2 ? "" : (scope.scene ?? "all scenes");
+    const title = scope.scene ?? (places.length > 1 ? "all scenes" : places[0]);
     element(row, "th", { scope: "row", dir: "auto" }, title);
     if (scope.idle) return element(row, "td", { colSpan: 3 }, "does not matter: every filter's FLIP is below 0.001");
     if (judged.keeping.length === 0) return element(row, "td", { colSpan: 3 }, "nothing keeps the limits");

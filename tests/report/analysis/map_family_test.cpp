@@ -221,7 +221,7 @@ TEST(MapCaching, ThatCannotBeTold_IsNoSaving) {
   const auto families =
       list_map_families(make_map_cells({{"tight", 1024, 1, 0.1, 4.0, 5.0}, {"view", 1024, 1, 0.1005, 4.0, 1.0}}));
   EXPECT_FALSE(find_caching(families[0])[0].pays);
-  EXPECT_EQ(read_column(families, kCaching).at("view fit, 1024"), "nothing that can be told, tight 1024");
+  EXPECT_EQ(read_column(families, kCaching).at("view fit, 1024"), "nothing that can be told, tight fit, 1024");
 }
 
 /// Empty lookups over one map should take as long: where they do not, costs are told apart by more than that alone.
