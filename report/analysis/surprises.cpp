@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kDearer = 1.5;          // times as dear: worth a sentence
 constexpr double kNoFault = 0.001;       // below this rate a fault is not seen
-constexpr std::size_t kMostOfAKind = 2;  // sentences, and names in one
+constexpr std::size_t kMostOfAKind = 3;  // troubles, and names in a sentence
 constexpr double kMajority = 2.0 / 3.0;  // of the cells: what "most" means
 
 using Cells = std::vector<records::CellRecord>;
@@ -42,10 +42,11 @@ class Finder {
 
   std::vector<std::string> find() const {
     std::vector<std::string> all;
-    for (const auto& more :
-         {list_troubles(), list_wasted(), list_turnovers(), list_parts(), list_diluted(), list_only()})
-      all.insert(all.end(), more.begin(),
-                 more.begin() + static_cast<std::ptrdiff_t>(std::min(more.size(), kMostOfAKind)));
+    const auto add = [&](const std::vector<std::string>& more, std::size_t most) {
+      all.insert(all.end(), more.begin(), more.begin() + static_cast<std::ptrdiff_t>(std::min(more.size(), most)));
+    };
+    add(list_troubles(), kMostOfAKind);
+    for (const auto& more : {list_wasted(), list_turnovers(), list_parts(), list_diluted(), list_only()}) add(more, 1);
     all.resize(std::min(all.size(), kMostSurprises));
     return all;
   }
