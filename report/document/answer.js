@@ -237,6 +237,7 @@ const startAnswer = (holder) => {
         Number(button.dataset.index) === index && Number(button.dataset.place) === place,
       );
     codes[1].textContent = writeView(index, place);
+    codes[1].parentNode.hidden = !codes[1].textContent;
   };
   const addPick = (row, { index, why }, scope) => {
     const place = findWorstPlace(index, scope);

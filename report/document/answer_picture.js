@@ -65,7 +65,9 @@ const folderOfPage = () => {
   const folder = location.protocol === "file:" ? decodeURI(location.pathname).replace(/\/[^/]*$/, "") : "RUN";
   return /^[\w./+-]+$/.test(folder) ? folder : `'${folder.replaceAll("'", "'\\''")}'`;
 };
+// The window opens scenes by their names; one light of several, and a file, whose names have a point, it does not.
 const writeView = (index, place) => {
   const { request, map } = run.configurations[index];
+  if (run.places[place].scene.includes(".")) return "";
   return `shadowbench view ${run.places[place].scene} --left truth --right ${request} --map-size ${map}`;
 };
