@@ -145,7 +145,7 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
   }
   record.error.flip = find_mean(flip.texels, {});
   const images::Rect tile = images::find_hardest_tile(flip);
-  record.images.hardest = {1.0 * tile.x, 1.0 * tile.y, 1.0 * tile.width, 1.0 * tile.height};
+  record.images.hardest = records::TileRecord{tile.x, tile.y, tile.width, tile.height};
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.truth = {truth.standard_error, truth.unanimous, truth.weight_rmse};
   if (truth.weight_rmse > kTellingWeight) record.warnings.push_back(warn_of_weight(record, truth.weight_rmse));

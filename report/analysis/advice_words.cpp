@@ -9,6 +9,7 @@
 #include <set>
 
 #include "report/analysis/cell_group.h"
+#include "report/analysis/gains.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -267,8 +268,7 @@ std::vector<std::string> list_advice_notes(const Advice& advice, const records::
   if (!advice.idle.empty()) {
     std::vector<std::string> names;
     for (const Place& place : advice.idle) names.push_back(describe_place(place, advice.idle));
-    notes.push_back(fmt::format("The choice does not matter on {}: every filter's FLIP is below 0.001 there.",
-                                fmt::join(names, ", ")));
+    notes.push_back(fmt::format("The choice does not matter on {}: {} there.", fmt::join(names, ", "), kIdle));
   }
   for (std::string& note : list_run_notes(advice, gl)) notes.push_back(std::move(note));
   add_notes_of_nothing_to_see(notes, advice);

@@ -10,7 +10,7 @@
 namespace shadowbench::analysis {
 namespace {
 
-constexpr double kSeenFlip = 0.001;
+constexpr double kSeenFlip = 0.001;  // as kIdle says
 constexpr const char* kReference = "none";
 
 }  // namespace

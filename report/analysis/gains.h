@@ -18,8 +18,10 @@ std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord
 std::vector<std::optional<bool>> find_gains(const std::vector<Configuration>& configurations,
                                             const std::vector<const records::CellRecord*>& cells);
 
-/// Finds the places where the choice does not matter: those at which every cell's picture differs from the truth by a
-/// FLIP below 0.001. Where that is so everywhere, there is none.
+/// Said of the places where the choice does not matter.
+inline constexpr const char* kIdle = "every filter's FLIP is below 0.001";
+
+/// Finds the places where the choice does not matter, as kIdle says. Where that is so everywhere, there is none.
 std::vector<Place> list_idle_places(const std::vector<const records::CellRecord*>& cells);
 
 }  // namespace shadowbench::analysis

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 
 #include "report/analysis/advice_words.h"
 #include "report/records/format.h"
@@ -54,42 +55,36 @@ std::string explain_fast(const Advice& advice) {
                                                          : "");
 }
 
-std::string explain_balanced(const Advice& advice, const Picks& picks) {
-  const Candidate &fast = advice.keeping[picks.fast], &best = advice.keeping[*picks.best],
-                  &knee = advice.keeping[*picks.balanced];
+std::string explain_balanced(const Candidate& fast, const Candidate& knee, const Candidate& best) {
   return fmt::format(
       "{} of what the best one gains, for {} of what it costs more",
       records::format_share((fast.rmse->value - knee.rmse->value) / (fast.rmse->value - best.rmse->value)),
       records::format_share((knee.cost.mean - fast.cost.mean) / (best.cost.mean - fast.cost.mean)));
 }
 
-std::string explain_best(const Advice& advice, const Picks& picks) {
-  const Candidate &fast = advice.keeping[picks.fast], &best = advice.keeping[*picks.best];
-  if (!are_costs_told_apart(fast, best, advice.request.cheapest)) return "the least RMSE";
-  if (fast.cost.mean <= 0.0) return "the least RMSE";
+std::string explain_best(const Candidate& fast, const Candidate& best, const CostKind& kind) {
+  if (!are_costs_told_apart(fast, best, kind) || fast.cost.mean <= 0.0) return "the least RMSE";
   return fmt::format("the least RMSE, at {} times the cost of the fast one",
                      records::format_number(best.cost.mean / fast.cost.mean));
 }
 
 }  // namespace
 
-Picks find_picks(const Advice& advice) {
-  assert(!advice.keeping.empty());
-  Picks picks;
-  const auto best = find_best(advice.keeping);
-  if (!best || *best == picks.fast) return picks;
-  picks.best = best;
-  picks.balanced = find_knee(advice.keeping, *best, advice.request.cheapest);
+std::vector<Pick> list_picks(const Advice& advice) {
+  const std::vector<Candidate>& keeping = advice.keeping;
+  const CostKind& kind = advice.request.cheapest;
+  assert(!keeping.empty());
+  std::vector<Pick> picks = {{{kFast}, 0, explain_fast(advice)}};
+  const auto best = keeping.size() > 1 ? find_best(keeping) : std::nullopt;
+  if (!best) return picks;
+  if (*best == 0) {
+    picks.front().names.emplace_back(kBest);
+    return picks;
+  }
+  if (const auto knee = find_knee(keeping, *best, kind))
+    picks.push_back({{kBalanced}, *knee, explain_balanced(keeping[0], keeping[*knee], keeping[*best])});
+  picks.push_back({{kBest}, *best, explain_best(keeping[0], keeping[*best], kind)});
   return picks;
-}
-
-std::vector<NamedPick> name_picks(const Advice& advice) {
-  const Picks picks = find_picks(advice);
-  const bool is_best = !picks.best && advice.keeping.size() > 1 && find_best(advice.keeping);
-  std::vector<NamedPick> named = {{is_best ? "fast and best" : "fast", picks.fast, explain_fast(advice)}};
-  if (picks.balanced) named.push_back({"balanced", *picks.balanced, explain_balanced(advice, picks)});
-  if (picks.best) named.push_back({"best", *picks.best, explain_best(advice, picks)});
-  return named;
 }
 
 }  // namespace shadowbench::analysis

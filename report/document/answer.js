@@ -75,7 +75,7 @@ const startAnswer = (holder) => {
       const seen = group === "artefact" ? kSeen : 0.02 * Math.max(a.value, b.value);
       const isTied =
         field === "error.rmse"
-          ? areErrorsTied(cellAt(best, a.place), cellAt(second, b.place))
+          ? areErrorsTied(cellAt(best, a.place).rmse, cellAt(second, b.place).rmse)
           : Math.abs(b.value - a.value) <= seen;
       if (isTied) continue;
       const text = `${title} ${say(b.value, field)} instead of ${say(a.value, field)}`;
@@ -259,7 +259,7 @@ const startAnswer = (holder) => {
     const row = element(table.tBodies[0] ?? element(table, "tbody"), "tr");
     const title = scope.scene ?? (places.length > 1 ? "all scenes" : places[0]);
     element(row, "th", { scope: "row", dir: "auto" }, title);
-    if (scope.idle) return element(row, "td", { colSpan: 3 }, "does not matter: every filter's FLIP is below 0.001");
+    if (scope.idle) return element(row, "td", { colSpan: 3 }, `does not matter: ${scope.idle}`);
     if (judged.keeping.length === 0) return element(row, "td", { colSpan: 3 }, "nothing keeps the limits");
     const picks = pick(judged, scope);
     for (const column of [0, 1, 2]) {

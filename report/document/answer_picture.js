@@ -1,7 +1,5 @@
 // The picture of the answer: the truth at the left of a line that the reader moves, a filter at the right, where the
 // filter's picture differs most. The page has one before its scripts run.
-const kPictureShape = 2.5;
-const kMostShown = 480; // pixels across, so that an edge is large enough to look at
 const startPicture = (holder) => {
   const old = holder.querySelector("figure.split");
   const figure = old ?? element(holder, "figure", { className: "split" });
@@ -16,42 +14,31 @@ const startPicture = (holder) => {
   const button = addButton(figure, "Look closer", () => shadowbench.openViewer(shown));
   const message = element(figure, "p", { className: "note" });
 
-  // The part of a picture about the tile where FLIP is largest; all of it where nobody knows.
-  const chooseRect = ({ hardest }, [width, height]) => {
-    if (!hardest) return { x: 0, y: 0, width, height };
-    const [left, top, across, down] = hardest;
-    const wide = Math.min(width, Math.max(kMostShown, width / 2));
-    const high = Math.min(height, wide / kPictureShape);
-    const clampTo = (value, most) => Math.min(Math.max(value, 0), most);
-    const x = clampTo(left + across / 2 - wide / 2, width - wide);
-    return { x, y: clampTo(top + down / 2 - high / 2, height - high), width: wide, height: high };
-  };
   const show = (index, place) => {
     const cell = cellAt(index, place);
     const truth = run.truths[place]?.picture;
-    const [width, height] = run.configurations[index].size;
-    const rect = chooseRect(cell, [width, height]);
+    const [wholeWidth] = run.configurations[index].size;
+    const [x, y, width, height] = cell.part;
     const hasBoth = Boolean(truth && cell.picture);
-    shown = { place, left: truth ? kTruth : index, right: index, layer: "picture", rect };
-    stage.style.aspectRatio = `${rect.width}/${rect.height}`;
+    shown = { place, left: truth ? kTruth : index, right: index, layer: "picture", rect: { x, y, width, height } };
+    stage.style.aspectRatio = `${width}/${height}`;
     [truth, cell.picture].forEach((path, i) => {
       images[i].hidden = !path;
       if (path && images[i].getAttribute("src") !== path) images[i].src = path;
-      images[i].alt = `${i === 0 ? "truth" : labelOfPicture(index)} on ${run.places[place].title}`;
-      images[i].style.width = `${(100 * width) / rect.width}%`;
-      images[i].style.left = `${(-100 * rect.x) / rect.width}%`;
-      images[i].style.top = `${(-100 * rect.y) / rect.height}%`;
+      images[i].alt = `${i === 0 ? "truth" : nameOf(index)} on ${run.places[place].title}`;
+      images[i].style.width = `${(100 * wholeWidth) / width}%`;
+      images[i].style.left = `${(-100 * x) / width}%`;
+      images[i].style.top = `${(-100 * y) / height}%`;
     });
     stage.classList.toggle("single", !hasBoth);
     slider.hidden = line.hidden = !hasBoth;
     stage.hidden = caption.hidden = button.hidden = !truth && !cell.picture;
-    const name = `${labelOfPicture(index)} on ${run.places[place].title}`;
+    const name = `${nameOf(index)} on ${run.places[place].title}`;
     slider.setAttribute("aria-label", `How much of the truth is seen beside ${name}`);
     caption.replaceChildren();
     for (const text of hasBoth ? ["truth", name] : [truth ? "truth" : name]) element(caption, "bdi", {}, text);
     message.textContent = truth || cell.picture ? "" : "This run stored no pictures.";
   };
-  const labelOfPicture = (index) => run.configurations[index].label;
   images.forEach((image) =>
     image.addEventListener("error", () => {
       message.textContent = `${image.getAttribute("src")} cannot be read: the file is not beside this page.`;

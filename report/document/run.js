@@ -22,9 +22,8 @@ const isErrorLess = (a, b) => {
   const { gap, reach } = compareErrors(b, a);
   return gap - reach > 0;
 };
-const errorOf = (cell) => ({ ...cell, value: cell.values_of["error.rmse"] });
 const areErrorsTied = (a, b) => {
-  const { gap, reach } = compareErrors(errorOf(a), errorOf(b));
+  const { gap, reach } = compareErrors(a, b);
   return Math.abs(gap) <= reach;
 };
 const findEntry = (who, place) => {

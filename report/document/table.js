@@ -53,7 +53,7 @@ const startTable = (holder) => {
   const areTied = (cell, best) => {
     const [own, least] = [cell, best].map(({ intervals }) => intervals[state.measure]);
     if (own && least) return own[0] <= least[1];
-    return state.measure === "error.rmse" && areErrorsTied(cell, best);
+    return state.measure === "error.rmse" && areErrorsTied(cell.rmse, best.rmse);
   };
   // In a column: the best of each class of width under the same settings, if there are two to compare, and what cannot
   // be told from it, whether or not their rows are shown.

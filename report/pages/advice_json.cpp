@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -198,9 +201,11 @@ Json obstacle_json(const analysis::Advice& advice, std::size_t i) {
 Json picks_json(const analysis::Advice& advice) {
   Json list = Json::array();
   if (advice.keeping.empty()) return list;
-  for (const analysis::NamedPick& pick : analysis::name_picks(advice)) {
+  for (const analysis::Pick& pick : analysis::list_picks(advice)) {
     const analysis::Candidate& candidate = advice.keeping[pick.index];
-    Json json = {{"name", pick.name}, {"label", candidate.configuration.name}, {"why", pick.why}};
+    Json json = {{"name", fmt::format("{}", fmt::join(pick.names, " and "))},
+                 {"label", candidate.configuration.name},
+                 {"why", pick.why}};
     json["settings"] = settings_json(*candidate.configuration.cells.front());
     json["cost"] = candidate.cost.mean;
     json["absent"] = Json::object();

@@ -180,9 +180,9 @@ std::string list_remarks(const records::RunRecord& run, const analysis::Advice& 
 std::string list_picks(const records::RunRecord& run, const analysis::Advice& advice) {
   if (advice.keeping.size() < 2) return "";
   std::vector<Row> rows;
-  for (const analysis::NamedPick& pick : analysis::name_picks(advice)) {
+  for (const analysis::Pick& pick : analysis::list_picks(advice)) {
     const analysis::Candidate& candidate = advice.keeping[pick.index];
-    rows.push_back({pick.name + ":", candidate.configuration.name,
+    rows.push_back({fmt::format("{}:", fmt::join(pick.names, " and ")), candidate.configuration.name,
                     analysis::format_cost(candidate.cost.mean, advice.request.cheapest, run.gl),
                     candidate.rmse ? "RMSE " + records::format_number(candidate.rmse->value) : "", pick.why});
   }

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "report/analysis/advice_words.h"
+#include "report/analysis/gains.h"
 #include "report/analysis/picks.h"
 #include "report/analysis/trade_measures.h"
 #include "report/pages/answer_data.h"
@@ -16,16 +18,14 @@
 namespace shadowbench::pages {
 namespace {
 
-constexpr double kShape = 2.5;        // of the picture: width over height
-constexpr double kMostShown = 480.0;  // pixels across, so that an edge is large enough to look at
-const std::vector<std::string> kPicks = {"fast", "balanced", "best"};
+constexpr std::array kPicks = {analysis::kFast, analysis::kBalanced, analysis::kBest};
 
 bool can_advise(const std::vector<records::CellRecord>& cells) {
   return std::ranges::any_of(
       cells, [](const records::CellRecord& cell) { return !cell.teaching.value_or(false); });
 }
 
-std::string describe_pick(const analysis::Advice& advice, const analysis::NamedPick& pick, const records::GlRecord& gl,
+std::string describe_pick(const analysis::Advice& advice, const analysis::Pick& pick, const records::GlRecord& gl,
                           bool in_full) {
   const analysis::Candidate& candidate = advice.keeping[pick.index];
   std::string text = candidate.configuration.name;
@@ -39,9 +39,9 @@ std::vector<std::string> make_row(const std::string& head, const analysis::Advic
                                   bool in_full) {
   std::vector<std::string> row = {head};
   row.resize(1 + kPicks.size(), records::kNothing);
-  for (const analysis::NamedPick& pick : analysis::name_picks(advice))
+  for (const analysis::Pick& pick : analysis::list_picks(advice))
     for (std::size_t i = 0; i < kPicks.size(); ++i)
-      if (pick.name.find(kPicks[i]) != std::string::npos) row[1 + i] = describe_pick(advice, pick, gl, in_full);
+      if (std::ranges::count(pick.names, kPicks[i]) > 0) row[1 + i] = describe_pick(advice, pick, gl, in_full);
   return row;
 }
 
@@ -53,7 +53,7 @@ document::Table make_table(const records::RunRecord& run, const std::vector<reco
       make_row(scenes.empty() ? advice.places.front().scene : "all scenes", advice, run.gl, true));
   for (const std::string& scene : scenes) {
     if (std::ranges::count(advice.places, scene, &analysis::Place::scene) == 0) {
-      table.table.rows.push_back({scene, "does not matter: every filter's FLIP is below 0.001", "", ""});
+      table.table.rows.push_back({scene, fmt::format("does not matter: {}", analysis::kIdle), "", ""});
       continue;
     }
     analysis::AdviceRequest request = advice.request;
@@ -64,26 +64,21 @@ document::Table make_table(const records::RunRecord& run, const std::vector<reco
   return table;
 }
 
-/// The picture to begin with: the most accurate pick of several, against the truth, where it differs most from it.
+/// The picture to begin with: the fast one against the truth, on the scene where it differs most from it.
 std::optional<document::Split> make_picture(const analysis::Advice& advice) {
-  const analysis::Candidate& shown = advice.keeping[analysis::name_picks(advice).front().index];
+  const analysis::Candidate& shown = advice.keeping.front();
   const records::CellRecord* worst = nullptr;
   for (const records::CellRecord* cell : shown.configuration.cells)
     if (cell->images.picture && cell->images.truth_picture && cell->images.hardest && cell->error.flip &&
         (!worst || *cell->error.flip > *worst->error.flip))
       worst = cell;
   if (!worst) return std::nullopt;
-  const auto& tile = *worst->images.hardest;
-  const double width = std::min<double>(worst->width, std::max(kMostShown, worst->width / 2.0));
-  const double height = std::min<double>(worst->height, width / kShape);
-  const double left = std::clamp(tile[0] + 0.5 * tile[2] - 0.5 * width, 0.0, worst->width - width);
-  const double top = std::clamp(tile[1] + 0.5 * tile[3] - 0.5 * height, 0.0, worst->height - height);
   const std::string on = " on " + analysis::describe_place(analysis::place_of(*worst), advice.places);
   return document::Split{{*worst->images.truth_picture, "truth" + on},
                          {*worst->images.picture, shown.configuration.name + on},
                          worst->width,
                          worst->height,
-                         {left, top, width, height}};
+                         choose_part(*worst)};
 }
 
 /// The GPU whose estimates decide at first; see choose_request().

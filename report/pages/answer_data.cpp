@@ -18,6 +18,9 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kShape = 2.5;        // of the part of a picture: width over height
+constexpr double kMostShown = 480.0;  // pixels across, so that an edge is large enough to look at
+
 constexpr std::pair<const char*, analysis::LightMotion> kLights[] = {{"moving", analysis::LightMotion::kMoving},
                                                                      {"static", analysis::LightMotion::kStatic}};
 
@@ -84,16 +87,6 @@ Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Co
   return scope;
 }
 
-json describe_rmse(const std::vector<const records::CellRecord*>& cells) {
-  const auto rmse = analysis::combine_rmse(cells);
-  if (!rmse) return {};
-  const std::size_t count = rmse->replicates.size();
-  return {{"value", rmse->value},
-          {"reach", rmse->high - rmse->value},
-          {"replicates", rmse->replicates},
-          {"t", count > 1 ? json(metrics::find_student_t(count)) : json()}};
-}
-
 /// What a scope has of each configuration; null of those without a cell there.
 json list_rows(const Scope& scope, const std::vector<analysis::Place>& places,
                const std::vector<const records::CellRecord*>& all, const std::vector<CostChoice>& choices) {
@@ -106,7 +99,7 @@ json list_rows(const Scope& scope, const std::vector<analysis::Place>& places,
       continue;
     }
     json row = {{"worst", list_worst(each, places, choices.front().kind)},
-                {"rmse", describe_rmse(each.cells)},
+                {"rmse", describe_error(analysis::combine_rmse(each.cells))},
                 {"gains", gains[i] ? json(*gains[i]) : json()}};
     for (const CostChoice& choice : choices) row[choice.field] = describe_cost(each.cells, choice);
     rows.push_back(std::move(row));
@@ -160,15 +153,31 @@ std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const s
   const bool is_ratio = frame == analysis::CostKind::kRatio;
   const std::string unit = is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl);
   const std::string where = is_ratio ? "" : run.gl.software ? ", this CPU" : ", this GPU";
-  std::vector<CostChoice> choices = {
-      {"moving", kMovingField, "moving light" + where, unit, "a frame with a moving light", "", frame},
-      {"static", kStaticField, "static light" + where, unit, "a frame with a static light", "--light-motion static",
-       frame, analysis::LightMotion::kStatic}};
+  std::vector<CostChoice> choices = {{"moving", kMovingField, "moving light" + where, unit, "", frame},
+                                     {"static", kStaticField, "static light" + where, unit, "--light-motion static",
+                                      frame, analysis::LightMotion::kStatic}};
   for (const std::string& gpu : gpus)
-    choices.push_back({"gpu." + gpu, "gpu." + gpu + ".estimate_us", "estimate, " + gpu, "us",
-                       "estimated on " + gpu + ", for one map's prefilter and a million receivers",
-                       "--cheapest gpu:" + gpu, analysis::CostKind(analysis::CostKind::kGpu, gpu)});
+    choices.push_back({"gpu." + gpu, "gpu." + gpu + ".estimate_us", "estimate, " + gpu, "us", "--cheapest gpu:" + gpu,
+                       analysis::CostKind(analysis::CostKind::kGpu, gpu)});
   return choices;
+}
+
+json describe_error(const std::optional<analysis::Estimate>& error) {
+  if (!error) return {};
+  const std::size_t count = error->replicates.size();
+  return {{"value", error->value},
+          {"reach", error->high - error->value},
+          {"replicates", error->replicates},
+          {"t", count > 1 ? json(metrics::find_student_t(count)) : json()}};
+}
+
+std::array<double, 4> choose_part(const records::CellRecord& cell) {
+  const double across = cell.width, down = cell.height;
+  if (!cell.images.hardest) return {0.0, 0.0, across, down};
+  const records::TileRecord& tile = *cell.images.hardest;
+  const double width = std::min(across, std::max(kMostShown, across / 2.0)), height = std::min(down, width / kShape);
+  return {std::clamp(tile.left + 0.5 * (tile.width - width), 0.0, across - width),
+          std::clamp(tile.top + 0.5 * (tile.height - height), 0.0, down - height), width, height};
 }
 
 json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice) {
@@ -191,20 +200,18 @@ json make_answer_data(const std::vector<records::CellRecord>& cells,
   std::map<const records::CellRecord*, std::size_t> indices;
   for (std::size_t i = 0; i < configurations.size(); ++i)
     for (const records::CellRecord* cell : configurations[i].cells) indices[cell] = i;
-  std::vector<const records::CellRecord*> advised = all;
-  std::erase_if(advised, [](const auto* cell) { return cell->teaching.value_or(false); });
-  const std::vector<analysis::Place> idle = analysis::list_idle_places(advised);
-  const auto is_idle = [&](const std::string& scene) {
-    return std::ranges::count(idle, scene, &analysis::Place::scene) ==
-           std::ranges::count(places, scene, &analysis::Place::scene);
+  std::vector<Scope> scopes = {make_scope({}, configurations)};
+  for (const std::string& scene : list_answered_scenes(cells)) scopes.push_back(make_scope({scene}, configurations));
+  const auto is_judged = [&](const std::string& scene) {  // in the choice for all scenes
+    return std::ranges::any_of(scopes.front().configurations, [&](const analysis::Configuration& each) {
+      return std::ranges::count(each.cells, scene, &records::CellRecord::scene) > 0;
+    });
   };
-  std::vector<std::vector<std::string>> scopes = {{}};
-  for (const std::string& scene : list_answered_scenes(cells)) scopes.push_back({scene});
   json data = json::array();
-  for (const std::vector<std::string>& scenes : scopes) {
-    const Scope scope = make_scope(scenes, configurations);
-    data.push_back({{"scene", scenes.empty() ? json() : json(scenes.front())},
-                    {"idle", !scenes.empty() && is_idle(scenes.front())},
+  for (const Scope& scope : scopes) {
+    const std::string scene = scope.scenes.empty() ? "" : scope.scenes.front();
+    data.push_back({{"scene", scene.empty() ? json() : json(scene)},
+                    {"idle", scene.empty() || is_judged(scene) ? json() : json(analysis::kIdle)},
                     {"rows", list_rows(scope, places, all, choices)},
                     {"advice", list_advice(cells, scope, list_classes_of(scope, classes), choices, indices)}});
   }

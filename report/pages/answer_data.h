@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "report/analysis/configuration.h"
+#include "report/analysis/front.h"
 #include "report/analysis/limits.h"
 #include "report/records/records.h"
 
@@ -19,7 +22,6 @@ struct CostChoice {
   std::string id;     ///< in the page's data and its links
   std::string field;  ///< of a configuration's and a cell's value
   std::string title, unit;
-  std::string said;    ///< behind a number: "a frame with a moving light"
   std::string option;  ///< of `advise`
   analysis::CostKind kind;
   analysis::LightMotion light = analysis::LightMotion::kMoving;
@@ -29,6 +31,13 @@ struct CostChoice {
 /// analysis::frame_cost_kind().
 std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const std::vector<std::string>& gpus,
                                           const analysis::CostKind& frame);
+
+/// An error for the scripts: its value, how far it may be off, and its groups of phases; null where there is none.
+nlohmann::json describe_error(const std::optional<analysis::Estimate>& error);
+
+/// The part of a cell's picture that is looked at first, about the tile where it differs most from the truth: left,
+/// top, width, height, pixels. All of it where nobody knows where.
+std::array<double, 4> choose_part(const records::CellRecord& cell);
 
 /// The mean of a cost over cells; null where one has none.
 nlohmann::json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice);

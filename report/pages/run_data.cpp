@@ -127,19 +127,16 @@ std::string find_cause(const records::CellRecord& cell) {
 
 json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place,
                const std::vector<std::string>& gpus, const analysis::CostKind& frame) {
-  const std::vector<double> replicates = cell.rmse_replicates.value_or(std::vector<double>());
   return {{"key", cell.key},
           {"configuration", configuration},
           {"place", place},
           {"status", cell.status == records::CellStatus::kOk ? "ok" : records::describe_status(cell)},
           {"values_of", list_values(cell, gpus, frame)},
-          {"reach", analysis::find_rmse_reach(cell)},
-          {"replicates", replicates},
-          {"t", replicates.size() > 1 ? json(metrics::find_student_t(replicates.size())) : json()},
+          {"rmse", describe_error(cell.error.rmse ? std::optional(analysis::estimate_rmse(cell)) : std::nullopt)},
           {"intervals", list_intervals(cell, frame)},
           {"cause", find_cause(cell)},
           {"picture", path_of(cell.images.picture)},
-          {"hardest", cell.images.hardest ? json(*cell.images.hardest) : json()},
+          {"part", choose_part(cell)},
           {"values", path_of(cell.images.values)}};
 }
 
@@ -209,7 +206,6 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
                              {"field", choice.field},
                              {"title", choice.title},
                              {"unit", choice.unit},
-                             {"said", choice.said},
                              {"option", choice.option},
                              {"isEstimate", choice.kind.kind == analysis::CostKind::kGpu}});
   std::vector<std::string> classes;

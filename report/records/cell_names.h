@@ -27,12 +27,10 @@ class CellNames {
   /// Requires that the cell is one of those, or differs from one in scene and view alone.
   std::string name(const CellRecord& cell) const;
 
-  /// The filter with the parameters in which its cells differ: "vsm (radius 4)".
-  std::string name_filter(const CellRecord& cell) const;
-
  private:
   using Settings = std::vector<std::pair<std::string, std::string>>;  // what, and its value in words
 
+  std::string name_filter(const CellRecord& cell) const;  // with the parameters in which its cells differ
   Settings list_settings(const CellRecord& cell) const;
 
   std::set<std::string> fits_;

@@ -176,6 +176,14 @@ void visit_fields(Is<RatioRecord> auto& ratio, auto&& visit) {
   visit("moving", ratio.moving, {.column = "frame with a new map against none", .column_name = "ratio_moving"});
 }
 
+void visit_fields(Is<TileRecord> auto& tile, auto&& visit) {
+  constexpr About kPixels{.text = "pixels", .least = 0};
+  visit("left", tile.left, kPixels);
+  visit("top", tile.top, kPixels);
+  visit("width", tile.width, kPixels);
+  visit("height", tile.height, kPixels);
+}
+
 void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
   constexpr About kPath{.text = "relative to the report folder", .is_path = true};
   const auto path = [](std::string_view text, bool later = false) {
@@ -203,9 +211,7 @@ void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
   visit("truth_values", images.truth_values,
         path("relative to the report folder: a script with the truth as 16-bit numbers, for the page", true));
   visit("hardest", images.hardest,
-        {.text = "where the picture differs most from the truth by FLIP: left, top, width and height of a tile, pixels",
-         .least = 0,
-         .later = true});
+        {.text = "the tile where the picture differs most from the truth by FLIP", .later = true});
 }
 
 /// Visits a cell's metrics, and over what its errors are means.

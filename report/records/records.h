@@ -119,6 +119,15 @@ struct LightCountRecord {
   std::int64_t maps_bytes = 0;  ///< bytes of the maps that the lookups read
 };
 
+/// A part of a picture, pixels.
+struct TileRecord {
+  int left = 0;
+  int top = 0;
+  int width = 0;
+  int height = 0;
+  bool operator==(const TileRecord&) const = default;
+};
+
 /// Paths relative to the report folder, with '/' between folders.
 struct ImagesRecord {
   std::optional<std::string> picture;
@@ -133,9 +142,8 @@ struct ImagesRecord {
   std::optional<std::string> values = std::nullopt;         ///< visibility, error parts and FLIP, for the page's viewer
   std::optional<std::string> truth_picture = std::nullopt;  ///< one per scene and view
   std::optional<std::string> truth_values = std::nullopt;   ///< of the same: visibility, its standard error, the mask
-  std::optional<std::string> parts = std::nullopt;  ///< no path, but how the names of the cell's parts in `exr` begin
-  std::optional<std::vector<double>> hardest =
-      std::nullopt;  ///< where FLIP is largest: left, top, width, height, pixels
+  std::optional<std::string> parts = std::nullopt;   ///< no path, but how the names of the cell's parts in `exr` begin
+  std::optional<TileRecord> hardest = std::nullopt;  ///< where the picture's FLIP is largest
 };
 
 /// How wide the filter's kernel is.

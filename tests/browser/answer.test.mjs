@@ -159,7 +159,7 @@ test("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", async () =
   assert.deepEqual(shown[0], shown[1], "both lie in one place");
   const title = (await names())[1].split(" on ")[1], place = data.places.findIndex((each) => each.title === title);
   const [natural, drawn, left, top, wide, high] = shown[1], scale = drawn / natural;
-  const [x, y, across, down] = data.cells.find((each) => each.configuration === first.index && each.place === place).hardest;
+  const { left: x, top: y, width: across, height: down } = readResults("several").cells.find(({ key }) => key === data.cells.find((each) => each.configuration === first.index && each.place === place).key).images.hardest;
   const middle = [left + scale * (x + across / 2), top + scale * (y + down / 2)];
   assert.ok(middle[0] > 0 && middle[0] < wide && middle[1] > 0 && middle[1] < high, `the hardest tile is at ${middle} of ${wide} x ${high}`);
   const button = page.locator(".picks tbody tr").last().locator("button").last();

@@ -69,7 +69,7 @@ test("StarsAndTies_AreTheBestOfTheirClassAndSettings_WhateverIsShown", async () 
         return each.place === cell.place && each.status === "ok" && !other.teaching && other.class === own.class && other.surroundings === own.surroundings;
       };
       const group = data.cells.filter(isRival), best = Math.min(...group.map(of)), first = group.find((each) => of(each) === best);
-      const reach = measure === "error.rmse" ? Math.max(cell.reach, first?.reach) : 0;
+      const reach = measure === "error.rmse" ? Math.max(cell.rmse.reach, first?.rmse?.reach) : 0;
       const isTied = measure.startsWith("time") ? () => cell.intervals[measure][0] <= first.intervals[measure][1] : () => of(cell) - best <= reach;
       const mark = !group.includes(cell) || group.length < 2 ? "" : of(cell) === best ? "\u2605" : isTied() ? "\u2248" : "";
       wanted.set(`${own.label} ${cell.place}`, mark);

@@ -1,6 +1,8 @@
 // Which of the candidates are called fast, balanced and best.
 #include "report/analysis/picks.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,8 +41,9 @@ std::vector<records::CellRecord> make_cells(const std::vector<Made>& all) {
 std::vector<std::string> list_picks(const std::vector<records::CellRecord>& cells, const AdviceRequest& request = {}) {
   const Advice advice = advise(cells, request);
   std::vector<std::string> picks;
-  for (const NamedPick& each : name_picks(advice))
-    picks.push_back(each.name + ": " + advice.keeping[each.index].configuration.name);
+  for (const Pick& each : analysis::list_picks(advice))
+    picks.push_back(fmt::format("{}: ", fmt::join(each.names, " and ")) +
+                    advice.keeping[each.index].configuration.name);
   return picks;
 }
 

@@ -150,7 +150,7 @@ TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
     cells.back().time_ms.moving = records::OwnTime{{ms, ms, ms, 9}, {ms, ms}};
     cells.back().images.picture = fmt::format("images/{}.png", filter);
     cells.back().images.truth_picture = "images/truth.png";
-    cells.back().images.hardest = {900, 500, 60, 40};
+    cells.back().images.hardest = records::TileRecord{900, 500, 60, 40};
     cells.back().error.flip = rmse;
   }
   const std::string page = make_html(make_run(), cells);
@@ -165,7 +165,8 @@ TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
   EXPECT_LT(page.find("<figure class=\"split\""), page.find("id=\"table\""));
   const nlohmann::json data = read_data(page);
   EXPECT_EQ(data["cells"][1]["values_of"]["error.rmse"], 0.08);
-  EXPECT_EQ(data["cells"][1]["hardest"], nlohmann::json({900, 500, 60, 40}));
+  EXPECT_EQ(data["cells"][1]["part"], nlohmann::json({480, 348, 480, 192}))
+      << "about the tile, as far as there is room";
   EXPECT_EQ(data["configurations"][3]["time_ms.moving"], 12.0);
   const nlohmann::json& scope = data["scopes"].at(0);
   EXPECT_EQ(scope["rows"][1]["worst"]["error.rmse"],
@@ -199,7 +200,8 @@ TEST(RunPage, AnswersForEachScene_AndSaysWhereTheChoiceDoesNotMatter) {
   EXPECT_THAT(page, HasSubstr(">dim</td><td>does not matter: every filter&#39;s FLIP is below 0.001<"));
   const nlohmann::json data = read_data(page);
   ASSERT_EQ(data["scopes"].size(), 4u);
-  EXPECT_EQ(data["scopes"][3]["idle"], true);
+  EXPECT_EQ(data["scopes"][3]["idle"], "every filter's FLIP is below 0.001");
+  EXPECT_TRUE(data["scopes"][1]["idle"].is_null());
   EXPECT_EQ(data["scopes"][0]["rows"][1]["rmse"]["value"], std::sqrt((0.05 * 0.05 + 0.09 * 0.09) / 2.0))
       << "without the scene that does not matter";
 }

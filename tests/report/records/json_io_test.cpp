@@ -77,7 +77,7 @@ CellRecord make_full_cell() {
   cell.artefact = {0.1, 0.2, 0.3, 0.4};
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
   cell.images = {"a.png",   "b.png", "c.png", "d.png", "e.exr", "g.png", "h.png",
-                 "all.png", "i.png", "j.js",  "k.png", "l.js",  "vsm",   std::vector<double>{1, 2, 3, 4}};
+                 "all.png", "i.png", "j.js",  "k.png", "l.js",  "vsm",   TileRecord{1, 2, 3, 4}};
   cell.stability = {1, 2, 3, -1e-6, 4.5, 11.25, 0.5, 0.25, 0.125, 4, 5};
   cell.coverage = {3.5, 0.25, 0.75, 0.5};
   cell.fit = "view snapped";
@@ -142,7 +142,7 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.images.truth_picture, "k.png");
   EXPECT_EQ(back.images.truth_values, "l.js");
   EXPECT_EQ(back.images.parts, "vsm");
-  EXPECT_EQ(back.images.hardest, (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(back.images.hardest, (TileRecord{1, 2, 3, 4}));
   EXPECT_EQ(back.stability.negative_variance_texels, 3);
   EXPECT_EQ(back.stability.safe_exponent, 11.25);
   EXPECT_EQ(back.stability.bound_exact_violations, 5);
