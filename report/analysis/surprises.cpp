@@ -18,10 +18,10 @@
 namespace shadowbench::analysis {
 namespace {
 
-constexpr double kDearer = 1.5;          // times as dear: worth a sentence
-constexpr double kNoFault = 0.001;       // below this rate a fault is not seen
-constexpr std::size_t kMostOfAKind = 3;  // troubles, and names in a sentence
-constexpr double kMajority = 2.0 / 3.0;  // of the cells: what "most" means
+constexpr double kDearer = 1.5;           // times as dear: worth a sentence
+constexpr double kNoFault = 0.001;        // below this rate a fault is not seen
+constexpr std::size_t kMostTroubles = 3;  // of which each may hide all else; of other kinds one sentence does
+constexpr double kMajority = 2.0 / 3.0;   // of the cells: what "most" means
 
 using Cells = std::vector<records::CellRecord>;
 
@@ -45,7 +45,7 @@ class Finder {
     const auto add = [&](const std::vector<std::string>& more, std::size_t most) {
       all.insert(all.end(), more.begin(), more.begin() + static_cast<std::ptrdiff_t>(std::min(more.size(), most)));
     };
-    add(list_troubles(), kMostOfAKind);
+    add(list_troubles(), kMostTroubles);
     for (const auto& more : {list_wasted(), list_turnovers(), list_parts(), list_diluted(), list_only()}) add(more, 1);
     all.resize(std::min(all.size(), kMostSurprises));
     return all;

@@ -209,7 +209,7 @@ document::Bars::Row make_gpu_row(const analysis::GpuCost& cost) {
     end += us;
   };
   for (std::size_t i = 0; i < cost.slowest_us.size(); ++i) {
-    row.label += fmt::format("{}{} {}", i == 0 ? " \u00b7 alone: " : ", ", analysis::kGpuResources[i],
+    row.label += fmt::format("{}{} {}", i == 0 ? " · alone: " : ", ", analysis::kGpuResources[i],
                              records::format_number(cost.alone_us[i]));
     add(cost.slowest_us[i], i + 1);
   }

@@ -51,7 +51,7 @@ constexpr double kEarly = 0.5;        // a limit before this share of an axis' r
 constexpr double kLeastShown = 1e-9;  // on a logarithmic axis
 constexpr const char* kStressNote =
     "The share that a filter's worst variant is ok in, to its best one's. \u2717: one breaks, or is over the axis' "
-    "bound before half of the range. \u2013: nothing was measured; an axis asks only filters that have what it drives.";
+    "bound before half of the range. –: nothing was measured; an axis asks only filters that have what it drives.";
 constexpr const char* kNoFilter = "no filter";
 constexpr const char* kUnseen = "Not met, and not expected:";
 

@@ -12,6 +12,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "base/split_list.h"
 #include "report/pages/write_page.h"
 
 namespace shadowbench::regress {
@@ -85,10 +86,8 @@ std::string name_cell(const Comparison& comparison) {
 /// What a compiler says of a filter, without the lines of a caret, which point at nothing where letters differ in
 /// width.
 std::vector<std::string> list_lines(const std::string& message) {
-  std::vector<std::string> lines;
-  std::istringstream text(message);
-  for (std::string line; std::getline(text, line);)
-    if (line.find_first_not_of(" ^") != std::string::npos) lines.push_back(line);
+  std::vector<std::string> lines = split_list(message, "\n");
+  std::erase_if(lines, [](const std::string& line) { return line.find_first_not_of(" ^") == std::string::npos; });
   return lines;
 }
 
