@@ -51,6 +51,9 @@ shadowbench_add_part(WINDOW "the window ('view' and --gl glfw)" PACKAGES glfw3 M
                      DEBIAN "libglfw3-dev libimgui-dev libstb-dev")
 shadowbench_add_part(GPU_ESTIMATES "what filters cost on other GPUs" PACKAGES Threads SPIRV-Tools-opt VulkanHeaders glslang
                      DEBIAN "glslang-dev glslang-tools libvulkan-dev spirv-tools")
+shadowbench_add_part(LIVE_PAGE "drawing in the reader's browser" PACKAGES Threads SPIRV-Tools-opt glslang
+                     MODULES spirv-cross-c-shared
+                     DEBIAN "glslang-dev glslang-tools libspirv-cross-c-shared-dev spirv-tools")
 shadowbench_add_part(DRACO "models that Draco compressed" PACKAGES draco DEBIAN "libdraco-dev")
 shadowbench_add_part(MESHOPT "models that meshoptimizer compressed" PACKAGES meshoptimizer DEBIAN "libmeshoptimizer-dev")
 if(NOT SHADOWBENCH_HAS_OSMESA AND NOT SHADOWBENCH_HAS_EGL AND NOT SHADOWBENCH_HAS_WINDOW)

@@ -1,9 +1,6 @@
 #include "harness/gpu/null_device.h"
 
 #include <fmt/format.h>
-#include <glslang/Public/ResourceLimits.h>
-#include <glslang/Public/ShaderLang.h>
-#include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <algorithm>
 #include <array>
@@ -14,9 +11,9 @@
 
 #include "base/error.h"
 #include "harness/gl/fullscreen.h"
-#include "harness/gl/shader_log.h"
 #include "harness/gl/shader_source.h"
 #include "harness/gpu/machine_code.h"
+#include "harness/spirv/spirv.h"
 
 namespace shadowbench::gpu {
 namespace {
@@ -24,71 +21,6 @@ namespace {
 constexpr const char* kExtension = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
 
 [[noreturn]] void fail(const std::string& message) { throw Error(ErrorKind::kContext, message); }
-
-/// What a shader binds at a place of its only descriptor set.
-struct Binding {
-  std::uint32_t place = 0;
-  bool is_texture = false;  ///< else a block of uniforms
-};
-
-/// A shader stage as Vulkan takes it.
-struct SpirvShader {
-  std::vector<std::uint32_t> words;
-  std::vector<Binding> bindings;
-};
-
-enum class ShaderStage { kVertex, kFragment };
-
-/// glslang's tables, for as long as the process lives.
-void start_glslang() {
-  static const struct Started {
-    Started() { glslang::InitializeProcess(); }
-    ~Started() { glslang::FinalizeProcess(); }
-  } kStarted;
-}
-
-[[noreturn]] void refuse(const char* log, const std::vector<std::string>& files) {
-  const gl::ShaderLog translated = gl::translate_log(log, files);
-  throw Error(ErrorKind::kFilter, "Vulkan refuses this GLSL: " + translated.message, translated.where);
-}
-
-std::vector<Binding> list_bindings(glslang::TProgram& program) {
-  std::vector<Binding> bindings;
-  for (int i = 0; i < program.getNumUniformVariables(); ++i) {
-    const glslang::TObjectReflection& uniform = program.getUniform(i);
-    // What lies in no block is a sampler: the relaxed rules have put all other uniforms into one.
-    if (uniform.index < 0) bindings.push_back({static_cast<std::uint32_t>(uniform.getBinding()), true});
-  }
-  for (int i = 0; i < program.getNumUniformBlocks(); ++i)
-    bindings.push_back({static_cast<std::uint32_t>(program.getUniformBlock(i).getBinding()), false});
-  return bindings;
-}
-
-/// Compiles the GLSL that OpenGL is given for Vulkan 1.3, with loose uniforms put into a block.
-/// Throws Error(kFilter) with file and line for what Vulkan's rules refuse.
-SpirvShader compile_spirv(const gl::ShaderSource& source, ShaderStage stage) {
-  start_glslang();
-  const EShLanguage language = stage == ShaderStage::kVertex ? EShLangVertex : EShLangFragment;
-  glslang::TShader shader(language);
-  const char* text = source.text.data();
-  const auto length = static_cast<int>(source.text.size());
-  shader.setStringsWithLengths(&text, &length, 1);
-  shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
-  shader.setEnvInputVulkanRulesRelaxed();
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
-  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
-  shader.setAutoMapBindings(true);
-  shader.setAutoMapLocations(true);
-  if (!shader.parse(GetDefaultResources(), 450, false, EShMsgDefault)) refuse(shader.getInfoLog(), source.files);
-  glslang::TProgram program;
-  program.addShader(&shader);
-  if (!program.link(EShMsgDefault) || !program.mapIO() || !program.buildReflection(EShReflectionSeparateBuffers))
-    refuse(program.getInfoLog(), source.files);
-  SpirvShader compiled;
-  glslang::GlslangToSpv(*program.getIntermediate(language), compiled.words);
-  compiled.bindings = list_bindings(program);
-  return compiled;
-}
 
 vk::Format find_format(std::string_view name) {
   using enum vk::Format;
@@ -143,9 +75,9 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical) {
   return {physical, info};
 }
 
-vk::raii::DescriptorSetLayout make_layout(const vk::raii::Device& device, const std::vector<Binding>& bindings) {
+vk::raii::DescriptorSetLayout make_layout(const vk::raii::Device& device, const std::vector<spirv::Binding>& bindings) {
   std::vector<vk::DescriptorSetLayoutBinding> places;
-  for (const Binding& each : bindings)
+  for (const spirv::Binding& each : bindings)
     places.emplace_back(
         each.place, each.is_texture ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eUniformBuffer, 1,
         vk::ShaderStageFlagBits::eFragment);
@@ -153,7 +85,7 @@ vk::raii::DescriptorSetLayout make_layout(const vk::raii::Device& device, const 
 }
 
 vk::raii::Pipeline make_pipeline(const vk::raii::Device& device, const vk::raii::PipelineLayout& layout,
-                                 const SpirvShader& vertex, const SpirvShader& fragment, vk::Format format) {
+                                 const spirv::Shader& vertex, const spirv::Shader& fragment, vk::Format format) {
   const vk::raii::ShaderModule vertex_module(device, vk::ShaderModuleCreateInfo({}, vertex.words));
   const vk::raii::ShaderModule fragment_module(device, vk::ShaderModuleCreateInfo({}, fragment.words));
   const std::array stages = {
@@ -237,7 +169,7 @@ struct NullDevice::Vulkan {
   vk::raii::PhysicalDevice physical;
   std::string driver;
   // Both are made when something is first compiled: glslang and a device take long to start.
-  std::optional<SpirvShader> vertex = std::nullopt;
+  std::optional<spirv::Shader> vertex = std::nullopt;
   std::optional<vk::raii::Device> device = std::nullopt;
 
   explicit Vulkan(const std::string& family) : physical(find_device(instance, family)) {
@@ -269,8 +201,10 @@ NullDevice::~NullDevice() = default;
 const std::string& NullDevice::driver() const { return vulkan_->driver; }
 
 records::ShaderFacts NullDevice::compile(const gl::ShaderSource& source, const std::string& format) {
-  if (!vulkan_->vertex) vulkan_->vertex = compile_spirv(gl::FullscreenTriangle::vertex_source(), ShaderStage::kVertex);
-  const SpirvShader fragment = compile_spirv(source, ShaderStage::kFragment);
+  if (!vulkan_->vertex)
+    vulkan_->vertex =
+        spirv::compile(gl::FullscreenTriangle::vertex_source(), spirv::Stage::kVertex, spirv::Rules::kVulkan);
+  const spirv::Shader fragment = spirv::compile(source, spirv::Stage::kFragment, spirv::Rules::kVulkan);
   try {
     if (!vulkan_->device) vulkan_->device = make_device(vulkan_->physical);
     const vk::raii::Device& device = *vulkan_->device;

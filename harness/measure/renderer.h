@@ -7,6 +7,7 @@
 
 #include "filters/scalar.h"
 #include "harness/gl/context/context.h"
+#include "harness/gl/recorder/recorder.h"
 #include "harness/gl/timer/timer.h"
 #include "harness/options/options.h"
 #include "harness/render/shader_library.h"
@@ -20,6 +21,7 @@ struct Renderer {
   gl::TimerKind timer = gl::TimerKind::kWallClock;
   render::ShaderLibrary shaders;
   std::optional<filters::GlAccuracy> accuracy = std::nullopt;  ///< see measure_accuracy()
+  std::unique_ptr<gl::Recorder> recorder = nullptr;            ///< only where what is drawn is written down
 };
 
 /// Makes a context and chooses its timer by measurement.

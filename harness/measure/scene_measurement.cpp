@@ -105,6 +105,7 @@ class SceneBench {
     cell.visibility = render::read_image(target_.texture(), 1);
     cell.picture =
         render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, options_.range);
+    if (renderer_.recorder) cell.frame = renderer_.recorder->newest_draw();
     cell.record.nan = std::ranges::count_if(cell.visibility.texels, [](float v) { return !std::isfinite(v); });
     if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;
@@ -219,6 +220,7 @@ class SceneBench {
   }
 
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
+    const gl::Recorder::Pause pause(renderer_.recorder.get());
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
     const auto asked = std::ranges::find_if(
@@ -273,6 +275,7 @@ class SceneBench {
   /// Draws every filter again with the map's grid moved by parts of a texel. The passes stay turned to the last of
   /// them.
   void draw_phases(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
+    const gl::Recorder::Pause pause(renderer_.recorder.get());
     const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases, options_.seed);
     if (shifts.size() > 1) listener_.begin(options::Work::kPhases, filters.size(), "phases");
     for (std::size_t phase = 1; phase < shifts.size(); ++phase) {

@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "harness/live/frame_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"
@@ -161,6 +162,7 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
     copy_whole(records::cell_path(shard.folder, cell.key), records::cell_path(out, cell.key));
     keys.push_back(cell.key);
   }
+  for (const ShardRun& shard : shards) live::copy_frames(shard.folder, out);
   std::vector<records::RunRecord> runs;
   for (const ShardRun& shard : shards) runs.push_back(shard.results.run);
   pages::write_report(out, join_runs(runs), keys);

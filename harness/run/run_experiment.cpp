@@ -22,6 +22,7 @@
 #include "harness/run/task_run.h"
 #include "harness/run/time_forecast.h"
 #include "harness/scene/mesh_tools.h"
+#include "harness/spirv/webgl.h"
 #include "reference/truth/occluders.h"
 #include "reference/truth/truth_cache.h"
 #include "report/analysis/repeat.h"
@@ -57,6 +58,7 @@ class Experiment {
     run_.machine = describe_machine();
     progress_.note(fmt::format("OpenGL by {}: {}", run_.gl.backend, run_.gl.renderer));
     for (const std::string& reason : renderer_.refused) progress_.note("not used: " + reason);
+    if (options.pictures && spirv::can_translate_to_webgl()) renderer_.recorder = std::make_unique<gl::Recorder>();
   }
 
   records::RunRecord run() {

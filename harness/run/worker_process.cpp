@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -22,6 +23,7 @@
 #include "base/error.h"
 #include "base/temporary_files.h"
 #include "filters/filter_errors.h"
+#include "harness/live/frame_file.h"
 #include "harness/options/experiment_file.h"
 #include "harness/run/task_images.h"
 #include "report/images/picture_io.h"
@@ -112,7 +114,9 @@ measure::MeasuredCell read_cell(const options::RunOptions& options, const measur
   cell.request = request;
   cell.label = request.label();
   cell.record = records::read_cell(options.out, measure::make_record(options, task, request).key);
+  const std::optional<std::string> frames = cell.record.images.frames;
   cell.record.images = {};
+  cell.record.images.frames = frames;
   cell.phases.resize(static_cast<std::size_t>(options.phases) - 1);
   images::ExrFile file = images::read_exr(options.out / exr_name(options, task));
   take_float_images(cell, file.parts);
@@ -206,7 +210,9 @@ measure::MeasuredCell measure_user_filter(const options::RunOptions& options, co
   const ScratchFolder folder(make_temporary_folder_path(options.out, "worker"));
   const options::RunOptions own = make_worker_options(options, task, request, folder.path());
   const WorkerOutcome outcome = run_filter_worker(own, request, scene, "--worker");
-  return outcome.exit_code == 0 ? read_cell(own, task, request) : failed_cell(options, task, request, outcome);
+  if (outcome.exit_code != 0) return failed_cell(options, task, request, outcome);
+  live::copy_frames(own.out, options.out);
+  return read_cell(own, task, request);
 }
 
 void check_user_filter(const options::RunOptions& options, const measure::SceneTask& task,

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -78,7 +79,7 @@ std::vector<unsigned char> pack_words(const Words& plane, int width) {
   return bytes;
 }
 
-std::vector<unsigned char> compress_bytes(const std::vector<unsigned char>& bytes) {
+std::vector<unsigned char> compress_bytes(std::span<const unsigned char> bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<unsigned char> packed(size);
   // With room for the bound, zlib fails for want of memory alone.
@@ -102,7 +103,15 @@ std::string encode_base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
+std::string pack(const std::vector<unsigned char>& bytes) { return encode_base64(compress_bytes(bytes)); }
+
 }  // namespace
+
+std::string pack_bytes(std::span<const std::byte> bytes) {
+  return encode_base64(compress_bytes({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}));
+}
+
+std::string pack_floats(const Image& plane) { return pack(pack_words(encode_floats(plane), plane.width)); }
 
 void write_value_file(const std::filesystem::path& path, const std::string& name, const ValuePlanes& planes) {
   assert(!planes.empty());
@@ -119,7 +128,7 @@ void write_value_file(const std::filesystem::path& path, const std::string& name
     const std::string range =
         words.bytes == sizeof(float) ? "" : fmt::format("\"low\":{},\"high\":{},", words.low, words.high);
     file.write(fmt::format("{}\n{{\"name\":{},{}\"data\":\"{}\"}}", i > 0 ? "," : "", quote(title), range,
-                           encode_base64(compress_bytes(pack_words(words, plane.width)))));
+                           pack(pack_words(words, plane.width))));
   }
   file.write("]});\n");
   file.commit();

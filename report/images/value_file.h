@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,5 +23,11 @@ using ValuePlanes = std::vector<std::pair<std::string, Image>>;
 /// and NaN is a value that is not finite. Requires planes of one size.
 /// Throws Error(kOutput).
 void write_value_file(const std::filesystem::path& path, const std::string& name, const ValuePlanes& planes);
+
+/// Packs bytes for a script: base64 of a zlib stream.
+std::string pack_bytes(std::span<const std::byte> bytes);
+
+/// Packs a plane exactly, as write_value_file() does one that codes do not serve.
+std::string pack_floats(const Image& plane);
 
 }  // namespace shadowbench::images

@@ -142,6 +142,7 @@ struct ImagesRecord {
   std::optional<std::string> values = std::nullopt;         ///< visibility, error parts and FLIP, for the page's viewer
   std::optional<std::string> truth_picture = std::nullopt;  ///< one per scene and view
   std::optional<std::string> truth_values = std::nullopt;   ///< of the same: visibility, its standard error, the mask
+  std::optional<std::string> frames = std::nullopt;  ///< how cells that were drawn together are drawn, for the page
   std::optional<std::string> parts = std::nullopt;   ///< no path, but how the names of the cell's parts in `exr` begin
   std::optional<TileRecord> hardest = std::nullopt;  ///< where the picture's FLIP is largest
 };

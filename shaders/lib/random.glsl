@@ -17,11 +17,24 @@ float random_turn(ivec2 pixel) {
   return bits_to_turn(hash_bits(uint(pixel.x) + hash_bits(uint(pixel.y) + hash_bits(run_seed))));
 }
 
+// The 64 bits of a product. WebGL has no function for it: there it is made of halves.
+void multiply(uint a, uint b, out uint high, out uint low) {
+#ifdef WEBGL
+  uint a0 = a & 0xffffu, a1 = a >> 16, b0 = b & 0xffffu, b1 = b >> 16;
+  uint middle = a1 * b0 + (a0 * b0 >> 16);
+  uint carried = a0 * b1 + (middle & 0xffffu);
+  high = a1 * b1 + (middle >> 16) + (carried >> 16);
+  low = a * b;
+#else
+  umulExtended(a, b, high, low);
+#endif
+}
+
 float interleaved_gradient_turn(ivec2 pixel) {
   uint inner = 288237660u * uint(pixel.x) + 25070368u * uint(pixel.y);
   uint high;
   uint low;
-  umulExtended(inner, 3555623499u, high, low);
+  multiply(inner, 3555623499u, high, low);
   return bits_to_turn((high << 6) | (low >> 26));
 }
 

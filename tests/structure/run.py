@@ -14,14 +14,14 @@ import sys
 # From the ground up. What stands inside a room's folder and is not named here belongs to the room.
 ROOMS = [
     "base", "filters", "reference/metrics", "reference/truth", "report/files", "report/records", "report/images",
-    "report/analysis", "report/document", "report/pages", "report/regress", "harness/gl", "harness/scene", "harness/gpu", "harness/render",
-    "harness/options", "harness/measure", "harness/run", "harness/submit", "harness/bias", "harness/tune", "harness/stress", "harness/flicker", "harness/view",
+    "report/analysis", "report/document", "report/pages", "report/regress", "harness/gl", "harness/spirv", "harness/scene", "harness/gpu", "harness/render",
+    "harness/options", "harness/live", "harness/measure", "harness/run", "harness/submit", "harness/bias", "harness/tune", "harness/stress", "harness/flicker", "harness/view",
     "harness/cli"]
 # What a room may not use, although it stands before it.
 FORBIDDEN = {
     "reference/metrics": ["filters"], "report/files": ["reference/"], "harness/gl": ["reference/", "report/"],
     "harness/scene": ["reference/metrics", "report/", "harness/gl"],
-    "harness/gpu": ["reference/"], "harness/tune": ["harness/bias"],
+    "harness/spirv": ["reference/", "report/"], "harness/gpu": ["reference/"], "harness/tune": ["harness/bias"],
     "harness/stress": ["harness/bias", "harness/tune"], "harness/flicker": ["harness/bias", "harness/tune", "harness/stress"]}
 NAMESPACES = {"base": "shadowbench"}
 # Libraries (as includes have them) and the folder that alone knows them.

@@ -1,0 +1,239 @@
+#include "harness/live/frame_file.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for_each.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/content_hash.h"
+#include "base/error.h"
+#include "harness/gl/pixel_format.h"
+#include "harness/spirv/webgl.h"
+#include "report/images/value_file.h"
+
+namespace shadowbench::live {
+namespace {
+
+using gl::Step;
+using nlohmann::json;
+
+constexpr const char* kFolder = "live";
+
+/// Writes a script that hands a text to the page, unless the folder has it. Returns its path in the folder.
+std::string write_script(const std::filesystem::path& folder, const char* function, std::span<const std::byte> bytes,
+                         const std::string& packed) {
+  ContentHash hash;
+  hash.add(bytes);
+  const std::string path = fmt::format("{}/{}.js", kFolder, hash.name());
+  if (!std::filesystem::exists(folder / path))
+    write_text_file(folder / path, fmt::format("{}(\"{}\",\"{}\");\n", function, path, packed));
+  return path;
+}
+
+/// The graph as JSON: everything is named by its place in a list.
+class FrameGraph {
+ public:
+  explicit FrameGraph(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  void add(const std::string& key, const gl::StepPointer& picture) { cells_[key] = add_step(picture); }
+
+  json take() {
+    translate_programs();
+    return {{"textures", std::move(textures_.items)},
+            {"programs", std::move(programs_json_)},
+            {"blobs", std::move(blobs_)},
+            {"steps", std::move(steps_)},
+            {"cells", std::move(cells_)}};
+  }
+
+ private:
+  /// Things that are named by their place, once each.
+  template <class Key>
+  struct List {
+    std::map<Key, std::size_t> places;
+    json items = json::array();
+
+    std::size_t add(const Key& key, const json& item) {
+      const auto [found, is_new] = places.try_emplace(key, items.size());
+      if (is_new) items.push_back(item);
+      return found->second;
+    }
+  };
+
+  std::filesystem::path folder_;
+  List<const gl::RecordedTexture*> textures_;
+  std::map<const gl::RecordedProgram*, std::size_t> program_places_;
+  std::map<std::map<GLenum, std::string>, std::size_t> by_source_;
+  std::vector<const gl::RecordedProgram*> programs_;
+  json programs_json_ = json::array();
+  json blobs_ = json::array();
+  std::map<const void*, std::size_t> blob_places_;
+  std::map<const Step*, std::size_t> step_places_;
+  std::map<std::string, std::size_t> by_text_;
+  json steps_ = json::array();
+  json cells_ = json::object();
+
+  json add_step(const gl::StepPointer& step) {
+    if (!step) return nullptr;
+    const auto known = step_places_.find(step.get());
+    if (known != step_places_.end()) return known->second;
+    json item = std::visit([&](const auto& what) { return describe(what); }, step->what);
+    for (const gl::StepTarget& target : step->targets)
+      item["targets"].push_back({{"place", target.place},
+                                 {"texture", add_texture(target.texture)},
+                                 {"level", target.level},
+                                 {"before", add_step(target.before)}});
+    const auto [place, is_new] = by_text_.try_emplace(item.dump(), steps_.size());
+    if (is_new) steps_.push_back(std::move(item));
+    step_places_[step.get()] = place->second;
+    return place->second;
+  }
+
+  std::size_t add_texture(const gl::TexturePointer& texture) {
+    return textures_.add(texture.get(), {{"format", gl::pixel_format(texture->format).name},
+                                         {"width", texture->width},
+                                         {"height", texture->height},
+                                         {"levels", texture->levels},
+                                         {"samples", texture->samples}});
+  }
+
+  std::size_t add_program(const gl::RecordedProgram* program) {
+    const auto [place, is_new] = by_source_.try_emplace(program->sources, programs_.size());
+    if (is_new) programs_.push_back(program);
+    return place->second;
+  }
+
+  json add_blob(const void* owner, std::span<const std::byte> bytes, std::size_t columns) {
+    const auto [place, is_new] = blob_places_.try_emplace(owner, blobs_.size());
+    if (!is_new) return place->second;
+    const std::size_t rows = columns > 0 ? bytes.size() / (columns * sizeof(float)) : 0;
+    const std::string packed = columns > 0 ? pack_vertices(bytes, rows, columns) : images::pack_bytes(bytes);
+    blobs_.push_back(
+        {{"path", write_script(folder_, "shadowbenchBlob", bytes, packed)}, {"rows", rows}, {"columns", columns}});
+    return place->second;
+  }
+
+  /// Each component of all vertices by itself, which is smaller.
+  static std::string pack_vertices(std::span<const std::byte> bytes, std::size_t rows, std::size_t columns) {
+    images::Image plane(static_cast<int>(rows), static_cast<int>(columns), 1);
+    for (std::size_t column = 0; column < columns; ++column)
+      for (std::size_t row = 0; row < rows; ++row)
+        std::memcpy(&plane.texels[column * rows + row], &bytes[sizeof(float) * (row * columns + column)],
+                    sizeof(float));
+    return images::pack_floats(plane);
+  }
+
+  json describe(const gl::DrawStep& draw) {
+    json item = {{"op", "draw"},
+                 {"program", add_program(draw.program.get())},
+                 {"uniforms", draw.uniforms},
+                 {"inputs", json::array()},
+                 {"first", draw.first},
+                 {"count", draw.count},
+                 {"viewport", {draw.viewport.x, draw.viewport.y, draw.viewport.z, draw.viewport.w}},
+                 {"depth", draw.depth_function},
+                 {"writesDepth", draw.writes_depth},
+                 {"adds", draw.adds},
+                 {"culled", draw.culled},
+                 {"offset", {draw.offset.x, draw.offset.y}}};
+    for (const gl::StepInput& input : draw.inputs) item["inputs"].push_back(describe(input));
+    if (draw.attributes.empty()) return item;
+    json attributes = json::array();
+    for (const auto& each : draw.attributes) attributes.push_back({each.location, each.components, each.offset});
+    const bool has_bytes = draw.vertices && !draw.vertices->bytes.empty();
+    item["vertices"] = {{"blob", has_bytes ? add_blob(draw.vertices.get(), draw.vertices->bytes,
+                                                      static_cast<std::size_t>(draw.stride) / sizeof(float))
+                                           : json()},
+                        {"stride", draw.stride},
+                        {"attributes", attributes}};
+    return item;
+  }
+
+  json describe(const gl::StepInput& input) {
+    const gl::Sampling& sampling = input.sampling;
+    const auto last = std::min(sampling.last_level, input.texture->levels - 1);
+    json levels = json::array();
+    for (int level = 0; level <= last; ++level)
+      levels.push_back(add_step(input.levels[static_cast<std::size_t>(level)]));
+    return {{"sampler", input.sampler},
+            {"texture", add_texture(input.texture)},
+            {"minify", sampling.minify},
+            {"magnify", sampling.magnify},
+            {"wrap", sampling.wrap},
+            {"compare", sampling.compare},
+            {"border", {sampling.border.x, sampling.border.y, sampling.border.z, sampling.border.w}},
+            {"levels", levels}};
+  }
+
+  static json describe(const gl::ClearStep& clear) {
+    return {{"op", "clear"}, {"value", {clear.value.x, clear.value.y, clear.value.z, clear.value.w}}};
+  }
+
+  json describe(const gl::UploadStep& upload) {
+    return {{"op", "upload"},
+            {"format", upload.format},
+            {"type", upload.type},
+            {"blob", add_blob(&upload, upload.texels, 0)}};
+  }
+
+  static json describe(const gl::MipmapStep&) { return {{"op", "mipmaps"}}; }
+
+  static std::string translate(const gl::RecordedProgram& program, GLenum kind) {
+    return spirv::translate_to_webgl({program.sources.at(kind), {}},
+                                     kind == GL_VERTEX_SHADER ? spirv::Stage::kVertex : spirv::Stage::kFragment);
+  }
+
+  static json translate(const gl::RecordedProgram& program) {
+    if (program.sources.contains(GL_GEOMETRY_SHADER))
+      return {{"label", program.label}, {"refused", "WebGL 2 has no geometry shaders"}};
+    try {
+      return {{"label", program.label},
+              {"vertex", translate(program, GL_VERTEX_SHADER)},
+              {"fragment", translate(program, GL_FRAGMENT_SHADER)}};
+    } catch (const Error& error) {
+      return {{"label", program.label}, {"refused", error.message()}};
+    }
+  }
+
+  void translate_programs() {
+    std::vector<json> translated(programs_.size());
+    std::vector<std::size_t> places(programs_.size());
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = i;
+    tbb::parallel_for_each(places, [&](std::size_t i) { translated[i] = translate(*programs_[i]); });
+    for (json& each : translated) programs_json_.push_back(std::move(each));
+  }
+};
+
+}  // namespace
+
+std::string write_frames(const std::filesystem::path& folder, const std::map<std::string, gl::StepPointer>& pictures) {
+  FrameGraph graph(folder);
+  for (const auto& [key, picture] : pictures) graph.add(key, picture);
+  const std::string text = graph.take().dump(-1, ' ', false, json::error_handler_t::replace);
+  const auto bytes = std::as_bytes(std::span(text));
+  return write_script(folder, "shadowbenchFrames", bytes, images::pack_bytes(bytes));
+}
+
+void copy_frames(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  if (!std::filesystem::exists(from / kFolder)) return;
+  for (const auto& entry : std::filesystem::directory_iterator(from / kFolder)) {
+    const std::filesystem::path copy = to / kFolder / entry.path().filename();
+    if (std::filesystem::exists(copy)) continue;
+    PendingFile pending(copy);
+    std::filesystem::copy_file(entry.path(), pending.temporary_path(), error);
+    if (error)
+      throw Error(ErrorKind::kOutput,
+                  fmt::format("it cannot be copied to {} ({}); check rights and free space there", copy.string(),
+                              error.message()),
+                  entry.path().string());
+    pending.commit();
+  }
+}
+
+}  // namespace shadowbench::live

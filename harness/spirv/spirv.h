@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "harness/gl/shader_source.h"
+
+namespace shadowbench::spirv {
+
+/// Whose rules GLSL is compiled by: Vulkan's, with loose uniforms put into a block, or those of OpenGL.
+enum class Rules { kVulkan, kOpenGl };
+
+enum class Stage { kVertex, kFragment };
+
+/// What a shader binds at a place of its only descriptor set.
+struct Binding {
+  std::uint32_t place = 0;
+  bool is_texture = false;  ///< else a block of uniforms
+};
+
+/// A compiled shader stage.
+struct Shader {
+  std::vector<std::uint32_t> words;
+  std::vector<Binding> bindings;
+};
+
+/// Compiles the GLSL that OpenGL is given, for Vulkan 1.3 or OpenGL 4.5. May run on several threads at once.
+/// Throws Error(kFilter) with file and line for what those rules refuse.
+Shader compile(const gl::ShaderSource& source, Stage stage, Rules rules);
+
+}  // namespace shadowbench::spirv
