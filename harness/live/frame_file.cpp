@@ -25,14 +25,31 @@ using nlohmann::json;
 constexpr const char* kFolder = "live";
 
 /// Writes a script that hands a text to the page, unless the folder has it. Returns its path in the folder.
-std::string write_script(const std::filesystem::path& folder, const char* function, std::span<const std::byte> bytes,
+std::string write_script(const std::filesystem::path& folder, std::span<const std::byte> bytes,
                          const std::string& packed) {
   ContentHash hash;
   hash.add(bytes);
   const std::string path = fmt::format("{}/{}.js", kFolder, hash.name());
   if (!std::filesystem::exists(folder / path))
-    write_text_file(folder / path, fmt::format("{}(\"{}\",\"{}\");\n", function, path, packed));
+    write_text_file(folder / path, fmt::format("shadowbenchValues(\"{}\",\"{}\");\n", path, packed));
   return path;
+}
+
+/// A filter's uniforms as sliders show them.
+json list_parameters(const filters::FilterRequest& request) {
+  json parameters = json::array();
+  for (const filters::ParamSpec& param : request.spec.params) {
+    const double* value = std::get_if<double>(&request.values.at(param.name));
+    if (param.is_const || !value || !param.min || !param.max) continue;
+    parameters.push_back({{"name", param.name},
+                          {"value", *value},
+                          {"min", *param.min},
+                          {"max", *param.max},
+                          {"whole", param.integer},
+                          {"unit", param.unit},
+                          {"text", param.text}});
+  }
+  return parameters;
 }
 
 /// The graph as JSON: everything is named by its place in a list.
@@ -40,7 +57,25 @@ class FrameGraph {
  public:
   explicit FrameGraph(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  void add(const std::string& key, const gl::StepPointer& picture) { cells_[key] = add_step(picture); }
+  void add(const std::string& key, const Frame& frame) {
+    cells_[key] = {{"picture", add_step(frame.picture)},
+                   {"empty", add_step(frame.empty)},
+                   {"parameters", list_parameters(frame.request)}};
+  }
+
+  void add(const Check& check) {
+    check_ = {{"rect", list(check.rect)}, {"known", json::array()}};
+    for (const KnownTexels& known : check.known) {
+      if (!known.content.step) continue;
+      check_["known"].push_back({{"texture", add_texture(known.content.texture)},
+                                 {"step", add_step(known.content.step)},
+                                 {"rect", list(known.rect)},
+                                 {"channels", known.channels},
+                                 {"fill", known.fill},
+                                 {"blob", add_blob(&known, std::as_bytes(std::span(known.texels)),
+                                                   static_cast<std::size_t>(known.channels))}});
+    }
+  }
 
   json take() {
     translate_programs();
@@ -48,6 +83,7 @@ class FrameGraph {
             {"programs", std::move(programs_json_)},
             {"blobs", std::move(blobs_)},
             {"steps", std::move(steps_)},
+            {"check", std::move(check_)},
             {"cells", std::move(cells_)}};
   }
 
@@ -76,7 +112,10 @@ class FrameGraph {
   std::map<const Step*, std::size_t> step_places_;
   std::map<std::string, std::size_t> by_text_;
   json steps_ = json::array();
+  json check_ = json::object();
   json cells_ = json::object();
+
+  static json list(const images::Rect& rect) { return {rect.x, rect.y, rect.width, rect.height}; }
 
   json add_step(const gl::StepPointer& step) {
     if (!step) return nullptr;
@@ -113,8 +152,7 @@ class FrameGraph {
     if (!is_new) return place->second;
     const std::size_t rows = columns > 0 ? bytes.size() / (columns * sizeof(float)) : 0;
     const std::string packed = columns > 0 ? pack_vertices(bytes, rows, columns) : images::pack_bytes(bytes);
-    blobs_.push_back(
-        {{"path", write_script(folder_, "shadowbenchBlob", bytes, packed)}, {"rows", rows}, {"columns", columns}});
+    blobs_.push_back({{"path", write_script(folder_, bytes, packed)}, {"rows", rows}, {"columns", columns}});
     return place->second;
   }
 
@@ -211,12 +249,14 @@ class FrameGraph {
 
 }  // namespace
 
-std::string write_frames(const std::filesystem::path& folder, const std::map<std::string, gl::StepPointer>& pictures) {
+std::string write_frames(const std::filesystem::path& folder, const std::map<std::string, Frame>& frames,
+                         const Check& check) {
   FrameGraph graph(folder);
-  for (const auto& [key, picture] : pictures) graph.add(key, picture);
+  for (const auto& [key, frame] : frames) graph.add(key, frame);
+  graph.add(check);
   const std::string text = graph.take().dump(-1, ' ', false, json::error_handler_t::replace);
   const auto bytes = std::as_bytes(std::span(text));
-  return write_script(folder, "shadowbenchFrames", bytes, images::pack_bytes(bytes));
+  return write_script(folder, bytes, images::pack_bytes(bytes));
 }
 
 void copy_frames(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -220,7 +220,6 @@ class SceneBench {
   }
 
   void time(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
-    const gl::Recorder::Pause pause(renderer_.recorder.get());
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
     const auto asked = std::ranges::find_if(
@@ -234,6 +233,8 @@ class SceneBench {
     listener_.begin(options::Work::kTiming, filters.size(), "times");
     const double timings = 1.0 + static_cast<double>(options_.lights.size());
     const EmptyLookups empty = make_empty_lookups(renderer_, options_, *task_.scene, light_, pointers);
+    record_empties(result, empty);
+    const gl::Recorder::Pause pause(renderer_.recorder.get());
     const RoundTimes times = time_rounds({.filters = pointers,
                                           .empties = empty.passes,
                                           .draw_map = [&] { assets_.redraw(light_); },
@@ -252,6 +253,17 @@ class SceneBench {
       result.cells[i].empty_lookup.name = "empty";
     }
     time_lights(result, pointers, reference);
+  }
+
+  /// Has the empty lookups written down, each drawn once.
+  void record_empties(SceneMeasurement& result, const EmptyLookups& empty) {
+    if (!renderer_.recorder) return;
+    std::vector<gl::StepPointer> drawn;
+    for (const auto& passes : empty.passes) {
+      passes->lookup(gbuffer_, light_.map, target_);
+      drawn.push_back(renderer_.recorder->newest_draw());
+    }
+    for (std::size_t i = 0; i < result.cells.size(); ++i) result.cells[i].empty_frame = drawn[empty.of_filter[i]];
   }
 
   void time_lights(SceneMeasurement& result, const std::vector<render::FilterPasses*>& filters, std::size_t reference) {

@@ -29,6 +29,7 @@ struct MeasuredCell {
                                           ///< without a scalar model or an attribution
   render::DrawnPass empty_lookup;         ///< reads what the lookup does of its receivers, and nothing of the map
   gl::StepPointer frame;                  ///< how the picture was drawn; null unless the renderer has a recorder
+  gl::StepPointer empty_frame;            ///< the same of the empty lookup
   images::Image picture;                  ///< linear RGB
   images::Image visibility;               ///< 1 lit .. 0 blocked
   std::vector<images::Image> phases;      ///< the same, with the map's grid moved to each of the other phases

@@ -71,7 +71,7 @@ class ShadowMap {
   /// see settings().curve.
   images::Image read_picture() const;
 
-  const gl::Texture& texture() const { return layers_.front().depth; }
+  const gl::Texture& texture(int layer = 0) const { return layers_[static_cast<std::size_t>(layer)].depth; }
   int size() const { return texture().width(); }
   int layers() const { return static_cast<int>(layers_.size()); }
   const MapSettings& settings() const { return settings_; }  ///< as it was drawn last

@@ -37,19 +37,6 @@ std::string caption(const records::CellRecord& cell, const records::GlRecord& gl
   return text;
 }
 
-images::Rect choose_crop(const options::RunOptions& options, const std::vector<measure::MeasuredCell>& cells) {
-  const auto is_suspect = [](const measure::MeasuredCell& cell) { return !cell.record.suspect_of.empty(); };
-  const bool all_are = std::ranges::all_of(cells, is_suspect);
-  std::vector<const images::Image*> visibility;
-  std::size_t reference = 0;
-  for (const measure::MeasuredCell& cell : cells) {
-    if (is_suspect(cell) && !all_are) continue;
-    if (cell.record.filter == "none") reference = visibility.size();
-    visibility.push_back(&cell.visibility);
-  }
-  return images::find_hardest_edge(visibility, reference, images::choose_crop_size({options.width, options.height}));
-}
-
 /// The truth comes first: what every filter would like to look like.
 std::vector<images::GridTile> make_truth_tiles(const measure::SceneTask& task, const measure::SceneTruth& truth) {
   if (!truth.absent.empty()) return {};
@@ -95,7 +82,7 @@ images::Grid make_grid(const options::RunOptions& options, const measure::SceneT
   }
   grid.error_scale = choose_error_scale(grid.tiles, measured.cells);
   grid.columns = truth.absent.empty() ? 4 : 3;
-  grid.crop = choose_crop(options, measured.cells);
+  grid.crop = choose_crop(measured.cells, images::choose_crop_size({options.width, options.height}));
   return grid;
 }
 
@@ -325,6 +312,19 @@ images::Metadata describe_task(const options::RunOptions& options, const measure
 }
 
 }  // namespace
+
+images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images::Size size) {
+  const auto is_suspect = [](const measure::MeasuredCell& cell) { return !cell.record.suspect_of.empty(); };
+  const bool all_are = std::ranges::all_of(cells, is_suspect);
+  std::vector<const images::Image*> visibility;
+  std::size_t reference = 0;
+  for (const measure::MeasuredCell& cell : cells) {
+    if (is_suspect(cell) && !all_are) continue;
+    if (cell.record.filter == "none") reference = visibility.size();
+    visibility.push_back(&cell.visibility);
+  }
+  return images::find_hardest_edge(visibility, reference, size);
+}
 
 std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task) {
   std::string name = task.scene->name;

@@ -17,6 +17,9 @@ namespace shadowbench::run {
 /// The stem of all files of a task: the scene, with view and map size where the run has several.
 std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task);
 
+/// The part of the picture, of this size, in which the filters disagree most about a shadow's edge.
+images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images::Size size);
+
 /// Names a task's float images below the report folder.
 std::string exr_name(const options::RunOptions& options, const measure::SceneTask& task);
 

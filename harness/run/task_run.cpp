@@ -8,9 +8,7 @@
 #include <chrono>
 #include <map>
 #include <optional>
-#include <utility>
 
-#include "harness/live/frame_file.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/layer_truth.h"
@@ -18,6 +16,7 @@
 #include "harness/measure/suspects.h"
 #include "harness/measure/traffic_meter.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/frames.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
@@ -192,7 +191,7 @@ class TaskRun {
     const measure::SceneTruth& truth = assets_.truth(*task.camera);
     if (!options_.grids && !options_.part.is_worker()) {
       write_single_pictures(options_, task, measured, truth);
-      write_frames(measured);
+      write_frames(renderer_, options_, task, assets_, measured);
       return;
     }
     if (!options_.part.is_worker() && options_.pictures) {
@@ -202,20 +201,9 @@ class TaskRun {
                      [this](double part) { steps_.advance(0.2 + 0.5 * part); });
     }
     note_float_images(options_, task, measured);
-    write_frames(measured);
+    write_frames(renderer_, options_, task, assets_, measured);
     if (options_.border_page) draw_border_page(task);
     write_float_images(options_, task, measured, truth, renderer_.context->info());
-  }
-
-  /// Writes how the cells were drawn; a user's filter was drawn by its worker, which has done so.
-  void write_frames(measure::SceneMeasurement& measured) const {
-    std::map<std::string, gl::StepPointer> pictures;
-    for (measure::MeasuredCell& cell : measured.cells)
-      if (cell.frame) pictures[cell.record.key] = std::exchange(cell.frame, nullptr);
-    if (pictures.empty()) return;
-    const std::string path = live::write_frames(options_.out, pictures);
-    for (measure::MeasuredCell& cell : measured.cells)
-      if (pictures.contains(cell.record.key)) cell.record.images.frames = path;
   }
 
   void draw_border_page(const measure::SceneTask& task) {

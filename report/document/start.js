@@ -17,6 +17,7 @@ if (run.cells.some(({ picture, values }) => picture || values)) {
 for (const [name, begin] of [
   [".numbers", startTable],
   [".answer", startAnswer],
+  [".live", startLive],
 ]) {
   const holder = document.querySelector(name);
   if (holder) begin(holder);

@@ -137,6 +137,7 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
           {"cause", find_cause(cell)},
           {"picture", path_of(cell.images.picture)},
           {"part", choose_part(cell)},
+          {"frames", path_of(cell.images.frames)},
           {"values", path_of(cell.images.values)}};
 }
 

@@ -299,6 +299,8 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   if (!cells.empty()) {
     add(make_table_section(cells));
     add({"viewer", "Look closer", {document::Mount{"viewer", {}}}});
+    if (std::ranges::any_of(cells, [](const auto& cell) { return cell.images.frames.has_value(); }))
+      add({"live", "Live, on your GPU", {document::Mount{"live", {}}}});
     page.data = make_run_data(run, cells, request);
   }
   if (trade) add(make_trade_section(run, cells, *trade));

@@ -210,8 +210,7 @@ void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
         path("relative to the report folder: the picture shaded with the area truth", true));
   visit("truth_values", images.truth_values,
         path("relative to the report folder: a script with the truth as 16-bit numbers, for the page", true));
-  visit("frames", images.frames,
-        path("relative to the report folder: a script with which the page draws the cell again", true));
+  visit("frames", images.frames, path("relative to the report folder: how the page draws the cell again", true));
   visit("hardest", images.hardest,
         {.text = "the tile where the picture differs most from the truth by FLIP", .later = true});
 }

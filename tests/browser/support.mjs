@@ -12,9 +12,10 @@ const require = createRequire(join(kFolder, "package.json"));
 const kAxe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 export const kWide = { width: 1400, height: 900 }, kNarrow = { width: 400, height: 800 };
 
-let browser;
-before(async () => { browser = await require("playwright-core").chromium.launch({ executablePath: kChromium, args: ["--disable-gpu"] }); });
-after(() => browser.close());
+let common;
+export const launch = (args) => require("playwright-core").chromium.launch({ executablePath: kChromium, args });
+before(async () => { common = await launch(["--disable-gpu"]); });
+after(() => common.close());
 
 export const folderOf = (run) => join(kFolder, "runs", run);
 export const pageOf = (run, file = "index.html") => join(folderOf(run), file);
@@ -22,7 +23,7 @@ export const readResults = (run) => JSON.parse(readFileSync(pageOf(run, "results
 export const runProgram = (words) => spawnSync(kProgram, words, { encoding: "utf8" });
 
 // Opens a page from disk in a profile of its own, and keeps every word that the console gets.
-export const open = async (file, { hash = "", waits = true, ...options } = {}) => {
+export const open = async (file, { hash = "", waits = true, browser = common, ...options } = {}) => {
   const context = await browser.newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
   page.setDefaultTimeout(15000);
   page.on("console", (message) => messages.push(message.text()));
@@ -49,16 +50,18 @@ export const measureOverflow = (page) => page.evaluate(() => document.documentEl
 export const readData = (page) => page.evaluate(() => JSON.parse(document.getElementById("run").textContent));
 
 // The viewer's controls, the names of its panes, and what stands in the address.
-export const pick = (page, title, value) => page.getByRole("combobox", { name: title, exact: true }).selectOption(value);
+export const pick = (page, title, value, within = ".viewer") =>
+  page.locator(within).getByRole("combobox", { name: title, exact: true }).selectOption(value);
 export const labels = (page) => page.locator(".viewer .panes canvas:visible").evaluateAll((all) => all.map((each) => each.getAttribute("aria-label")));
 export const hashOf = async (page) => {
   await page.waitForTimeout(450);
+  await page.waitForFunction(() => location.hash !== "").catch(() => {}); // on a busy machine it is written later
   return decodeURIComponent(new URL(page.url()).hash);
 };
 // Draws a screenshot of one pane into a canvas of another page, since a page from disk may not read its own pictures.
 export const colours = async (page, index = 0) => {
   const shot = await page.locator(".viewer .panes canvas").nth(index).screenshot();
-  const reader = await (await browser.newContext()).newPage();
+  const reader = await (await common.newContext()).newPage();
   const all = await reader.evaluate(async (text) => {
     const image = new Image();
     image.src = "data:image/png;base64," + text;

@@ -12,9 +12,12 @@ class Hook;
 template <auto* kSlot, auto kThen, class Result, class... Arguments>
 class Hook<kSlot, kThen, Result (*)(Arguments...)> {
  public:
-  static void install() { original_ = std::exchange(*kSlot, call); }
-  static void remove() {
-    if (*kSlot == call) *kSlot = original_;  // the loader has others since another context was made current
+  /// Puts it in place, or takes it away: not where the loader has another function since, of another context.
+  static void set(bool is_on) {
+    if (is_on)
+      original_ = std::exchange(*kSlot, call);
+    else if (*kSlot == call)
+      *kSlot = original_;
   }
 
  private:

@@ -1,5 +1,6 @@
 #include "harness/gl/recorder/recorder.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
@@ -117,8 +118,7 @@ struct RecorderHooks {
     if (current_recorder->paused_ == 0) kThen(*current_recorder, arguments...);
   };
 
-  template <class Visit>
-  static void visit(const Visit& visit_hook) {
+  static void set(bool is_on) {
     using Draw =
         Hook<&glad_glDrawArrays,
              kIfOn<[](Recorder& recorder, GLenum, GLint first, GLsizei count) { recorder.record_draw(first, count); }>>;
@@ -163,29 +163,34 @@ struct RecorderHooks {
                           recorded->sources[static_cast<GLenum>(type)] = read_source(shader);
                         }>;
     using Link = Hook<&glad_glLinkProgram, [](GLuint program) { current_recorder->finish_program(program); }>;
-    visit_hook.template operator()<Draw>();
-    visit_hook.template operator()<Clear>();
-    visit_hook.template operator()<Upload>();
-    visit_hook.template operator()<Mipmaps>();
-    visit_hook.template operator()<Storage>();
-    visit_hook.template operator()<Samples>();
-    visit_hook.template operator()<Bytes>();
-    visit_hook.template operator()<DeleteTextures>();
-    visit_hook.template operator()<DeleteBuffers>();
-    visit_hook.template operator()<Attach>();
-    visit_hook.template operator()<Link>();
+    Draw::set(is_on);
+    Clear::set(is_on);
+    Upload::set(is_on);
+    Mipmaps::set(is_on);
+    Storage::set(is_on);
+    Samples::set(is_on);
+    Bytes::set(is_on);
+    DeleteTextures::set(is_on);
+    DeleteBuffers::set(is_on);
+    Attach::set(is_on);
+    Link::set(is_on);
   }
 };
 
 Recorder::Recorder() {
   assert(!current_recorder);
   current_recorder = this;
-  RecorderHooks::visit([]<class Each>() { Each::install(); });
+  RecorderHooks::set(true);
 }
 
 Recorder::~Recorder() {
-  RecorderHooks::visit([]<class Each>() { Each::remove(); });
+  RecorderHooks::set(false);
   current_recorder = nullptr;
+}
+
+RecordedContent Recorder::content_of(const Texture& texture) const {
+  const auto found = textures_.find(texture.id());
+  return found == textures_.end() ? RecordedContent() : RecordedContent{found->second.texture, found->second.levels[0]};
 }
 
 void Recorder::add_texture(GLuint id, GLenum format, int width, int height, int levels, int samples) {
@@ -298,6 +303,12 @@ void Recorder::record_draw(int first, int count) {
   read_uniforms(id, draw);
   Step step;
   const std::vector<GLuint> ids = read_targets(framebuffer, draw.depth_function != GL_NONE, step.targets);
+  // What a draw would read of its own target is undefined: such a sampler is bound, and not used.
+  std::erase_if(draw.inputs, [&](const StepInput& input) {
+    return std::ranges::any_of(step.targets, [&](const StepTarget& target) {
+      return target.texture == input.texture && target.level <= input.sampling.last_level;
+    });
+  });
   if (covers_all(draw, step.targets))
     for (StepTarget& target : step.targets) target.before = nullptr;
   step.what = std::move(draw);

@@ -114,6 +114,12 @@ struct Step {
   std::vector<StepTarget> targets;
 };
 
+/// What a texture's level holds: who wrote it.
+struct RecordedContent {
+  TexturePointer texture;
+  StepPointer step;
+};
+
 /// Writes down what is drawn, by what and from what, so that it can be drawn again elsewhere. Nothing is kept of what
 /// was overwritten. While one lives, OpenGL's functions go through it; there can be one at a time.
 class Recorder {
@@ -129,6 +135,9 @@ class Recorder {
 
   /// What the newest draw wrote, with all that led to it; null where nothing was drawn yet.
   StepPointer newest_draw() const { return newest_; }
+
+  /// What is in level 0 of a texture; nothing where it was made before the recorder.
+  RecordedContent content_of(const Texture& texture) const;
 
   /// While one lives, what is drawn is not written down, and what it does to textures is taken to change nothing.
   class Pause {

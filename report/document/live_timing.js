@@ -1,0 +1,75 @@
+// Times draws on the reader's GPU: of two batches of different length, what the longer one takes more. That leaves out
+// what waiting for the GPU costs, and works where the browser's clock is coarse and has no timers of the GPU.
+const kBatchMs = 30;
+const kMostDraws = 4096;
+const median = (values) => {
+  const sorted = [...values].sort((a, b) => a - b);
+  const middle = sorted.length >> 1;
+  return sorted.length % 2 === 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
+};
+// The median with its 95 % interval from the ranks of the values (binomial, by its normal approximation); null where
+// there are too few of them for one.
+const summarise = (values) => {
+  const sorted = [...values].sort((a, b) => a - b);
+  const reach = 0.98 * Math.sqrt(sorted.length);
+  const [low, high] = [Math.floor(sorted.length / 2 - reach), Math.ceil(sorted.length / 2 + reach)];
+  const interval = low < 0 || high >= sorted.length ? null : [sorted[low], sorted[high]];
+  return { median: median(sorted), interval, rounds: sorted.length };
+};
+const shuffle = (list) => {
+  for (let i = list.length - 1; i > 0; --i) {
+    const j = Math.floor(Math.random() * (i + 1));
+    [list[i], list[j]] = [list[j], list[i]];
+  }
+  return list;
+};
+const pause = () => new Promise((resolve) => setTimeout(resolve));
+
+const makeTimer = (gl) => {
+  const pixel = new Uint8Array(4);
+  const texture = gl.createTexture();
+  const framebuffer = gl.createFramebuffer();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, 1, 1);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+  // A pixel that is written after all that was drawn, and read back, comes when that is done.
+  const finish = () => {
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+  };
+  const timeBatch = (draw, count) => {
+    finish();
+    const start = performance.now();
+    for (let i = 0; i < count; ++i) draw();
+    finish();
+    return performance.now() - start;
+  };
+  // So many draws that a batch takes long enough for the clock.
+  const countDraws = (draw) => {
+    let count = 1;
+    while (count < kMostDraws && timeBatch(draw, count) < kBatchMs) count *= 2;
+    return count;
+  };
+  const timeOnce = ({ draw, count }) => (timeBatch(draw, 2 * count) - timeBatch(draw, count)) / count;
+
+  // Promises what each of some draws takes, ms: in rounds, each in an order of its own. `isStopped` ends it early.
+  return async (draws, rounds, onRound, isStopped) => {
+    const timed = [];
+    for (const draw of draws) {
+      draw();
+      timed.push({ draw, count: countDraws(draw), values: [] });
+      await pause();
+    }
+    for (let round = 0; round < rounds && !isStopped(); ++round) {
+      for (const each of shuffle([...timed])) {
+        if (isStopped()) break;
+        each.values.push(timeOnce(each));
+        await pause();
+      }
+      onRound(round + 1);
+    }
+    return timed.map(({ values }) => (values.length > 0 ? summarise(values) : null));
+  };
+};

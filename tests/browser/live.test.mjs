@@ -1,0 +1,116 @@
+// The section that draws with WebGL 2: as the run drew, on two implementations of it; by sliders; and timed.
+import assert from "node:assert/strict";
+import { cpSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import test from "node:test";
+import { deflateSync, inflateSync } from "node:zlib";
+import { folderOf, kNarrow, launch, measureOverflow, open, pageOf, pick } from "./support.mjs";
+
+// Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
+const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const openLive = async (file, browser, options = {}) => {
+  const opened = await open(file, { browser, ...options });
+  await opened.page.locator("#live").evaluate((section) => section.scrollIntoView());
+  await opened.page.waitForSelector(".live canvas");
+  return opened;
+};
+const press = async (page, name) => {
+  await page.locator(".live").getByRole("button", { name }).click();
+  await page.waitForFunction(() => [...document.querySelectorAll(".live button")].find((each) => each.textContent === "Stop").hidden, null, { timeout: 240000 });
+};
+const readTable = (page) => page.locator(".live table tbody tr").evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
+const withBrowser = async (args, action) => {
+  const browser = await launch(args);
+  try {
+    await action(browser);
+  } finally {
+    await browser.close();
+  }
+};
+// A copy of a run, of whose scripts of frames a function changes the JSON.
+const changeFrames = (run, name, edit) => {
+  const folder = folderOf(run) + "." + name;
+  cpSync(folderOf(run), folder, { recursive: true });
+  for (const file of readdirSync(join(folder, "live"))) {
+    const path = join(folder, "live", file), [, head, text] = /^(shadowbenchValues\("[^"]*",)"([^"]*)"/.exec(readFileSync(path, "utf8"));
+    const json = inflateSync(Buffer.from(text, "base64")).toString();
+    if (!json.startsWith("{")) continue;
+    const frames = JSON.parse(json);
+    edit(frames);
+    writeFileSync(path, `${head}"${deflateSync(JSON.stringify(frames)).toString("base64")}");`);
+  }
+  return join(folder, "index.html");
+};
+
+for (const [title, args] of [["OnTheRunsOwnRasteriser", kMesa], ["OnAnotherImplementation", kOwn]])
+  test(`EveryFilterDrawsAsTheRunDid_${title}`, () => withBrowser(args, async (browser) => {
+    const { page, messages, shoot, close } = await openLive(pageOf("several"), browser);
+    const requests = [];
+    page.on("request", (request) => requests.push(request.url()));
+    for (const scene of ["cubes", "ball"]) {
+      await pick(page, "Scene", { label: scene }, ".live");
+      await press(page, "Check against the run");
+      const rows = await readTable(page);
+      assert.equal(rows.length, 8);
+      for (const [filter, rmse] of rows) assert.match(rmse, /^[\d.e-]+$/, `${filter} on ${scene}`);
+    }
+    await shoot(`live.${title}`);
+    assert.deepEqual(requests.filter((url) => !url.startsWith("file://")), []);
+    assert.deepEqual(messages, []);
+    await close();
+  }));
+
+test("AWrongSignInAShader_IsSeen", () => withBrowser(kMesa, async (browser) => {
+  const wrong = changeFrames("untrue", "wrong", ({ programs }) => {
+    for (const each of programs.filter(({ label }) => label === "vsm lookup")) each.fragment = each.fragment.replace("moments.y -", "moments.y +");
+  });
+  const { page, close } = await openLive(wrong, browser);
+  await press(page, "Check against the run");
+  const rows = Object.fromEntries((await readTable(page)).map(([filter, rmse]) => [filter, rmse]));
+  assert.match(rows.vsm, /^✗/);
+  assert.doesNotMatch(rows.pcf2x2, /✗/);
+  await close();
+}));
+
+test("AShaderThatTheBrowserRefuses_IsSaidInItsRow", () => withBrowser(kMesa, async (browser) => {
+  const broken = changeFrames("untrue", "broken", ({ programs }) => {
+    for (const each of programs.filter(({ label }) => label === "pcf2x2 lookup")) each.fragment = each.fragment.replace("void main()", "void nothing()");
+    for (const each of programs.filter(({ label }) => label === "vsm encode")) Object.assign(each, { vertex: undefined, refused: "WebGL 2 cannot have this" });
+  });
+  const { page, close } = await openLive(broken, browser);
+  await press(page, "Check against the run");
+  const rows = Object.fromEntries((await readTable(page)).map(([filter, text]) => [filter, text]));
+  assert.match(rows.pcf2x2, /refuses the shader of pcf2x2 lookup/);
+  assert.match(rows.vsm, /WebGL 2 cannot have this/);
+  assert.match(rows.none, /^[\d.e-]+$/);
+  await close();
+}));
+
+test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree", () => withBrowser(kMesa, async (browser) => {
+  const { page, messages, close } = await openLive(pageOf("several"), browser);
+  const times = [];
+  for (let i = 0; i < 2; ++i) {
+    await press(page, "Time on this GPU");
+    times.push(Object.fromEntries((await readTable(page)).map((row) => [row[0], row[4] === "" ? NaN : Number(row[4])])));
+  }
+  for (const each of times) assert.ok(each.box4x4 > each.pcf2x2, JSON.stringify(each));
+  assert.ok(Math.abs(Math.log(times[0].box4x4 / times[1].box4x4)) < Math.log(2), JSON.stringify(times));
+  assert.deepEqual(messages, []);
+  await close();
+}));
+
+test("OnAPhone_NothingIsWiderThanTheScreen", () => withBrowser(kOwn, async (browser) => {
+  const { page, shoot, close } = await openLive(pageOf("several"), browser, { viewport: kNarrow });
+  await page.waitForTimeout(1000);
+  assert.ok((await measureOverflow(page)) <= 0);
+  await shoot("live.phone");
+  await close();
+}));
+
+test("WithoutWebGl_ThePageSaysSo", () => withBrowser(["--disable-gpu", "--disable-3d-apis"], async (browser) => {
+  const opened = await open(pageOf("several"), { browser });
+  await opened.page.locator("#live").evaluate((section) => section.scrollIntoView());
+  await opened.page.waitForFunction(() => document.querySelector(".live").textContent.includes("no WebGL 2"));
+  assert.deepEqual(opened.messages.filter((text) => /Error/.test(text)), []);
+  await opened.close();
+}));
