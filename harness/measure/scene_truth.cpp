@@ -36,8 +36,8 @@ constexpr double kTellingWeight = 0.01;
 
 std::string warn_of_weight(const records::CellRecord& record, double rmse) {
   return fmt::format(
-      "{}, view {}: the share of the light that is seen and the share of its unshadowed light that arrives differ by "
-      "an RMSE of {}; --truth-weight chooses which of them visibility is held against",
+      "{}, view {}: the share of the light that is seen and that of its unshadowed light that arrives differ by an "
+      "RMSE of {}; --truth-weight chooses which one counts",
       record.scene, record.view, records::format_number(rmse));
 }
 

@@ -64,9 +64,8 @@ std::string describe_power(const std::vector<records::CellRecord>& cells) {
     return records::format_number(differences[place]);
   };
   return fmt::format(
-      "With {} phases of the map's grid, RMSEs of two filters of one class on one scene are told apart, in four of "
-      "five "
-      "runs, where they differ by {} (half of the {} pairs) or {} (nine tenths of them).",
+      "With {} phases of the map's grid, four of five runs tell RMSEs of one class and scene apart that differ by {} "
+      "(half of the {} pairs) or {} (nine tenths).",
       std::ranges::find_if(cells, has_replicates)->phases.value_or(0), at(0.5), differences.size(), at(0.9));
 }
 

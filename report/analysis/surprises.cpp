@@ -60,7 +60,9 @@ class Finder {
     for (const Configuration& configuration : configurations_) {
       const auto bad = std::ranges::find_if(configuration.cells,
                                             [](const auto* cell) { return cell->status != records::CellStatus::kOk; });
-      if (bad != configuration.cells.end()) names[records::describe_status(**bad)].push_back(configuration.name);
+      if (bad == configuration.cells.end()) continue;
+      const bool is_suspect = (*bad)->status == records::CellStatus::kSuspect;
+      names[is_suspect ? "suspect: see the warnings" : records::describe_status(**bad)].push_back(configuration.name);
     }
     std::vector<std::string> sentences;
     for (const auto& [status, labels] : names)
@@ -209,7 +211,7 @@ class Finder {
     visit_pairs([&](const Configuration& a, const Configuration& b, const auto& pairs) {
       for (const auto& [cell, other] : pairs) {
         const auto own = cell->attribution.estimator.rms, of_other = other->attribution.estimator.rms;
-        if (!own || !of_other || *of_other < kWeighty * *other->error.rmse) continue;
+        if (!own || !(*own > 0.0) || !of_other || *of_other < kWeighty * *other->error.rmse) continue;
         const double part = *own / *of_other, whole = *cell->error.rmse / *other->error.rmse;
         if (part > kMuchSmaller || whole >= 1.0 || whole < kLess * part) continue;
         auto& known = sentences[{cell->filter, other->filter}];
@@ -249,10 +251,8 @@ class Finder {
         if (most && *most < kNoFault) free.push_back(configuration.name);
       }
       if (free.size() == 1 && judged > 2)
-        sentences.push_back(
-            fmt::format("Of {} configurations of which it was measured only {} has {} below {} on "
-                        "every scene where it can be seen.",
-                        judged, free.front(), metric.title, records::format_rate(kNoFault)));
+        sentences.push_back(fmt::format("Only {}, of {} measured, has {} below {} on every scene that can show it.",
+                                        free.front(), judged, metric.title, records::format_rate(kNoFault)));
     }
     return sentences;
   }

@@ -17,9 +17,8 @@ namespace {
 using Blocks = std::vector<document::Block>;
 
 constexpr const char* kFrontsNote =
-    "Lower left is better. Filled and joined: no other filter of the same class of width beats it. Hollow: a tie. "
-    "Faint: "
-    "beaten. Click a mark to look closer.";
+    "Lower left is better. Filled and joined: unbeaten in its class of width. Hollow: a tie. Faint: beaten. Click a "
+    "mark to look closer.";
 constexpr const char* kLargeNote =
     "The run has more than {} cells: beaten ones, and the lines from narrow to wide kernels, are left out of these "
     "charts. fronts.csv has them.";

@@ -69,7 +69,7 @@ std::string describe_farthest(const Pairs& pairs) {
     farthest = i;
   }
   if (most == 0) return "";
-  return fmt::format(" Farthest apart is {}: number {} here, cheapest first, and number {} there.",
+  return fmt::format(" Farthest apart is {}: number {} here, cheapest first, and {} there.",
                      pairs.costs[farthest]->configuration->name, find_rank(pairs.measured, pairs.measured[farthest]),
                      find_rank(pairs.estimated, pairs.estimated[farthest]));
 }
@@ -135,9 +135,9 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
   const Pairs pairs = list_pairs(costs);
   if (const auto correlation = correlate_ranks(costs)) {
     sentences.push_back(
-        fmt::format("{}: its estimates and the times here (moving light) have a rank correlation of {:.2f} over {} "
-                    "configurations.{}",
-                    gpu, *correlation, pairs.costs.size(), describe_farthest(pairs)));
+        fmt::format("{}: over {} configurations, the rank correlation of estimates and times here (moving light) is "
+                    "{:.2f}.{}",
+                    gpu, pairs.costs.size(), *correlation, describe_farthest(pairs)));
   }
   if (const auto level = find_level_group(costs); !level.empty()) {
     std::vector<std::string> names;

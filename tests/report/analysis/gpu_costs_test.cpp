@@ -66,7 +66,7 @@ TEST(GpuCosts, TheFarthestFilterIsNamed_AndWhatIsGuessedOrRefused) {
   const auto sentences = describe_gpu("one", costs.costs);
   ASSERT_EQ(sentences.size(), 4u);
   EXPECT_THAT(sentences[0], HasSubstr("over 3 configurations"));
-  EXPECT_THAT(sentences[0], HasSubstr("Farthest apart is a: number 1 here, cheapest first, and number 3"));
+  EXPECT_THAT(sentences[0], HasSubstr("Farthest apart is a: number 1 here, cheapest first, and 3 there."));
   EXPECT_THAT(sentences[1], HasSubstr("d: mine.glsl:8: Vulkan refuses"));
   EXPECT_THAT(sentences[2], HasSubstr("how often loops turn: b."));
   EXPECT_THAT(sentences[3], HasSubstr("spill to memory, which is slow: c."));
