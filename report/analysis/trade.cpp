@@ -121,14 +121,13 @@ TradeScope make_joint_scope(const std::vector<records::CellRecord>& cells, const
   return scope;
 }
 
-// Scopes that differ in another setting than scene, view and picture are numbered.
+// Scopes that differ in another setting than those that their names have are numbered.
 void make_unique(std::vector<TradeScope>& scopes) {
-  std::map<std::string, int> seen;
+  std::map<std::string, int> ids, titles;
   for (TradeScope& scope : scopes) {
-    const int number = ++seen[scope.id];
-    if (number == 1) continue;
-    scope.id += fmt::format(".{}", number);
-    scope.title += fmt::format(" · other settings ({})", number);
+    if (const int number = ++ids[scope.id]; number > 1) scope.id += fmt::format(".{}", number);
+    if (const int number = ++titles[scope.title]; number > 1)
+      scope.title += fmt::format(" · other settings ({})", number);
   }
 }
 
@@ -191,12 +190,15 @@ std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>
     if (group_indices(cells, picture, place_key).size() > 1) scopes.push_back(make_joint_scope(cells, picture, reader));
   for (const auto& place : group_indices(cells, all, place_key))
     scopes.push_back(make_place_scope(cells, place, reader));
+  std::set<std::string> fits;
+  for (const records::CellRecord& cell : cells) fits.insert(cell.fit);
   for (TradeScope& scope : scopes) {
     const records::CellRecord* first =
         scope.configurations.empty() ? nullptr : &cells[scope.configurations[0].cells[0]];
     scope.width = first ? first->width : 0;
     scope.height = first ? first->height : 0;
     scope.costs = reader.costs();
+    if (first && fits.size() > 1) scope.title += " · " + records::name_fit(first->fit, fits);
     label_configurations(scope.configurations, cells);
   }
   std::erase_if(scopes, [](const TradeScope& scope) { return scope.configurations.empty(); });

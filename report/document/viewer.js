@@ -59,10 +59,11 @@ const toggleCrop = () => {
   isCropping = !isCropping;
   label();
 };
-addButton(controls, "Fit", () => fit(), "Key 0");
-addButton(controls, "+", () => zoomBy(1.5), "Key +").setAttribute("aria-label", "Zoom in");
-addButton(controls, "\u2212", () => zoomBy(1 / 1.5), "Key -").setAttribute("aria-label", "Zoom out");
-const cropButton = addButton(controls, "Crop", toggleCrop, "Then drag a rectangle; or shift and drag");
+const partButtons = addGroup(controls, "modes", "Which part is seen");
+addButton(partButtons, "Fit", () => fit(), "Key 0");
+addButton(partButtons, "+", () => zoomBy(1.5), "Key +").setAttribute("aria-label", "Zoom in");
+addButton(partButtons, "\u2212", () => zoomBy(1 / 1.5), "Key -").setAttribute("aria-label", "Zoom out");
+const cropButton = addButton(partButtons, "Crop", toggleCrop, "Then drag a rectangle; or shift and drag");
 const bar = element(root, "div", { className: "scale", hidden: true });
 const paneBox = element(root, "div", { className: "panes" });
 const makePane = () => {

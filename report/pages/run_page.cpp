@@ -39,7 +39,9 @@ constexpr const char* kGpuNote =
 std::string head_group(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                        const records::CellRecord& cell) {
   const auto found = std::ranges::find(run.scenes, cell.scene, &records::SceneRecord::name);
-  std::string head = found == run.scenes.end() || found->title.empty() ? cell.scene : cell.scene + ": " + found->title;
+  std::string head = found == run.scenes.end() || found->title.empty() || found->title == cell.scene
+                         ? cell.scene
+                         : cell.scene + ": " + found->title;
   const auto varies = [&](auto member) {
     return std::ranges::any_of(cells, [&](const records::CellRecord& other) {
       return other.scene == cell.scene && other.*member != cell.*member;

@@ -98,8 +98,9 @@ std::string summarize_maps(const std::vector<MapFamily>& families, const records
                     "less cost in {}",
                     less_error, layered, less_cost));
   if (shared > 0)
-    parts.push_back(fmt::format("for all views {} of {} maps are cheaper than one for each view{}", cheaper, shared,
-                                views ? fmt::format(", from {} on at the earliest", *views) : ""));
+    parts.push_back(fmt::format("one map for all views is cheaper than a map for each in {} of {} comparisons{}",
+                                cheaper, shared,
+                                views ? fmt::format(", from view {} on at the earliest", *views) : ""));
   if (saved > 0.0)
     parts.push_back(
         fmt::format("a kept map saves up to {} {} of a frame", records::format_number(saved), records::time_unit(gl)));

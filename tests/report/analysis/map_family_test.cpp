@@ -213,8 +213,8 @@ TEST(MapCaching, SavesTheMap_WhereTheKeptOneIsAsAccurate) {
 TEST(MapTable, IsSummedUpInASentence) {
   EXPECT_EQ(summarize_maps(list_map_families(make_deep_cells()), make_run().gl),
             "Of maps of several fits, layers have less error than one map of as many bytes in 2 of 2 comparisons, and "
-            "less cost in 0; for all views 2 of 2 maps are cheaper than one for each view, from 2 on at the earliest; "
-            "a kept map saves up to 11 ms (CPU) of a frame.");
+            "less cost in 0; one map for all views is cheaper than a map for each in 2 of 2 comparisons, from view 2 "
+            "on at the earliest; a kept map saves up to 11 ms (CPU) of a frame.");
 }
 
 TEST(MapCaching, ThatCannotBeTold_IsNoSaving) {

@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
@@ -69,6 +70,11 @@ TEST(TradeScopes, ScopesThatDifferOtherwise_HaveTheirOwnNames) {
   const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(2));
   EXPECT_NE(scopes[0].id, scopes[1].id);
+  EXPECT_THAT(scopes[0].title, EndsWith(" · tight fit"));
+  EXPECT_THAT(scopes[1].title, EndsWith(" · sphere fit"));
+  cells[1].fit = cells[0].fit;
+  cells[1].range.border = "repeat";
+  EXPECT_THAT(make_trade_scopes(cells)[1].title, EndsWith(" · other settings (2)"));
 }
 
 TEST(TradeMeasures, Time_IsTheFiltersOwn_NotTheWholeLookup) {
