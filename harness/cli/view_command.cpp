@@ -13,7 +13,7 @@ namespace {
 constexpr double kLargestScale = 4.0;
 
 struct ViewArguments : DrawingArguments {
-  std::string scene = "cubes";
+  std::string scene = "cubes", light_name;
   bool ground = false;
   std::string left, right = view::kTruthName;
   std::vector<std::string> filter_files;
@@ -29,6 +29,7 @@ int view_scene(const ViewArguments& arguments) {
   take_drawing_options(arguments, options.run);
   options::read_run_options(options::list_run_options(), options.run);
   options.scene = arguments.scene;
+  options.light_name = arguments.light_name;
   options.run.ground = arguments.ground;
   options.run.map_sizes = {parse_count(arguments.map_size, "--map-size")};
   options.keeps_size = !arguments.size.empty();
@@ -65,6 +66,7 @@ Command make_view_command() {
   command.add("scene", &a->scene, "a built-in scene by name, or a .toml, .gltf, .glb or .obj file")
       .names(ValueKind::kScene);
   command.add("--ground", &a->ground, "put a floor under a model that stands by itself");
+  command.add("--light-name", &a->light_name, "the light that shines, of a scene's several, by its name");
   command
       .add("--left", &a->left,
            "what is seen on the left: a filter with parameters, or 'truth' (default: your own filter, or one of medium "

@@ -142,6 +142,10 @@ records::RunRecord join_runs(const std::vector<records::RunRecord>& runs) {
     for (const std::string& warning : run.warnings)
       if (std::ranges::count(whole.warnings, warning) == 0) whole.warnings.push_back(warning);
   }
+  // Files were named from where each run was started; a built-in scene is named as it is called.
+  for (records::SceneRecord& scene : whole.scenes)
+    if (!scene.view_words.empty() && !scene.name.starts_with(scene.view_words.front())) scene.view_words.clear();
+  for (auto& [id, file] : whole.filter_files) file.reset();
   return whole;
 }
 

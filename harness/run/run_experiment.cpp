@@ -43,6 +43,14 @@ void require_writable(const std::filesystem::path& folder) { AtomicFile(folder /
 constexpr int kManyCells = 2000;
 constexpr double kManySeconds = 3600.0;
 
+/// What opens a scene in the window, as it was given here.
+std::vector<std::string> list_view_words(const PlannedScene& planned) {
+  std::vector<std::string> words{planned.argument};
+  if (planned.options.ground) words.emplace_back("--ground");
+  if (!planned.scene.light.name.empty()) words.insert(words.end(), {"--light-name", planned.scene.light.name});
+  return words;
+}
+
 class Experiment {
  public:
   Experiment(const options::RunOptions& options, options::Progress& progress)
@@ -54,6 +62,7 @@ class Experiment {
     run_.commit = build_commit();
     run_.command = options.command;
     run_.seed = options.seed;
+    for (const auto& file : options.filter_files) run_.filter_files[std::filesystem::path(file).stem().string()] = file;
     run_.gl = describe_gl(renderer_);
     run_.machine = describe_machine();
     progress_.note(fmt::format("OpenGL by {}: {}", run_.gl.backend, run_.gl.renderer));
@@ -280,7 +289,7 @@ class Experiment {
     if (!options_.part.is_worker()) warn_of_light_below(scene);  // of each light, where a scene has several
     const auto is_it = [&](const records::SceneRecord& known) { return known.name == scene.name; };
     if (std::any_of(run_.scenes.begin(), run_.scenes.end(), is_it)) return;
-    run_.scenes.push_back({scene.name, scene.title});
+    run_.scenes.push_back({scene.name, scene.title, list_view_words(planned)});
     if (!options_.part.is_worker())
       for (const std::string& note : scene.notes) progress_.note(scene.name + ": " + note);
     for (const std::string& warning : scene.warnings) warn(scene.name + ": " + warning);

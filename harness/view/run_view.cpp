@@ -67,6 +67,7 @@ void run_view(const ViewOptions& options) {
     return make_side(catalogue, text.empty() ? choose_usual(catalogue, options) : text);
   };
   ViewState state = make_view_state(std::move(run), options.scene, {make(options.sides[0]), make(options.sides[1])});
+  if (!options.light_name.empty()) choose_light(state, options.light_name);
   check(state);
   const glm::ivec2 size = choose_window_size(options, {state.options.width, state.options.height});
   auto context =

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/nearest_name.h"
 #include "harness/render/gbuffer.h"
 #include "harness/run/scene_loading.h"
 
@@ -34,6 +35,17 @@ ViewState make_view_state(options::RunOptions options, const std::string& scene_
   state.sides = std::move(sides);
   apply(state, state);
   return state;
+}
+
+void choose_light(ViewState& state, const std::string& name) {
+  std::vector<std::string> names;
+  for (const scene::Light& light : state.lights) names.push_back(light.name);
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end())
+    throw Error(ErrorKind::kUsage, fmt::format("--light-name: '{}' is no light of {}{}", name, state.scene.name,
+                                               did_you_mean_or_known(name, names)));
+  state.light = static_cast<std::size_t>(found - names.begin());
+  apply(state, state);
 }
 
 void apply(ViewState& state, ViewSettings settings) {

@@ -54,6 +54,9 @@ struct ViewState : ViewSettings {
 ViewState make_view_state(options::RunOptions options, const std::string& scene_argument,
                           std::array<Side, kSides> sides);
 
+/// Lets the light of that name shine. Throws Error(kUsage) where the scene has none.
+void choose_light(ViewState& state, const std::string& name);
+
 /// Takes over other settings: the scene gets its light, and the options the filters of both sides, each once: their
 /// kernels pad the map as a run's do.
 void apply(ViewState& state, ViewSettings settings);

@@ -252,13 +252,18 @@ const startAnswer = (holder) => {
     const rmse = scope.rows[index].rmse;
     const error = rmse ? `RMSE ${format(rmse.value)}` : "";
     if (scope !== all) return element(button, "span", {}, rmse ? format(rmse.value) : costText(index, scope));
-    element(cell, "span", {}, [costText(index, scope), error].filter(Boolean).join(" · "));
-    element(cell, "span", {}, why);
+    const line = element(cell, "span");
+    for (const text of [costText(index, scope), error].filter(Boolean)) {
+      line.append(line.firstChild ? " · " : "");
+      element(line, "span", { className: "whole" }, text);
+    }
+    element(cell, "span", {}, why.replaceAll(" %", "\u00a0%"));
   };
   const addRow = (scope, judged) => {
     const row = element(table.tBodies[0] ?? element(table, "tbody"), "tr");
     const title = scope.scene ?? (places.length > 1 ? "all scenes" : places[0]);
-    element(row, "th", { scope: "row", dir: "auto" }, title);
+    const head = element(row, "th", { scope: "row", dir: "auto" });
+    for (const part of title.split(/(?<=[._-])/)) head.append(part, document.createElement("wbr"));
     if (scope.idle) return element(row, "td", { colSpan: 3 }, `does not matter: ${scope.idle}`);
     if (judged.keeping.length === 0) return element(row, "td", { colSpan: 3 }, "nothing keeps the limits");
     const picks = pick(judged, scope);
@@ -382,5 +387,5 @@ const startAnswer = (holder) => {
   showSliders();
   show();
   openLink();
-  shadowbench.answer = { judge, state, picks: (scope = all) => pick(judge(scope), scope) };
+  shadowbench.answer = { judge, state, picks: (scope = all) => pick(judge(scope), scope), writeView };
 };

@@ -48,13 +48,16 @@ const startPicture = (holder) => {
 };
 
 // The commands that say and show the same: the run's folder is that of the page, where it was opened from a disk.
-const folderOfPage = () => {
-  const folder = location.protocol === "file:" ? decodeURI(location.pathname).replace(/\/[^/]*$/, "") : "RUN";
-  return /^[\w./+-]+$/.test(folder) ? folder : `'${folder.replaceAll("'", "'\\''")}'`;
-};
-// The window opens scenes by their names; one light of several, and a file, whose names have a point, it does not.
+const writeWord = (word) => (/^[\w./+:,=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+const folderOfPage = () =>
+  writeWord(location.protocol === "file:" ? decodeURI(location.pathname).replace(/\/[^/]*$/, "") : "RUN");
+// Empty where it is not known how the scene, or the file of a filter, was given.
 const writeView = (index, place) => {
-  const { request, map } = run.configurations[index];
-  if (run.places[place].scene.includes(".")) return "";
-  return `shadowbench view ${run.places[place].scene} --left truth --right ${request} --map-size ${map}`;
+  const { filter, request, map } = run.configurations[index];
+  const { view } = run.places[place];
+  const file = run.files[filter];
+  if (view.length === 0 || file === null) return "";
+  const own = file ? ["--filter-file", file] : [];
+  const words = [...view, ...own, "--left", "truth", "--right", request, "--map-size", map];
+  return `shadowbench view ${words.map((word) => writeWord(`${word}`)).join(" ")}`;
 };

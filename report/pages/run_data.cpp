@@ -193,6 +193,7 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   const analysis::CostKind frame = analysis::frame_cost_kind(cells);
   const bool is_ratio = frame == analysis::CostKind::kRatio;
   json data{{"ratios", is_ratio},
+            {"files", records::value_json(run.filter_files)},
             {"measures", list_measures(run, gpus, frame)},
             {"costs", json::array()},
             {"cost", request.cheapest.kind == analysis::CostKind::kGpu ? "gpu." + request.cheapest.gpu : "moving"},
@@ -217,7 +218,10 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
       classes.emplace_back(each.name);
   data["classes"] = classes;
   for (const analysis::Place& place : places) {
-    data["places"].push_back({{"title", analysis::describe_place(place, places)}, {"scene", place.scene}});
+    const auto scene = std::ranges::find(run.scenes, place.scene, &records::SceneRecord::name);
+    data["places"].push_back({{"title", analysis::describe_place(place, places)},
+                              {"scene", place.scene},
+                              {"view", scene == run.scenes.end() ? json::array() : json(scene->view_words)}});
     const auto shown = std::ranges::find_if(
         cells, [&](const auto& cell) { return analysis::place_of(cell) == place && cell.images.truth_values; });
     data["truths"].push_back(shown == cells.end() ? json()

@@ -380,6 +380,7 @@ void visit_fields(Is<RepeatRecord> auto& repeat, auto&& visit) {
 void visit_fields(Is<SceneRecord> auto& scene, auto&& visit) {
   visit("name", scene.name, {.filled = true});
   visit("title", scene.title);
+  visit("view_words", scene.view_words, {.text = "what opens it in the window; empty: not known", .later = true});
 }
 
 void visit_fields(Is<RunRecord> auto& run, auto&& visit) {
@@ -390,10 +391,10 @@ void visit_fields(Is<RunRecord> auto& run, auto&& visit) {
   visit_group("machine", run.machine, visit);
   visit_group("work", run.work, visit, {.text = "what was done, and the passes that no chosen filter needed"});
   visit_group("experiment", run.experiment, visit, {.text = "which cells of which experiment the run holds"});
-  visit_group(
-      "repeat", run.repeat, visit,
-      {.text = "how the times compare with those of the run of the very same that this one replaced", .later = true});
+  visit_group("repeat", run.repeat, visit,
+              {.text = "how the times compare with those of the same run that it replaced", .later = true});
   visit("scenes", run.scenes);
+  visit("filter_files", run.filter_files, {.text = "of the user, as they were given; null: not known", .later = true});
   visit("warnings", run.warnings);
 }
 

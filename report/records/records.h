@@ -316,6 +316,7 @@ struct RepeatRecord {
 struct SceneRecord {
   std::string name;
   std::string title;
+  std::vector<std::string> view_words = {};  ///< what opens it in the window, as it was given; empty: not known
 };
 
 /// Which cells of which experiment a run holds.
@@ -338,6 +339,7 @@ struct RunRecord {
   ExperimentRecord experiment;
   RepeatRecord repeat = {};
   std::vector<SceneRecord> scenes;
+  std::map<std::string, std::optional<std::string>> filter_files = {};  ///< of the user, by id; empty: not known
   std::vector<std::string> warnings;
 };
 

@@ -1,8 +1,11 @@
 // The answer on top of a run's page is that of the program.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 import { isDeepStrictEqual } from "node:util";
-import { folderOf, makeRandom, openRun, readData, readResults, runProgram } from "./support.mjs";
+import { changePage, folderOf, makeRandom, open, openRun, readData, readResults, runProgram } from "./support.mjs";
 
 const kRandomPositions = 12;
 
@@ -175,6 +178,30 @@ test("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", async () =
   await page.waitForFunction(() => location.hash.includes("view="));
   assert.deepEqual(messages, []);
   await close();
+});
+
+// The words of a command as a shell reads them.
+const splitWords = (command) => execFileSync("sh", ["-c", command.replace("shadowbench", "printf '%s\\n'")], { encoding: "utf8" }).trimEnd().split("\n");
+
+test("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven_OrIsHidden", async () => {
+  const { page, close } = await openAnswer("odd"), { scenes } = readResults("odd"), lines = [];
+  for (const button of await page.locator(".picks button").all()) {
+    await button.click();
+    lines.push(splitWords(await readCommand(page, 1)).join("|"));
+  }
+  assert.ok(existsSync(join(folderOf("odd"), "..", scenes[0].view_words[0])), "the scene was given as a file");
+  const [odd, cubes] = scenes.map(({ view_words: words }) => `view|${words.join("|")}|`);
+  assert.ok(odd.endsWith("|--ground|") && lines.some((line) => line.startsWith(odd)) && lines.some((line) => line.startsWith(cubes)), lines.join());
+  const { configurations } = await readData(page), mine = configurations.findIndex(({ filter }) => filter === "nine_compares");
+  const own = await page.evaluate((index) => shadowbench.answer.writeView(index, 0), mine);
+  assert.ok(splitWords(own).join("|").includes("|--filter-file|nine_compares.glsl|--left|truth|--right|nine_compares"), own);
+  await close();
+  for (const forget of [({ places }) => places.forEach((place) => { place.view = []; }), (data) => data.configurations.forEach(({ filter }) => { data.files[filter] = null; })]) {
+    const unknown = await open(changePage("odd", "unknown.html", forget));
+    await unknown.page.getByText("Why, limits and commands").click();
+    assert.deepEqual(await unknown.page.locator(".reasons code").evaluateAll((all) => all.map((each) => each.checkVisibility())), [true, false]);
+    await unknown.close();
+  }
 });
 
 test("ALink_OpensTheSameAnswerAndTable", async () => {

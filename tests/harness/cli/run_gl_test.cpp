@@ -46,6 +46,8 @@ TEST_F(Command, UserFilter_GetsCellAndPictures) {
   EXPECT_EQ(cell["status"], "ok");
   EXPECT_EQ(cell["params"]["weight"], 0.5);
   EXPECT_EQ(cell["cost"]["fetches"], 9.0);
+  EXPECT_EQ(document["filter_files"]["nine_compares"],
+            std::string(SHADOWBENCH_SOURCE_DIR) + "/tests/user_filters/nine_compares.glsl");
   EXPECT_TRUE(cell["kernel"]["sigma_texels"].is_null());
   EXPECT_EQ(cell["absent"]["kernel"], "the filter declares no kernel, and has no scalar model that knows it");
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["picture"].get<std::string>()));

@@ -112,6 +112,13 @@ TEST_F(SaveTest, OneOfThreeLights) {
   }
 }
 
+TEST_F(SaveTest, ALightChosenByItsName_Shines) {
+  view::ViewState state = view::make_view_state(make_options(), "three_lights", sides("vsm:radius=6", "tent3x3"));
+  view::choose_light(state, "spot");
+  EXPECT_EQ(state.scene.light.name, "spot");
+  EXPECT_EQ(state.lights[state.light].name, "spot");
+}
+
 TEST_F(SaveTest, BareModelOnItsFloor_ThroughTheSecondCamera) {
   scene::GltfParts parts;
   parts.more = R"(, "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}},

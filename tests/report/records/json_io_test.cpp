@@ -246,6 +246,16 @@ TEST(JsonIo, CellWithoutLights_IsReadAsNotMeasured) {
   EXPECT_FALSE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
 }
 
+TEST(JsonIo, RunOfBefore_DoesNotKnowHowFilesWereGiven) {
+  json written = to_json(make_run());
+  EXPECT_EQ(to_json(run_from_json(written, "here")), written);
+  written["scenes"][0].erase("view_words");
+  written.erase("filter_files");
+  const RunRecord back = run_from_json(written, "here");
+  EXPECT_TRUE(back.scenes.front().view_words.empty());
+  EXPECT_TRUE(back.filter_files.empty());
+}
+
 TEST(JsonIo, NotFiniteLights_AreNullWithTheirReason) {
   CellRecord cell = make_full_cell();
   cell.lights->back().moving_ms.median = std::numeric_limits<double>::infinity();

@@ -152,7 +152,8 @@ inline RunRecord make_run() {
             TimerKind::kWallClock};
   run.machine = {"Some CPU", 2, 0.25, "GCC 12.2.0", "Debian GNU/Linux 12"};
   run.work = {12, 40, 3, 5, 2, 1.5, 2.0, 0.5};
-  run.scenes = {{"cubes", "Three cubes on a floor"}};
+  run.scenes = {{"cubes", "Three cubes on a floor", {"cubes.toml", "--ground"}}};
+  run.filter_files = {{"mine", "mine.glsl"}, {"yours", std::nullopt}};
   return run;
 }
 
