@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "harness/view/captions.h"
 #include "harness/view/save.h"
 #include "report/images/canvas.h"
 #include "report/images/picture_io.h"
@@ -289,8 +288,8 @@ void Gui::lay_out_captions() {
                speed, size);
 }
 
-/// What colours mean, from a corner on: once where they mean the same on both sides.
-void Gui::lay_out_scales(glm::vec2 corner) {
+/// What colours mean, with the side: once where they mean the same on both sides.
+std::vector<std::pair<std::size_t, ScaleCaption>> Gui::list_scales() const {
   std::vector<std::pair<std::size_t, ScaleCaption>> scales;
   for (std::size_t side = 0; side < kSides; ++side) {
     const render::DisplayedValues& values = shown_[side].values;
@@ -299,8 +298,13 @@ void Gui::lay_out_scales(glm::vec2 corner) {
     ScaleCaption scale(Layers::list()[look_.layer], values);
     if (scales.empty() || !(scales.front().second == scale)) scales.emplace_back(side, std::move(scale));
   }
-  for (auto& [side, scale] : scales) {
-    if (scales.size() > 1) scale.low = fmt::format("{}: {}", kSideNames[side], scale.low);
+  if (scales.size() > 1)
+    for (auto& [side, scale] : scales) scale.low = fmt::format("{}: {}", kSideNames[side], scale.low);
+  return scales;
+}
+
+void Gui::lay_out_scales(glm::vec2 corner) {
+  for (const auto& [side, scale] : list_scales()) {
     const glm::vec2 size = scale.draw(corner);
     log_.note_widget(fmt::format("scale.{}", kSideNames[side]), corner, corner + size);
     corner.y += 1.9f * ImGui::GetFontSize();
@@ -346,17 +350,17 @@ void Gui::save_state(const std::string& what,
   save(what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
 }
 
-/// Writes STEM.png, which is what the window shows of both sides with their captions, and STEM.exr with the float
-/// images behind it: for each side, "left" and "right", its visibility and its picture, and the truth as far as it is
-/// traced. Throws Error(kOutput).
+/// Writes STEM.png, which is what the window shows of both sides with their captions and scales, and STEM.exr with the
+/// float images behind it: for each side, "left" and "right", its visibility and its picture, and the truth as far as
+/// it is traced. Throws Error(kOutput).
 void Gui::save_picture(const std::filesystem::path& stem) {
-  std::array<render::DisplayedValues, kSides> shown;
   const ViewState& state = bench_.state();
   const glm::ivec2 size(state.options.width, state.options.height);
   for (std::size_t side = 0; side < kSides; ++side)
-    shown[side] = layers_.show(Layers::list()[look_.layer], side, look_.error_scale, {0, size.x}).values;
+    shown_[side] = layers_.show(Layers::list()[look_.layer], side, look_.error_scale, {0, size.x});
   render::ImageTarget target("saved picture", GL_RGBA8, size.x, size.y);
-  display_.draw(bench_.renderer().shaders, shown, {.size = size, .divider = place().divider_column(look_)}, &target);
+  display_.draw(bench_.renderer().shaders, {shown_[0].values, shown_[1].values},
+                {.size = size, .divider = place().divider_column(look_)}, &target);
   std::vector<images::Part> parts;
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::string name = kSideNames[side];
@@ -373,7 +377,8 @@ void Gui::save_picture(const std::filesystem::path& stem) {
   images::Image picture = render::read_image(target.texture(), 3);
   std::array<std::string, kSides> captions = {make_caption(0), make_caption(1)};
   if (look_.sharing == Sharing::kFlip) captions[1 - look_.flipped_to].clear();
-  draw_captions(picture, captions);
+  int below = draw_captions(picture, captions);
+  for (const auto& [side, scale] : list_scales()) below = scale.draw(picture, below);
   images::write_display_png(std::filesystem::path(stem) += ".png", picture);
 }
 

@@ -4,9 +4,11 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/render/display_pass.h"
+#include "harness/view/captions.h"
 #include "harness/view/error_meter.h"
 #include "harness/view/layers.h"
 #include "harness/view/look.h"
@@ -98,6 +100,7 @@ class Gui {
   void lay_out_help();
   std::string make_caption(std::size_t side) const;
   void lay_out_captions();
+  std::vector<std::pair<std::size_t, ScaleCaption>> list_scales() const;
   void lay_out_scales(glm::vec2 corner);
   void lay_out_faults();
   void lay_out_inspection();

@@ -51,7 +51,7 @@ def test_no_display_is_code_4(program, folder):
 
 
 def test_bad_input_is_refused_before_a_window_opens(program, folder):
-    for arguments, code in ((["nowhere"], 2), (["cubes", "--left", "vsn"], 2), (["cubes", "--left", "none,vsm"], 2), (["cubes", "--size", "12"], 2),
+    for arguments, code in ((["nowhere"], 2), (["cubes", "--left", "vsn"], 2), (["cubes", "--left", "none,vsm"], 2), (["cubes", "--size", "12"], 2), (["three_lights", "--light-name", "sum"], 2),
                             (["cubes", "--filter-file", str(folder / "none.glsl")], 5), (["missing.toml"], 3)):
         done = subprocess.run([program, "view", *arguments], capture_output=True, text=True, timeout=60)
         assert done.returncode == code, (arguments, done)
@@ -267,6 +267,24 @@ def test_saved_picture_has_the_captions_of_both_sides(program, folder):
         subprocess.run(["oiiotool", picture, "--cut", place, "-o", str(folder / "cut.ppm")], check=True)
         codes = (folder / "cut.ppm").read_bytes().split(b"255\n", 1)[1]
         assert min(codes) < 40 and max(codes) > 220, f"no text on a dark ground at {place}"
+
+
+def test_saved_picture_says_what_its_colours_mean(program, folder):
+    window = Window(program, folder, ["cubes", *FIXED, "--left", "none", "--right", "vsm"])
+    window.wait("errors", lambda frame: "right.rmse" in frame, 60.0)
+    window.send("key", "3")
+    window.key("Next")
+    window.key("Next")
+    window.wait("the layer", lambda frame: frame["layer"] == "error")
+    picture = window.save("ctrl+p", "picture") + ".png"
+    window.close()
+    subprocess.run(["oiiotool", picture, "--cut", "300x1+7+40", "-o", str(folder / "cut.ppm")], check=True)
+    codes = (folder / "cut.ppm").read_bytes().split(b"255\n", 1)[1]
+    pixels = [tuple(codes[i:i + 3]) for i in range(0, len(codes), 3)]
+    bar = [i for i, (red, green, blue) in enumerate(pixels) if abs(red - blue) > 60]
+    assert len(bar) > 40 and bar[-1] - bar[0] < 100, f"a bar of colours: {pixels}"
+    first, last = pixels[bar[0]], pixels[bar[-1]]
+    assert first[2] > first[0] and last[0] > last[2], f"blue is darker, red lighter: {first} to {last}"
 
 
 def measure_figures(program, folder):
