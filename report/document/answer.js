@@ -349,6 +349,14 @@ const startAnswer = (holder) => {
     shadowbench.drawTable?.();
   });
   cost.value = shadowbench.cost;
+  // Costs that came after the page was opened.
+  shadowbench.listCosts = () => {
+    cost.replaceChildren(...run.costs.map(({ id, title }) => new Option(title, id)));
+    cost.value = shadowbench.cost;
+    showSliders();
+    show();
+    shadowbench.drawTable?.();
+  };
   const classes = [["", "of any width"], ...run.classes.map((name) => [name, name])];
   const wide = addSelect(controls, "Kernel", classes, { name: "class" }, (value) => choose({ wide: value }));
   const softLabel = element(controls, "label", { title: "Only filters whose shadows are sharper where they touch" });

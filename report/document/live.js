@@ -4,18 +4,6 @@ const openLive = (holder) => {
   const kVisibility = "visibility_image"; // the sampler of the shading, which reads what the lookup wrote
   const kRounds = 11;
   const kGoals = { comparison: 1e-5, stored: 1e-3 }; // RMSE to the run's visibility
-  const kDisplay = [
-    `#version 300 es
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }`,
-    `#version 300 es
-precision highp float;
-uniform sampler2D picture;
-out vec4 color;
-void main() {
-  vec3 linear = clamp(texelFetch(picture, ivec2(gl_FragCoord.xy), 0).rgb, 0.0, 1.0);
-  color = vec4(mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308))), 1.0);
-}`,
-  ];
   const kColumns = [
     "filter",
     "RMSE to the run, same map",
@@ -102,33 +90,6 @@ void main() {
     return texture;
   };
 
-  const makeDisplay = () => {
-    const program = gl.createProgram();
-    [gl.VERTEX_SHADER, gl.FRAGMENT_SHADER].forEach((kind, i) => {
-      const shader = gl.createShader(kind);
-      gl.shaderSource(shader, kDisplay[i]);
-      gl.compileShader(shader);
-      gl.attachShader(program, shader);
-    });
-    gl.linkProgram(program);
-    return { program, array: gl.createVertexArray() };
-  };
-  const showPicture = ({ object, width, height }, from, to) => {
-    display ??= makeDisplay();
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE].forEach((each) => gl.disable(each));
-    gl.viewport(0, 0, width, height);
-    gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(Math.round(from * width), 0, Math.round(to * width) - Math.round(from * width), height);
-    gl.useProgram(display.program);
-    gl.bindVertexArray(display.array);
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindSampler(0, null);
-    gl.bindTexture(gl.TEXTURE_2D, object);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.disable(gl.SCISSOR_TEST);
-  };
   const showSide = async (who, from, to) => {
     const { player, picture } = await findFrame(who);
     if (who === kTruth) player.standIn(kVisibility, await truthAt(state.place));
@@ -137,7 +98,8 @@ void main() {
     } finally {
       if (who === kTruth) player.standIn(kVisibility, null);
     }
-    showPicture(player.textureOf(picture), from, to);
+    display ??= makeDisplay(gl, canvas);
+    display(player.textureOf(picture), from, to);
   };
   const show = async () => {
     if (isBusy) return;
@@ -200,36 +162,91 @@ void main() {
   };
   const stepsOf = ({ player, picture, frames }) => {
     const visibility = player.inputOf(picture, kVisibility);
-    const all = [...player.listSteps(visibility)].filter((index) => frames.steps[index].op === "draw");
-    const labelled = (label) =>
-      all.filter((index) => frames.programs[frames.steps[index].program].label.startsWith(label));
-    const lookups = all.filter(
-      (index) => frames.steps[index].targets[0].texture === frames.steps[visibility].targets[0].texture,
-    );
-    const shared = [...labelled("depth"), ...labelled("gbuffer"), ...labelled("prepare_receivers"), ...lookups];
-    return { lookups, prefilter: all.filter((index) => !shared.includes(index)) };
+    const all = [...player.listSteps(visibility)];
+    const labelled = (label) => {
+      const isOf = ({ op, program }) => op === "draw" && frames.programs[program].label.startsWith(label);
+      return all.filter((index) => isOf(frames.steps[index]));
+    };
+    const textureOf = (index) => frames.steps[index].targets[0].texture;
+    const into = (indices) => all.filter((index) => indices.map(textureOf).includes(textureOf(index)));
+    const [map, lookups] = [into([...labelled("depth"), ...labelled("midpoint")]), into([visibility])];
+    const shared = [...map, ...lookups, ...labelled("gbuffer"), ...labelled("prepare_receivers")];
+    const isOwn = (index) => frames.steps[index].op === "draw" && !shared.includes(index);
+    return { map, lookup: lookups, prefilter: all.filter(isOwn), empty: [] };
   };
-  const timeAll = async (whos) => {
-    const drawn = [];
+  // Times the filters of a place that draw as the run did; what they share is timed once.
+  const timePlace = async (whos, say) => {
+    const drawn = new Map();
+    const keys = [];
     for (const who of whos) {
       const { value: frame } = await attempt(findFrame(who));
       if (!frame || !found.get(frame.cell.key)?.isSame) continue;
-      const { lookups, prefilter } = stepsOf(frame);
-      const redraw = (steps) => () => steps.forEach((index) => frame.player.redraw(index));
-      frame.player.draw(frame.picture);
-      if (frame.empty !== null) frame.player.draw(frame.empty);
-      drawn.push({ key: frame.cell.key, part: "lookup", draw: redraw(lookups) });
-      if (prefilter.length > 0) drawn.push({ key: frame.cell.key, part: "prefilter", draw: redraw(prefilter) });
-      if (frame.empty !== null) drawn.push({ key: frame.cell.key, part: "empty", draw: redraw([frame.empty]) });
+      const { player, empty } = frame;
+      [frame.picture, empty].filter((step) => step !== null).forEach((step) => player.draw(step));
+      const parts = { ...stepsOf(frame), empty: empty === null ? [] : [empty] };
+      const names = Object.keys(parts).filter((name) => parts[name].length > 0);
+      const idOf = (name) => `${frame.cell.frames} ${parts[name].join()}`;
+      for (const name of names) drawn.set(idOf(name), () => parts[name].forEach((index) => player.redraw(index)));
+      keys.push({ key: frame.cell.key, ids: Object.fromEntries(names.map((name) => [name, idOf(name)])) });
     }
-    const onRound = (round) => (status.textContent = `${sayRenderer()} Timing: round ${round} of ${kRounds}.`);
-    const times = await time(
-      drawn.map(({ draw }) => draw),
-      kRounds,
-      onRound,
-      () => isStopped,
-    );
-    drawn.forEach(({ key, part }, i) => found.set(key, { ...found.get(key), [part]: times[i] }));
+    const onRound = (round) => say(`round ${round} of ${kRounds}`);
+    const times = await time([...drawn.values()], kRounds, onRound, () => isStopped);
+    const byId = new Map([...drawn.keys()].map((id, i) => [id, times[i]]));
+    for (const { key, ids } of keys) {
+      const [map, lookup, prefilter, empty] = ["map", "lookup", "prefilter", "empty"].map((name) =>
+        byId.get(ids[name]),
+      );
+      if (map && lookup)
+        found.set(key, { ...found.get(key), map, prefilter: prefilter ?? null, filter: subtractTimes(lookup, empty) });
+    }
+  };
+  // The lookup less its empty one, whose intervals add up.
+  const subtractTimes = (lookup, empty) => {
+    if (!empty) return lookup;
+    const interval =
+      lookup.interval && empty.interval
+        ? [lookup.interval[0] - empty.interval[1], lookup.interval[1] - empty.interval[0]]
+        : null;
+    return { median: lookup.median - empty.median, interval, rounds: lookup.rounds };
+  };
+  const collectTimes = () => {
+    const timed = [...found].filter(([, { map, filter }]) => map && filter);
+    const parts = ([key, { map, prefilter, filter }]) => [key, { map, prefilter, filter }];
+    return {
+      schema: kTimesSchema,
+      renderer,
+      browser: navigator.userAgent,
+      isSoftware,
+      cells: Object.fromEntries(timed.map(parts)),
+    };
+  };
+  const timeAll = async () => {
+    for (const place of places) {
+      if (isStopped) break;
+      state.place = selects.place.value = place;
+      fillSides();
+      const say = (what) => (status.textContent = `${sayRenderer()} ${run.places[place].title}: ${what}.`);
+      say("checking");
+      await checkAll();
+      await timePlace(listFiltersAt(place), say);
+      fillTable();
+    }
+    const times = collectTimes();
+    if (Object.keys(times.cells).length === 0) return;
+    keepTimes(times);
+    addMachine(times, true);
+  };
+  const saveTimes = () => {
+    const link = element(holder, "a", { download: "gpu-times.json" });
+    link.href = URL.createObjectURL(new Blob([JSON.stringify(collectTimes(), null, 1)], { type: "application/json" }));
+    link.click();
+    link.remove();
+  };
+  const loadTimes = async (files) => {
+    for (const file of files) {
+      const { message: why } = await attempt(file.text().then((text) => addMachine(readTimes(text), false)));
+      message.textContent = why ? `${file.name}: ${why}` : `${file.name}: its times are among the costs.`;
+    }
   };
 
   const sayRenderer = () =>
@@ -241,16 +258,27 @@ void main() {
       ? "Its sampling is exact."
       : `Its weights of 2x2 texels are up to ${format(weight)} off, its nearest texels up to ${format(shift)} texels: as much is allowed for.`;
   };
+  const sayMap = (rows) => {
+    const [, { map } = {}] = rows.find(([, { map }]) => map) ?? [];
+    return map ? ` The map takes ${format(map.median)} ms.` : "";
+  };
   const fillTable = () => {
     const rows = listFiltersAt(state.place).map((who) => [who, found.get(cellAt(who, state.place).key) ?? {}]);
     results.replaceChildren();
     if (rows.every(([, { rmse, refused }]) => rmse === undefined && !refused)) return;
-    element(results, "caption", {}, `What this GPU draws on ${run.places[state.place].title}. ${saySampling()}`);
+    element(
+      results,
+      "caption",
+      {},
+      `What this GPU draws on ${run.places[state.place].title}. ${saySampling()}${sayMap(rows)}`,
+    );
     const head = element(element(results, "thead"), "tr");
     for (const title of kColumns) element(head, "th", { scope: "col" }, title);
     const body = element(results, "tbody");
     const say = (each) => (each ? format(each.median) : "");
-    for (const [who, { rmse, worst, all, isSame, refused, lookup, empty, prefilter }] of rows) {
+    const sayInterval = (each) =>
+      each?.interval ? `95 %: ${each.interval.map((end) => format(end)).join(" to ")}, of ${each.rounds} rounds` : "";
+    for (const [who, { rmse, worst, all, isSame, refused, filter, prefilter }] of rows) {
       const row = element(body, "tr");
       element(element(row, "th", { scope: "row" }), "bdi", {}, nameOf(who));
       if (refused) {
@@ -266,9 +294,8 @@ void main() {
       );
       element(row, "td", {}, isKnown ? format(worst) : "");
       element(row, "td", {}, isKnown ? format(all) : "");
-      const own = lookup && { median: lookup.median - (empty?.median ?? 0) };
-      element(row, "td", {}, say(own));
-      element(row, "td", {}, say(prefilter));
+      element(row, "td", { title: sayInterval(filter) }, say(filter));
+      element(row, "td", { title: sayInterval(prefilter) }, say(prefilter));
     }
   };
   const fillParameters = async () => {
@@ -318,28 +345,31 @@ void main() {
       fillTable();
       show();
     });
-  addChoice(
-    "Scene",
-    "place",
-    places.map((place) => [place, run.places[place].title]),
-  );
-  const selects = { left: addChoice("Left", "left", options()), right: addChoice("Right", "right", options()) };
+  const selects = {
+    place: addChoice(
+      "Scene",
+      "place",
+      places.map((place) => [place, run.places[place].title]),
+    ),
+    left: addChoice("Left", "left", options()),
+    right: addChoice("Right", "right", options()),
+  };
   const fillSides = () => {
-    for (const [name, select] of Object.entries(selects)) {
+    for (const name of ["left", "right"]) {
+      const select = selects[name];
       select.replaceChildren(...options().map(([who, title]) => new Option(title, who)));
       if (!options().some(([who]) => who === state[name])) state[name] = options().at(-1)[0];
       select.value = state[name];
     }
   };
   addButton(controls, "Check against the run", () => work(checkAll));
-  addButton(controls, "Time on this GPU", () =>
-    work(async () => {
-      await checkAll();
-      await timeAll(listFiltersAt(state.place));
-    }),
-  );
+  addButton(controls, "Time on this GPU", () => work(timeAll));
   const stopButton = addButton(controls, "Stop", () => (isStopped = true));
   stopButton.hidden = true;
+  addButton(controls, "Save times", saveTimes, "As gpu-times.json");
+  const chooser = element(controls, "input", { type: "file", accept: ".json", multiple: true, hidden: true });
+  chooser.addEventListener("change", () => loadTimes(chooser.files));
+  addButton(controls, "Load times", () => chooser.click(), "Of other machines, as their pages saved them");
   slider.addEventListener("input", () => {
     state.split = slider.value / 100;
     show();

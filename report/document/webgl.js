@@ -76,24 +76,11 @@ const makePlayer = (gl, frames, blobs) => {
     return textures[index];
   };
 
-  const compile = (kind, text) => {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    return shader;
-  };
   const programOf = (index) => {
     if (programs[index]) return programs[index];
     const { label, vertex, fragment, refused } = frames.programs[index];
     if (refused) throw new Error(`${refused}.`);
-    const object = gl.createProgram();
-    const shaders = [compile(gl.VERTEX_SHADER, vertex), compile(gl.FRAGMENT_SHADER, fragment)];
-    shaders.forEach((shader) => gl.attachShader(object, shader));
-    gl.linkProgram(object);
-    if (!gl.getProgramParameter(object, gl.LINK_STATUS)) {
-      const log = [...shaders.map((shader) => gl.getShaderInfoLog(shader)), gl.getProgramInfoLog(object)].join(" ");
-      throw new Error(`this browser refuses the shader of ${label}: ${log.trim() || "it gives no reason"}`);
-    }
+    const object = linkProgram(gl, label, vertex, fragment);
     const count = gl.getProgramParameter(object, gl.ACTIVE_UNIFORMS);
     const uniforms = Array.from({ length: count }, (_, i) => gl.getActiveUniform(object, i)).map(({ name, type }) => ({
       name,

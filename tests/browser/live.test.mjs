@@ -4,7 +4,7 @@ import { cpSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 import { deflateSync, inflateSync } from "node:zlib";
-import { folderOf, kNarrow, launch, measureOverflow, open, pageOf, pick } from "./support.mjs";
+import { folderOf, kNarrow, launch, measureOverflow, open, pageOf, pick, readData } from "./support.mjs";
 
 // Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
 const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
@@ -86,15 +86,47 @@ test("AShaderThatTheBrowserRefuses_IsSaidInItsRow", () => withBrowser(kMesa, asy
   await close();
 }));
 
-test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree", () => withBrowser(kMesa, async (browser) => {
-  const { page, messages, close } = await openLive(pageOf("several"), browser);
+const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
+const load = async (page, name, text) => {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator(".live").getByRole("button", { name: "Load times" }).click()]);
+  await chooser.setFiles([{ name, mimeType: "application/json", buffer: Buffer.from(text) }]);
+  await page.waitForFunction((file) => document.querySelector(".live").textContent.includes(file + ":"), name);
+  return page.locator(".live p.note").last().textContent();
+};
+
+test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts", () => withBrowser(kMesa, async (browser) => {
+  const { page, messages, close } = await openLive(pageOf("odd"), browser);
   const times = [];
   for (let i = 0; i < 2; ++i) {
     await press(page, "Time on this GPU");
     times.push(Object.fromEntries((await readTable(page)).map((row) => [row[0], row[4] === "" ? NaN : Number(row[4])])));
   }
-  for (const each of times) assert.ok(each.box4x4 > each.pcf2x2, JSON.stringify(each));
-  assert.ok(Math.abs(Math.log(times[0].box4x4 / times[1].box4x4)) < Math.log(2), JSON.stringify(times));
+  for (const { none, constant, nine_compares: nine } of times) assert.ok(nine > 2 * none && Math.abs(constant) < 0.1 * nine, JSON.stringify(times));
+  assert.ok(Math.abs(Math.log(times[0].nine_compares / times[1].nine_compares)) < Math.log(2), JSON.stringify(times));
+
+  // What was timed is a cost of the answer and the table, can be saved, and is there when the page is opened again.
+  await chooseCost(page, "static light, this GPU");
+  const { order } = await page.evaluate(() => shadowbench.answer.judge() && { order: shadowbench.answer.judge().keeping.map(({ index }) => index) });
+  const labels = (await readData(page)).configurations.map(({ label }) => label);
+  assert.deepEqual(order.map((index) => labels[index]), ["none", "nine_compares"]);
+  assert.match(await page.locator(".answer code").first().textContent(), / --light-motion static/);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
+  const saved = JSON.parse(readFileSync(await download.path(), "utf8"));
+  assert.equal(Object.keys(saved.cells).length, 6);
+  await page.reload();
+  await chooseCost(page, "moving light, this GPU");
+
+  // Times of other machines, and files that are none.
+  await page.locator("#live").evaluate((section) => section.scrollIntoView());
+  await page.waitForSelector(".live canvas");
+  const key = Object.keys(saved.cells)[0], spoil = (edit) => { const copy = structuredClone(saved); edit(copy); return JSON.stringify(copy); };
+  assert.match(await load(page, "a.json", "{"), /is no JSON/);
+  assert.match(await load(page, "b.json", spoil((file) => { file.schema = "another"; })), /schema is not "shadowbench gpu-times 1"/);
+  assert.match(await load(page, "c.json", spoil((file) => { file.cells = { other: file.cells[key] }; })), /of another run/);
+  assert.match(await load(page, "d.json", spoil((file) => { file.cells[key].map.median = null; })), /map of .* is no time/);
+  assert.match(await load(page, "e.json", " ".repeat(17e6)), /is larger/);
+  assert.match(await load(page, "f.json", spoil((file) => { file.renderer = "Another GPU"; })), /its times are among the costs/);
+  await chooseCost(page, "moving light, Another GPU");
   assert.deepEqual(messages, []);
   await close();
 }));

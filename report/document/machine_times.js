@@ -1,0 +1,124 @@
+// Times that a GPU took, here or elsewhere, as costs beside those of the run. A file of them, gpu-times.json, has for
+// each cell, by its key, what its parts take: `map`, `prefilter` and `filter` (the lookup less its empty one), each with
+// the median, a 95 % interval or null, and how many rounds they are of, ms.
+const kTimesSchema = "shadowbench gpu-times 1";
+const kTimedParts = ["map", "prefilter", "filter"];
+const kMostTimesBytes = 16e6;
+const machines = []; // as files have them
+
+const isTime = (part) => {
+  const isSound = (value) => Number.isFinite(value) && Math.abs(value) < 1e9;
+  const { median, interval, rounds } = part ?? {};
+  const hasInterval =
+    interval === null || (Array.isArray(interval) && interval.length === 2 && interval.every(isSound));
+  return isSound(median) && hasInterval && Number.isInteger(rounds) && rounds > 0;
+};
+// Takes a file's text apart; throws what is wrong with it.
+const readTimes = (text) => {
+  if (text.length > kMostTimesBytes) throw new Error("The file is larger than any of times that this page saves.");
+  let file = null;
+  try {
+    file = JSON.parse(text);
+  } catch {
+    throw new Error("The file is no JSON: choose a gpu-times.json that a report's page saved.");
+  }
+  if (file?.schema !== kTimesSchema) throw new Error(`The file's schema is not "${kTimesSchema}".`);
+  if (typeof file.renderer !== "string" || typeof file.cells !== "object" || file.cells === null)
+    throw new Error("The file names no renderer or has no cells.");
+  const known = Object.entries(file.cells).filter(([key]) => run.cells.some((cell) => cell.key === key));
+  if (known.length === 0) throw new Error("The file has times of another run: none of its cells is one of this one.");
+  for (const [key, parts] of known)
+    for (const name of kTimedParts)
+      if (!(name === "prefilter" && parts?.[name] === null) && !isTime(parts?.[name]))
+        throw new Error(`The file's ${name} of ${key} is no time.`);
+  return { ...file, cells: Object.fromEntries(known) };
+};
+
+const sumParts = (parts) => ({
+  value: parts.reduce((sum, { median }) => sum + median, 0),
+  low: parts.reduce((sum, { median, interval }) => sum + (interval?.[0] ?? median), 0),
+  high: parts.reduce((sum, { median, interval }) => sum + (interval?.[1] ?? median), 0),
+});
+// What a cell's frame takes: of a static light its lookup alone.
+const timeOfFrame = (parts, isStatic) =>
+  parts && sumParts(isStatic ? [parts.filter] : kTimedParts.map((name) => parts[name]).filter(Boolean));
+
+// The mean over the cells of a configuration that a scope counts, and its largest; null where one has no time.
+const combineTimes = (times, isStatic, index, scope) => {
+  const idle = run.scopes.filter((each) => each.idle).map(({ scene }) => scene);
+  const counts = ({ place }) =>
+    scope.scene ? run.places[place].scene === scope.scene : !idle.includes(run.places[place].scene);
+  const own = run.cells.filter((cell) => cell.configuration === index && counts(cell));
+  const all = own.map(({ key, place }) => ({ place, ...timeOfFrame(times.cells[key], isStatic) }));
+  if (all.length === 0 || all.some(({ value }) => value === undefined)) return null;
+  const mean = (name) => all.reduce((sum, each) => sum + each[name], 0) / all.length;
+  const worst = all.reduce((a, b) => (b.value > a.value ? b : a));
+  return { value: mean("value"), low: mean("low"), high: mean("high"), worst };
+};
+// The ranks behind each that cannot be told from it, as pairs of the first and the one after the last.
+const listTies = (order) =>
+  order.map(({ index, cost }, rank) => {
+    const tied = order.map((other, at) => (at > rank && other.cost.low <= cost.high ? [at, at + 1] : null));
+    return { index, tied: tied.filter(Boolean) };
+  });
+const addScopeTimes = (times, { id, field, isStatic, title }, scope) => {
+  const costs = scope.rows.map((row, index) => row && combineTimes(times, isStatic, index, scope));
+  costs.forEach((cost, index) => {
+    const row = scope.rows[index];
+    if (!row) return;
+    const limit = cost && Number(cost.worst.value.toPrecision(3));
+    row[field] = cost?.value ?? null;
+    row.worst[field] = cost
+      ? { value: cost.worst.value, limit: Math.max(limit, cost.worst.value), place: cost.worst.place, unseen: [] }
+      : `no time by ${title}`;
+  });
+  const advice = {};
+  for (const [wide, { order, unjudged }] of Object.entries(scope.advice[run.costs[0].id])) {
+    const timed = order.map(({ index }) => ({ index, cost: costs[index] }));
+    const ranked = timed.filter(({ cost }) => cost).sort((a, b) => a.cost.value - b.cost.value);
+    const missing = timed.filter(({ cost }) => !cost).map(({ index }) => ({ index, gap: `no time by ${title}` }));
+    advice[wide] = { order: listTies(ranked), unjudged: [...unjudged, ...missing] };
+  }
+  scope.advice[id] = advice;
+};
+// Puts a machine's times among the costs, in the place of older ones of the same renderer.
+const addMachine = (times, isHere) => {
+  const old = machines.findIndex(({ renderer }) => renderer === times.renderer);
+  const at = old < 0 ? machines.push(times) - 1 : old;
+  machines[at] = times;
+  for (const isStatic of [false, true]) {
+    const id = `machine${at}.${isStatic ? "static" : "moving"}`;
+    const name = isHere ? "this GPU" : times.renderer.slice(0, 40);
+    const title = `${isStatic ? "static" : "moving"} light, ${name}`;
+    const option = `--times gpu-times.json${isStatic ? " --light-motion static" : ""}`;
+    const choice = { id, field: id, title, unit: "ms", option, isEstimate: false };
+    const text = `${isStatic ? "lookup" : "map, prefilter and lookup"}, timed in a browser on ${times.renderer}`;
+    const known = run.costs.findIndex((each) => each.id === id);
+    if (known < 0) {
+      run.costs.push(choice);
+      run.measures.push({ id, title, text, unit: "ms", option: "", group: "cost", better: "" });
+    } else run.costs[known] = choice;
+    run.scopes.forEach((scope) => addScopeTimes(times, { id, field: id, isStatic, title }, scope));
+    run.configurations.forEach((each, index) => (each[id] = run.scopes[0]?.rows[index]?.[id] ?? null));
+    for (const cell of run.cells) cell.values_of[id] = timeOfFrame(times.cells[cell.key], isStatic)?.value ?? null;
+  }
+  shadowbench.listCosts?.();
+};
+
+// What was timed here before is kept by the browser, by the place of the page.
+const kTimesKey = `shadowbench gpu-times ${location.pathname}`;
+const keepTimes = (times) => {
+  try {
+    localStorage.setItem(kTimesKey, JSON.stringify(times));
+  } catch {
+    // A browser without storage times anew.
+  }
+};
+const recallTimes = () => {
+  try {
+    const text = localStorage.getItem(kTimesKey);
+    return text && readTimes(text);
+  } catch {
+    return null; // of a run that was here before
+  }
+};

@@ -1,0 +1,108 @@
+// What drawing with WebGL 2 needs beside frames: programs, a picture on a canvas, and how exactly this GPU samples.
+const kTriangle = `#version 300 es
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }`;
+// Throws what the browser complains of.
+const linkProgram = (gl, label, vertex, fragment) => {
+  const program = gl.createProgram();
+  const shaders = [
+    [gl.VERTEX_SHADER, vertex],
+    [gl.FRAGMENT_SHADER, fragment],
+  ].map(([kind, text]) => {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+    return shader;
+  });
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
+    const log = [...shaders.map((shader) => gl.getShaderInfoLog(shader)), gl.getProgramInfoLog(program)].join(" ");
+    throw new Error(`this browser refuses the shader of ${label}: ${log.trim() || "it gives no reason"}`);
+  }
+  return program;
+};
+
+// Shows linear pictures on the canvas: each from one part of its width to another.
+const makeDisplay = (gl, canvas) => {
+  const fragment = `#version 300 es
+    precision highp float;
+    uniform sampler2D picture;
+    out vec4 color;
+    void main() {
+      vec3 linear = clamp(texelFetch(picture, ivec2(gl_FragCoord.xy), 0).rgb, 0.0, 1.0);
+      vec3 curve = 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055;
+      color = vec4(mix(12.92 * linear, curve, greaterThan(linear, vec3(0.0031308))), 1.0);
+    }`;
+  const program = linkProgram(gl, "the display", kTriangle, fragment);
+  const array = gl.createVertexArray();
+  return ({ object, width, height }, from, to) => {
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE].forEach((each) => gl.disable(each));
+    gl.viewport(0, 0, width, height);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(Math.round(from * width), 0, Math.round(to * width) - Math.round(from * width), height);
+    gl.useProgram(program);
+    gl.bindVertexArray(array);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindSampler(0, null);
+    gl.bindTexture(gl.TEXTURE_2D, object);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.disable(gl.SCISSOR_TEST);
+  };
+};
+
+// How exactly this GPU samples a map of `size` texels, by experiment: across the border of two texels, how far the
+// weights of hardware 2x2 PCF are from the ideal ones, and how many texels off the border nearest sampling changes sides.
+const measureSampling = (gl, size) => {
+  const kSteps = 1024; // pixels across a texel
+  const fragment = `#version 300 es
+    precision highp float;
+    uniform highp sampler2DShadow map;
+    uniform float size;
+    out float lit;
+    void main() { lit = texture(map, vec3(0.5 + (gl_FragCoord.x / ${kSteps}.0 - 0.5) / size, 0.5, 0.5)); }`;
+  const program = linkProgram(gl, "the sampling's measurement", kTriangle, fragment);
+  const map = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, map);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT32F, size, 1);
+  const texels = Float32Array.from({ length: size }, (_, i) => (i < size / 2 ? 0 : 1));
+  gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, size, 1, gl.DEPTH_COMPONENT, gl.FLOAT, texels);
+  const target = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, target);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, kSteps, 1);
+  const framebuffer = gl.createFramebuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+  gl.viewport(0, 0, kSteps, 1);
+  [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
+  gl.useProgram(program);
+  gl.uniform1f(gl.getUniformLocation(program, "size"), size);
+  gl.bindVertexArray(null);
+  gl.activeTexture(gl.TEXTURE0);
+  gl.bindTexture(gl.TEXTURE_2D, map);
+  const draw = (filter) => {
+    const sampler = gl.createSampler();
+    const set = (name, value) => gl.samplerParameteri(sampler, name, value);
+    [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER].forEach((name) => set(name, filter));
+    [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T].forEach((name) => set(name, gl.CLAMP_TO_EDGE));
+    set(gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
+    set(gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
+    gl.bindSampler(0, sampler);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    const read = new Float32Array(4 * kSteps);
+    gl.readPixels(0, 0, kSteps, 1, gl.RGBA, gl.FLOAT, read);
+    gl.bindSampler(0, null);
+    gl.deleteSampler(sampler);
+    return Array.from({ length: kSteps }, (_, i) => read[4 * i]);
+  };
+  const farthest = (values) => Math.max(...values);
+  const weight = farthest(draw(gl.LINEAR).map((lit, i) => Math.abs(lit - (i + 0.5) / kSteps)));
+  const shift = farthest(
+    draw(gl.NEAREST).map((lit, i) => (lit === Number(i >= kSteps / 2) ? 0 : Math.abs((i + 0.5) / kSteps - 0.5))),
+  );
+  [map, target].forEach((each) => gl.deleteTexture(each));
+  gl.deleteFramebuffer(framebuffer);
+  gl.deleteProgram(program);
+  return { weight, shift };
+};
