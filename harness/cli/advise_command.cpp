@@ -18,6 +18,7 @@
 #include "report/analysis/advice_words.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/advice_text.h"
+#include "report/records/gpu_times.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::cli {
@@ -35,6 +36,7 @@ struct AdviseArguments {
   std::string width_class;
   std::string light_motion = "moving";
   std::string cheapest = "time";
+  std::string times;
   bool json = false;
 };
 
@@ -86,6 +88,8 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
 int advise(const AdviseArguments& arguments) {
   const AdviceRequest request = make_request(arguments);
   records::Results results = records::read_results(find_results(arguments.run));
+  if (!arguments.times.empty())
+    records::apply_gpu_times(results, records::read_gpu_times(arguments.times), arguments.times);
   if (auto withheld = analysis::withhold_mixed_times(results.cells)) results.cells = std::move(*withheld);
   const analysis::Advice advice = analysis::advise(results.cells, request);
   if (arguments.json) {
@@ -137,6 +141,10 @@ Command make_advise_command() {
       .add("--cheapest", &a->cheapest,
            "the cost that is to be small: time, bytes, fetches, or gpu:NAME, the estimate for a GPU of the run")
       .such_as({"time", "bytes", "fetches"});
+  command
+      .add("--times", &a->times,
+           "judge by the times of a GPU on which the report's page was opened: the gpu-times.json that it saved")
+      .names(ValueKind::kFile);
   add_json_option(command, a->json);
   command.action = [a](const CommandLine&) { return advise(*a); };
   return command;

@@ -51,9 +51,10 @@ const combineTimes = (times, isStatic, index, scope) => {
   const own = run.cells.filter((cell) => cell.configuration === index && counts(cell));
   const all = own.map(({ key, place }) => ({ place, ...timeOfFrame(times.cells[key], isStatic) }));
   if (all.length === 0 || all.some(({ value }) => value === undefined)) return null;
-  const mean = (name) => all.reduce((sum, each) => sum + each[name], 0) / all.length;
+  const value = all.reduce((sum, each) => sum + each.value, 0) / all.length;
+  const reach = (end) => Math.sqrt(all.reduce((sum, each) => sum + (each[end] - each.value) ** 2, 0)) / all.length;
   const worst = all.reduce((a, b) => (b.value > a.value ? b : a));
-  return { value: mean("value"), low: mean("low"), high: mean("high"), worst };
+  return { value, low: value - reach("low"), high: value + reach("high"), worst };
 };
 // The ranks behind each that cannot be told from it, as pairs of the first and the one after the last.
 const listTies = (order) =>

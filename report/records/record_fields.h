@@ -211,8 +211,7 @@ void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
   visit("truth_values", images.truth_values,
         path("relative to the report folder: a script with the truth as 16-bit numbers, for the page", true));
   visit("frames", images.frames, path("relative to the report folder: how the page draws the cell again", true));
-  visit("hardest", images.hardest,
-        {.text = "the tile where the picture differs most from the truth by FLIP", .later = true});
+  visit("hardest", images.hardest, {.text = "the tile where the picture's FLIP is largest", .later = true});
 }
 
 /// Visits a cell's metrics, and over what its errors are means.

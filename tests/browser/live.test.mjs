@@ -4,7 +4,7 @@ import { cpSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 import { deflateSync, inflateSync } from "node:zlib";
-import { folderOf, kNarrow, launch, measureOverflow, open, pageOf, pick, readData } from "./support.mjs";
+import { folderOf, kNarrow, launch, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 // Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
 const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
@@ -113,6 +113,17 @@ test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
   const saved = JSON.parse(readFileSync(await download.path(), "utf8"));
   assert.equal(Object.keys(saved.cells).length, 6);
+
+  // The terminal says the same of the file that was saved.
+  for (const motion of ["moving", "static"]) {
+    await chooseCost(page, `${motion} light, this GPU`);
+    const said = runProgram(["advise", folderOf("odd"), "--times", await download.path(), "--light-motion", motion, "--json"]);
+    assert.ok(said.status === 0, said.stderr);
+    const advice = JSON.parse(said.stdout), [first] = await page.locator(".picks tbody tr").first().locator("td").allTextContents();
+    assert.equal(await page.evaluate(() => shadowbench.answer.judge().keeping.length), advice.keep);
+    assert.ok(first.startsWith(advice.picks[0].label), `${first}, not ${advice.picks[0].label}`);
+    assert.ok(Math.abs(Number(/(\d[\d.e-]*) ms/.exec(first)[1]) / advice.picks[0].cost - 1) < 0.01, `${first}, not ${advice.picks[0].cost}`);
+  }
   await page.reload();
   await chooseCost(page, "moving light, this GPU");
 

@@ -76,8 +76,9 @@ CellRecord make_full_cell() {
   cell.truth = {0.001, 0.9, 0.002};
   cell.artefact = {0.1, 0.2, 0.3, 0.4};
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
-  cell.images = {"a.png",   "b.png", "c.png", "d.png", "e.exr", "g.png", "h.png",
-                 "all.png", "i.png", "j.js",  "k.png", "l.js",  "vsm",   TileRecord{1, 2, 3, 4}};
+  cell.images = {"a.png", "b.png", "c.png",   "d.png", "e.exr",
+                 "g.png", "h.png", "all.png", "i.png", "j.js",
+                 "k.png", "l.js",  "m.js",    "vsm",   TileRecord{1, 2, 3, 4}};
   cell.stability = {1, 2, 3, -1e-6, 4.5, 11.25, 0.5, 0.25, 0.125, 4, 5};
   cell.coverage = {3.5, 0.25, 0.75, 0.5};
   cell.fit = "view snapped";

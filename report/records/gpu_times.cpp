@@ -1,0 +1,119 @@
+#include "report/records/gpu_times.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/input_file.h"
+#include "report/records/json_values.h"
+
+namespace shadowbench::records {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uintmax_t kMostBytes = 16 * kMebibyte;
+constexpr const char* kSchema = "shadowbench gpu-times 1";  // report/document/machine_times.js writes it
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorKind::kInput, what + "; choose a gpu-times.json that a report's page saved", file.string());
+}
+
+double read_number(const json& value) {
+  const double number = value.get<double>();
+  if (!std::isfinite(number) || std::abs(number) >= 1e9) throw std::invalid_argument("a number is out of range");
+  return number;
+}
+
+OwnTime read_time(const json& part) {
+  OwnTime time;
+  time.median = time.q1 = time.q3 = read_number(part.at("median"));
+  time.n = part.at("rounds").get<int>();
+  if (time.n < 1) throw std::invalid_argument("there are no rounds");
+  time.ci95 = {time.median, time.median};
+  if (const json& interval = part.at("interval"); !interval.is_null())
+    time.ci95 = {read_number(interval.at(0)), read_number(interval.at(1))};
+  time.q1 = time.ci95.low;
+  time.q3 = time.ci95.high;
+  return time;
+}
+
+TimedParts read_parts(const json& cell) {
+  TimedParts parts{read_time(cell.at("map")), {}, read_time(cell.at("filter"))};
+  if (const json& prefilter = cell.at("prefilter"); !prefilter.is_null()) parts.prefilter = read_time(prefilter);
+  return parts;
+}
+
+void add(OwnTime& sum, const OwnTime& part) {
+  sum.median += part.median;
+  sum.q1 += part.q1;
+  sum.q3 += part.q3;
+  sum.n = std::min(sum.n, part.n);
+  sum.ci95.low += part.ci95.low;
+  sum.ci95.high += part.ci95.high;
+}
+
+void set_times(CellRecord& cell, const TimedParts& parts) {
+  cell.time_ms = {};
+  cell.time_ms.map = parts.map;
+  if (parts.prefilter) cell.time_ms.prefilter = *parts.prefilter;
+  cell.time_ms.lookup = parts.filter;
+  cell.time_ms.static_light = parts.filter;
+  OwnTime moving = parts.map;
+  if (parts.prefilter) add(moving, *parts.prefilter);
+  add(moving, parts.filter);
+  cell.time_ms.moving = moving;
+}
+
+}  // namespace
+
+GpuTimes read_gpu_times(const std::filesystem::path& file) {
+  const std::vector<unsigned char> bytes = read_file_bytes(file, kMostBytes);
+  std::istringstream stream(std::string(bytes.begin(), bytes.end()));
+  json written;
+  try {
+    written = parse_json(stream);
+  } catch (const std::exception&) {
+    refuse(file, "this is no JSON");
+  }
+  if (!written.is_object() || written.value("schema", json()) != kSchema)
+    refuse(file, fmt::format("its schema is not \"{}\"", kSchema));
+  GpuTimes times;
+  std::string key;
+  try {
+    times.renderer = written.at("renderer").get<std::string>();
+    times.software = written.value("isSoftware", false);
+    for (const auto& [name, cell] : written.at("cells").items()) {
+      key = name;
+      times.cells[name] = read_parts(cell);
+    }
+  } catch (const std::exception&) {
+    refuse(file, key.empty() ? "it has no renderer or no cells"
+                             : fmt::format("what it has of the cell {} is no time of map, prefilter and filter", key));
+  }
+  return times;
+}
+
+void apply_gpu_times(Results& results, const GpuTimes& times, const std::filesystem::path& file) {
+  results.run.gl.renderer = times.renderer;
+  results.run.gl.software = times.software;
+  bool is_any_timed = false;
+  for (CellRecord& cell : results.cells) {
+    cell.ratio_to_none = {};
+    cell.lights = std::nullopt;
+    cell.machine = MachineKind{"", 0, times.renderer, times.software, TimerKind::kWallClock};
+    const auto found = times.cells.find(cell.key);
+    if (found == times.cells.end()) {
+      cell.time_ms = {};
+      cell.absent["time_ms"] = fmt::format("{} did not time it", times.renderer);
+      continue;
+    }
+    is_any_timed = true;
+    set_times(cell, found->second);
+  }
+  if (!is_any_timed) refuse(file, "it has times of another run: none of its cells is one of this one");
+}
+
+}  // namespace shadowbench::records
