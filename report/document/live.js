@@ -3,6 +3,7 @@ const startLive = (holder) => onceSeen(holder, () => openLive(holder));
 const openLive = (holder) => {
   const kVisibility = "visibility_image"; // the sampler of the shading, which reads what the lookup wrote
   const kRounds = 11;
+  const kFarthestTap = 16; // texels
   const kGoals = { comparison: 1e-5, stored: 1e-3 }; // RMSE to the run's visibility
   const kColumns = [
     "filter",
@@ -48,7 +49,12 @@ const openLive = (holder) => {
   let isBusy = false;
   let isStopped = false;
 
-  const unpack = async ({ path, rows, columns }) => {
+  const unpacked = new Map(); // by path: frames share them
+  const unpack = (blob) => {
+    if (!unpacked.has(blob.path)) unpacked.set(blob.path, readBlob(blob));
+    return unpacked.get(blob.path);
+  };
+  const readBlob = async ({ path, rows, columns }) => {
     const text = await addScript(path);
     if (columns === 0) return inflate(text);
     const planes = await decode(path, rows, columns, { data: text });
@@ -119,8 +125,9 @@ const openLive = (holder) => {
     );
   };
 
-  // What this GPU's sampling alone may make of a filter: its weights in each of two directions, and receivers so near to
-  // the border of two texels that it takes the other one. These are left out, as many as there may be.
+  // What this GPU's own arithmetic may make of a filter: its weights in each of two directions, its cosines where taps
+  // are turned, and receivers so near to the border of two texels that it takes the other one. These are left out, as
+  // many as there may be.
   const samplingAt = (size) => {
     if (!samplings.has(size)) samplings.set(size, measureSampling(gl, size));
     return samplings.get(size);
@@ -152,11 +159,11 @@ const openLive = (holder) => {
     const { width, height } = player.textureOf(visibility);
     const [x, y, columns, rows] = frames.check.rect;
     const inner = { x: x + 1, y: y + 1, width: columns - 2, height: rows - 2 };
-    const { weight, shift } = samplingAt(run.configurations[who].map);
+    const { weight, shift, turn } = samplingAt(run.configurations[who].map);
     const gap = compare(same, plane, mask, width, inner, 4 * shift);
     const all = compare(own, plane, mask, width, { x: 0, y: 0, width, height }, 0);
     const isStored = frames.steps[visibility].inputs.some(({ sampler }) => /^map_(?!depth$|compare)/.test(sampler));
-    const goal = (isStored ? kGoals.stored : kGoals.comparison) + 2 * weight;
+    const goal = (isStored ? kGoals.stored : kGoals.comparison) + 2 * (weight + kFarthestTap * turn);
     const isSame = gap.rmse <= goal;
     found.set(cell.key, { ...found.get(cell.key), ...gap, all: all.rmse, isSame, refused: undefined });
   };
@@ -252,11 +259,10 @@ const openLive = (holder) => {
   const sayRenderer = () =>
     `Drawn here by ${renderer}.` + (isSoftware ? " That is a CPU: its times are not those of a GPU." : "");
   const saySampling = () => {
-    const { weight, shift } = samplingAt(run.configurations[listFiltersAt(state.place)[0]].map);
-    const exact = weight < 1e-5 && shift === 0;
-    return exact
-      ? "Its sampling is exact."
-      : `Its weights of 2x2 texels are up to ${format(weight)} off, its nearest texels up to ${format(shift)} texels: as much is allowed for.`;
+    const { weight, shift, turn } = samplingAt(run.configurations[listFiltersAt(state.place)[0]].map);
+    const exact = weight < 1e-5 && shift === 0 && turn < 1e-6;
+    const parts = `weights of 2x2 texels ${format(weight)}, nearest texels ${format(shift)}, cosines ${format(turn)}`;
+    return exact ? "Its sampling is exact." : `It may be off, by its own measure, in ${parts}: as much is allowed for.`;
   };
   const sayMap = (rows) => {
     const [, { map } = {}] = rows.find(([, { map }]) => map) ?? [];

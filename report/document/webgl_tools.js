@@ -53,7 +53,8 @@ const makeDisplay = (gl, canvas) => {
 };
 
 // How exactly this GPU samples a map of `size` texels, by experiment: across the border of two texels, how far the
-// weights of hardware 2x2 PCF are from the ideal ones, and how many texels off the border nearest sampling changes sides.
+// weights of hardware 2x2 PCF are from the ideal ones, and how many texels off the border nearest sampling changes
+// sides; and how far its cosines are off.
 const measureSampling = (gl, size) => {
   const kSteps = 1024; // pixels across a texel
   const fragment = `#version 300 es
@@ -61,7 +62,10 @@ const measureSampling = (gl, size) => {
     uniform highp sampler2DShadow map;
     uniform float size;
     out float lit;
-    void main() { lit = texture(map, vec3(0.5 + (gl_FragCoord.x / ${kSteps}.0 - 0.5) / size, 0.5, 0.5)); }`;
+    void main() {
+      float place = gl_FragCoord.x / ${kSteps}.0;
+      lit = size > 0.0 ? texture(map, vec3(0.5 + (place - 0.5) / size, 0.5, 0.5)) : cos(6.28318530718 * place);
+    }`;
   const program = linkProgram(gl, "the sampling's measurement", kTriangle, fragment);
   const map = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, map);
@@ -77,11 +81,11 @@ const measureSampling = (gl, size) => {
   gl.viewport(0, 0, kSteps, 1);
   [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
   gl.useProgram(program);
-  gl.uniform1f(gl.getUniformLocation(program, "size"), size);
   gl.bindVertexArray(null);
   gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D, map);
-  const draw = (filter) => {
+  const draw = (filter, own = size) => {
+    gl.uniform1f(gl.getUniformLocation(program, "size"), own);
     const sampler = gl.createSampler();
     const set = (name, value) => gl.samplerParameteri(sampler, name, value);
     [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER].forEach((name) => set(name, filter));
@@ -97,12 +101,13 @@ const measureSampling = (gl, size) => {
     return Array.from({ length: kSteps }, (_, i) => read[4 * i]);
   };
   const farthest = (values) => Math.max(...values);
-  const weight = farthest(draw(gl.LINEAR).map((lit, i) => Math.abs(lit - (i + 0.5) / kSteps)));
-  const shift = farthest(
-    draw(gl.NEAREST).map((lit, i) => (lit === Number(i >= kSteps / 2) ? 0 : Math.abs((i + 0.5) / kSteps - 0.5))),
-  );
+  const place = (i) => (i + 0.5) / kSteps;
+  const weight = farthest(draw(gl.LINEAR).map((lit, i) => Math.abs(lit - place(i))));
+  const isRight = (lit, i) => lit === Number(i >= kSteps / 2);
+  const shift = farthest(draw(gl.NEAREST).map((lit, i) => (isRight(lit, i) ? 0 : Math.abs(place(i) - 0.5))));
+  const turn = farthest(draw(gl.LINEAR, 0).map((cosine, i) => Math.abs(cosine - Math.cos(2 * Math.PI * place(i)))));
   [map, target].forEach((each) => gl.deleteTexture(each));
   gl.deleteFramebuffer(framebuffer);
   gl.deleteProgram(program);
-  return { weight, shift };
+  return { weight, shift, turn };
 };
