@@ -60,6 +60,7 @@ class FrameGraph {
   void add(const std::string& key, const Frame& frame) {
     cells_[key] = {{"picture", add_step(frame.picture)},
                    {"empty", add_step(frame.empty)},
+                   {"lightSize", frame.light_size},
                    {"parameters", list_parameters(frame.request)}};
   }
 

@@ -16,6 +16,7 @@ struct Frame {
   gl::StepPointer picture;
   gl::StepPointer empty = nullptr;  ///< a lookup that reads what the filter's does, but nothing of the map
   filters::FilterRequest request = {};
+  double light_size = 0.0;  ///< its diameter seen from the scene, of a sun the doubled tangent of half the angle
 };
 
 /// Texels that the run drew, for a page to take in place of its own.

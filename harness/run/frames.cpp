@@ -76,7 +76,7 @@ void write_frames(measure::Renderer& renderer, const options::RunOptions& option
   for (measure::MeasuredCell& cell : measured.cells)
     if (cell.frame)
       frames[cell.record.key] = {std::exchange(cell.frame, nullptr), std::exchange(cell.empty_frame, nullptr),
-                                 cell.request};
+                                 cell.request, cell.light.front().light_size};
   if (frames.empty()) return;
   const live::Check check =
       make_check(renderer, options, task, assets,

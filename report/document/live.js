@@ -1,10 +1,17 @@
 // The section "Live": the run's filters drawn by the reader's own GPU, held against what the run drew, and timed.
 const startLive = (holder) => onceSeen(holder, () => openLive(holder));
+// A context that was lost has lost all that was made with it: the section begins anew.
+const followLoss = (holder, canvas, say) => {
+  canvas.addEventListener("webglcontextlost", (event) => {
+    event.preventDefault();
+    say("Nothing is drawn now: the browser has taken the GPU away from this page, and may give it back.");
+  });
+  canvas.addEventListener("webglcontextrestored", () => openLive(holder));
+};
 const openLive = (holder) => {
-  const kVisibility = "visibility_image"; // the sampler of the shading, which reads what the lookup wrote
+  const kDrags = { camera: "the camera", light: "the sun" };
   const kRounds = 11;
-  const kFarthestTap = 16; // texels
-  const kGoals = { comparison: 1e-5, stored: 1e-3 }; // RMSE to the run's visibility
+  const kMapsAtOnce = 4; // of a reference, in each frame
   const kColumns = [
     "filter",
     "RMSE to the run, same map",
@@ -40,38 +47,26 @@ const openLive = (holder) => {
   const places = run.places
     .map((_, place) => place)
     .filter((place) => run.cells.some((cell) => cell.place === place && cell.frames));
-  const state = { place: places[0], left: kTruth, right: 0, split: 0.5 };
-  const players = new Map();
+  const state = {
+    place: places[0],
+    left: kTruth,
+    right: 0,
+    split: 0.5,
+    camera: [0, 0],
+    light: [0, 0],
+    drags: "camera",
+  };
   const found = new Map(); // by a cell's key: how far it is from the run, and its times
   const truths = new Map();
   const samplings = new Map(); // by a map's size
+  const motions = new Map(); // by what they move
+  const references = new Map(); // by place
+  let turn = 0; // counts the changes of camera and light
   let display = null;
   let isBusy = false;
   let isStopped = false;
 
-  const unpacked = new Map(); // by path: frames share them
-  const unpack = (blob) => {
-    if (!unpacked.has(blob.path)) unpacked.set(blob.path, readBlob(blob));
-    return unpacked.get(blob.path);
-  };
-  const readBlob = async ({ path, rows, columns }) => {
-    const text = await addScript(path);
-    if (columns === 0) return inflate(text);
-    const planes = await decode(path, rows, columns, { data: text });
-    const vertices = new Float32Array(rows * columns);
-    for (let column = 0; column < columns; ++column)
-      for (let row = 0; row < rows; ++row) vertices[row * columns + column] = planes[column * rows + row];
-    return vertices;
-  };
-  const openFrames = async (path) => {
-    const frames = JSON.parse(new TextDecoder().decode(await inflate(await addScript(path))));
-    const blobs = await Promise.all(frames.blobs.map(unpack));
-    return { frames, player: makePlayer(gl, frames, blobs) };
-  };
-  const open = (path) => {
-    if (!players.has(path)) players.set(path, openFrames(path));
-    return players.get(path);
-  };
+  const open = makeLoader(gl);
   const listFiltersAt = (place) => [...run.configurations.keys()].filter((who) => cellAt(who, place)?.frames);
 
   // How a side is drawn: the truth by the shading of another one's frame.
@@ -79,8 +74,31 @@ const openLive = (holder) => {
     const shown = who === kTruth ? listFiltersAt(state.place)[0] : who;
     const cell = cellAt(shown, state.place);
     if (!cell?.frames) throw new Error(`${nameOf(shown)} was not measured there.`);
-    const { frames, player } = await open(cell.frames);
-    return { ...frames.cells[cell.key], frames, player, cell };
+    const { frames, blobs, player } = await open(cell.frames);
+    const frame = { ...frames.cells[cell.key], frames, player, cell };
+    const key = `${cell.frames} ${frame.picture}`;
+    if (!motions.has(key)) motions.set(key, { ...makeMotion(player, frames, blobs, frame.picture), turn: 0 });
+    const motion = motions.get(key);
+    if (motion.turn !== turn) {
+      motion.turn = turn;
+      motion.moveCamera(state.camera);
+      if (motion.isSun) motion.moveLight(state.light);
+    }
+    return { ...frame, motion };
+  };
+  const isMoved = () => [...state.camera, ...state.light].some((angle) => angle !== 0);
+  // The mean over many maps, of the frame without a filter; null where there is none, or no sun that could be moved.
+  const referenceAt = async (place) => {
+    const who = run.configurations.findIndex(({ request }) => /^none\b/.test(request));
+    if (who < 0 || !cellAt(who, place)?.frames) return null;
+    const frame = await findFrame(who);
+    if (!frame.motion.isSun) return null;
+    const visibility = frame.player.inputOf(frame.picture, kVisibility);
+    if (!references.has(place)) references.set(place, { ...makeReference(gl, frame, frame.motion, visibility), turn });
+    const reference = references.get(place);
+    if (reference.turn !== turn) reference.restart();
+    reference.turn = turn;
+    return reference;
   };
   const truthAt = async (place) => {
     if (truths.has(place)) return truths.get(place);
@@ -98,7 +116,11 @@ const openLive = (holder) => {
 
   const showSide = async (who, from, to) => {
     const { player, picture } = await findFrame(who);
-    if (who === kTruth) player.standIn(kVisibility, await truthAt(state.place));
+    const reference = who === kTruth && isMoved() ? await referenceAt(state.place) : null;
+    if (who === kTruth && isMoved() && !reference)
+      throw new Error("no rays were traced there; let the scene be as it was.");
+    if (reference?.refine(state.light, kMapsAtOnce)) requestAnimationFrame(show);
+    if (who === kTruth) player.standIn(kVisibility, reference ? reference.texture() : await truthAt(state.place));
     try {
       player.draw(picture);
     } finally {
@@ -118,6 +140,9 @@ const openLive = (holder) => {
       const { message: why } = await attempt(showSide(who, from, to));
       if (why) messages.push(`${nameOf(who)} cannot be drawn: ${why}`);
     }
+    const reference = references.get(state.place);
+    if (isMoved() && [state.left, state.right].includes(kTruth) && reference)
+      messages.push(`No rays were traced there: instead of the truth this is the mean of ${reference.count()} maps.`);
     message.textContent = messages.join(" ");
     canvas.setAttribute(
       "aria-label",
@@ -125,61 +150,11 @@ const openLive = (holder) => {
     );
   };
 
-  // What this GPU's own arithmetic may make of a filter: its weights in each of two directions, its cosines where taps
-  // are turned, and receivers so near to the border of two texels that it takes the other one. These are left out, as
-  // many as there may be.
-  const samplingAt = (size) => {
-    if (!samplings.has(size)) samplings.set(size, measureSampling(gl, size));
-    return samplings.get(size);
-  };
-  const compare = (values, plane, mask, width, { x, y, width: columns, height: rows }, leftOut) => {
-    const gaps = [];
-    for (let row = y; row < y + rows; ++row)
-      for (let column = x, i = row * width + x; column < x + columns; ++column, ++i)
-        if ((!mask || mask[i]) && Number.isFinite(plane[i])) gaps.push(Math.abs(values[i] - plane[i]));
-    gaps.sort((a, b) => a - b);
-    const kept = gaps.slice(0, gaps.length - Math.floor(leftOut * gaps.length));
-    return {
-      rmse: Math.sqrt(kept.reduce((sum, gap) => sum + gap * gap, 0) / Math.max(kept.length, 1)),
-      worst: gaps.at(-1) ?? 0,
-    };
-  };
-  // How far a filter's visibility is from what the run drew of it: where receivers and map are those of the run, less
-  // the outermost pixels, whose neighbours are not; and everywhere, where they are this GPU's own.
   const check = async (who) => {
-    const { player, picture, frames, cell } = await findFrame(who);
-    const visibility = player.inputOf(picture, kVisibility);
-    const read = () => {
-      player.draw(visibility);
-      return player.read(visibility);
-    };
-    const same = player.withKnown(read);
-    const own = read();
+    const frame = await findFrame(who);
     const [plane, mask] = [await getPlane(who, state.place, "visibility"), await getMask(state.place)];
-    const { width, height } = player.textureOf(visibility);
-    const [x, y, columns, rows] = frames.check.rect;
-    const inner = { x: x + 1, y: y + 1, width: columns - 2, height: rows - 2 };
-    const { weight, shift, turn } = samplingAt(run.configurations[who].map);
-    const gap = compare(same, plane, mask, width, inner, 4 * shift);
-    const all = compare(own, plane, mask, width, { x: 0, y: 0, width, height }, 0);
-    const isStored = frames.steps[visibility].inputs.some(({ sampler }) => /^map_(?!depth$|compare)/.test(sampler));
-    const goal = (isStored ? kGoals.stored : kGoals.comparison) + 2 * (weight + kFarthestTap * turn);
-    const isSame = gap.rmse <= goal;
-    found.set(cell.key, { ...found.get(cell.key), ...gap, all: all.rmse, isSame, refused: undefined });
-  };
-  const stepsOf = ({ player, picture, frames }) => {
-    const visibility = player.inputOf(picture, kVisibility);
-    const all = [...player.listSteps(visibility)];
-    const labelled = (label) => {
-      const isOf = ({ op, program }) => op === "draw" && frames.programs[program].label.startsWith(label);
-      return all.filter((index) => isOf(frames.steps[index]));
-    };
-    const textureOf = (index) => frames.steps[index].targets[0].texture;
-    const into = (indices) => all.filter((index) => indices.map(textureOf).includes(textureOf(index)));
-    const [map, lookups] = [into([...labelled("depth"), ...labelled("midpoint")]), into([visibility])];
-    const shared = [...map, ...lookups, ...labelled("gbuffer"), ...labelled("prepare_receivers")];
-    const isOwn = (index) => frames.steps[index].op === "draw" && !shared.includes(index);
-    return { map, lookup: lookups, prefilter: all.filter(isOwn), empty: [] };
+    const result = checkFrame(frame, plane, mask, samplingAt(run.configurations[who].map));
+    found.set(frame.cell.key, { ...found.get(frame.cell.key), ...result, refused: undefined });
   };
   // Times the filters of a place that draw as the run did; what they share is timed once.
   const timePlace = async (whos, say) => {
@@ -206,15 +181,6 @@ const openLive = (holder) => {
       if (map && lookup)
         found.set(key, { ...found.get(key), map, prefilter: prefilter ?? null, filter: subtractTimes(lookup, empty) });
     }
-  };
-  // The lookup less its empty one, whose intervals add up.
-  const subtractTimes = (lookup, empty) => {
-    if (!empty) return lookup;
-    const interval =
-      lookup.interval && empty.interval
-        ? [lookup.interval[0] - empty.interval[1], lookup.interval[1] - empty.interval[0]]
-        : null;
-    return { median: lookup.median - empty.median, interval, rounds: lookup.rounds };
   };
   const collectTimes = () => {
     const timed = [...found].filter(([, { map, filter }]) => map && filter);
@@ -258,6 +224,10 @@ const openLive = (holder) => {
 
   const sayRenderer = () =>
     `Drawn here by ${renderer}.` + (isSoftware ? " That is a CPU: its times are not those of a GPU." : "");
+  const samplingAt = (size) => {
+    if (!samplings.has(size)) samplings.set(size, measureSampling(gl, size));
+    return samplings.get(size);
+  };
   const saySampling = () => {
     const { weight, shift, turn } = samplingAt(run.configurations[listFiltersAt(state.place)[0]].map);
     const exact = weight < 1e-5 && shift === 0 && turn < 1e-6;
@@ -276,7 +246,7 @@ const openLive = (holder) => {
       results,
       "caption",
       {},
-      `What this GPU draws on ${run.places[state.place].title}. ${saySampling()}${sayMap(rows)}`,
+      `What this GPU draws on ${run.places[state.place].title}. ${saySampling()}${sayMap(rows)}${references.get(state.place)?.said ?? ""}`,
     );
     const head = element(element(results, "thead"), "tr");
     for (const title of kColumns) element(head, "th", { scope: "col" }, title);
@@ -331,16 +301,33 @@ const openLive = (holder) => {
       await pause();
     }
   };
+  // How far the reference is from the traced truth.
+  const checkReference = async () => {
+    const reference = await referenceAt(state.place);
+    if (!reference || isStopped || !run.truths[state.place]) return;
+    while (reference.refine(state.light, kMapsAtOnce) && !isStopped) await pause();
+    const [plane, mask] = [await getPlane(kTruth, state.place, "visibility"), await getMask(state.place)];
+    const { width, height } = await loadFile(kTruth, state.place);
+    const { rmse } = compareValues(reference.read(), plane, mask, width, { x: 0, y: 0, width, height }, 0);
+    reference.said = ` The mean of ${reference.count()} maps from points of the sun has an RMSE of ${format(rmse)} to the traced truth.`;
+  };
+  const move = (camera, light) => {
+    Object.assign(state, { camera, light });
+    ++turn;
+    show();
+  };
   const work = async (action) => {
+    if (isMoved()) move([0, 0], [0, 0]); // what is checked and timed is the run's own view
     isBusy = true;
     isStopped = false;
     stopButton.hidden = false;
-    await action();
+    const { message: why } = await attempt(action());
     isBusy = false;
     stopButton.hidden = true;
     status.textContent = sayRenderer();
     fillTable();
-    show();
+    await show();
+    if (why) message.textContent = why;
   };
   const options = () => [kTruth, ...listFiltersAt(state.place)].map((who) => [who, nameOf(who)]);
   const addChoice = (title, name, list) =>
@@ -368,7 +355,14 @@ const openLive = (holder) => {
       select.value = state[name];
     }
   };
-  addButton(controls, "Check against the run", () => work(checkAll));
+  addSelect(controls, "A drag turns", Object.entries(kDrags), {}, (value) => (state.drags = value));
+  addButton(controls, "As it was", () => move([0, 0], [0, 0]));
+  addButton(controls, "Check against the run", () =>
+    work(async () => {
+      await checkAll();
+      await checkReference();
+    }),
+  );
   addButton(controls, "Time on this GPU", () => work(timeAll));
   const stopButton = addButton(controls, "Stop", () => (isStopped = true));
   stopButton.hidden = true;
@@ -383,6 +377,16 @@ const openLive = (holder) => {
   state.right = listFiltersAt(state.place)[0];
   fillSides();
   status.textContent = sayRenderer();
+  followLoss(holder, canvas, (text) => {
+    isStopped = true;
+    status.textContent = text;
+  });
+  followDrags(canvas, (yaw, pitch) => {
+    if (isBusy) return;
+    const turned = { camera: state.camera, light: state.light };
+    turned[state.drags] = [turned[state.drags][0] + yaw, clamp(turned[state.drags][1] + pitch, -1, 1)];
+    move(turned.camera, turned.light);
+  });
   fillParameters();
   show();
 };

@@ -347,6 +347,10 @@ const makePlayer = (gl, frames, blobs) => {
       for (const index of steps)
         if (frames.steps[index].uniforms?.[name]) overrides.set(`${index} ${name}`, { values, turn });
     },
+    setUniforms: (index, changes) => {
+      ++turn;
+      for (const [name, values] of Object.entries(changes)) overrides.set(`${index} ${name}`, { values, turn });
+    },
     // Puts a texture in the place of one that a sampler reads; null takes it away.
     standIn: (sampler, texture) => {
       ++turn;

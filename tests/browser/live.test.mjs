@@ -149,6 +149,55 @@ test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts
   await close();
 }));
 
+test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () => withBrowser(kMesa, async (browser) => {
+  const { page, messages, shoot, close } = await openLive(pageOf("ball"), browser);
+  const canvas = page.locator(".live canvas"), look = async () => (await canvas.screenshot()).toString("base64"), note = page.locator(".live p.note").nth(1);
+  const drag = async () => {
+    const { x, y } = await canvas.boundingBox();
+    await page.mouse.move(x + 300, y + 200);
+    await page.mouse.down();
+    await page.mouse.move(x + 380, y + 210, { steps: 3 });
+    await page.mouse.up();
+    await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the mean of 256 maps"), null, { timeout: 60000 });
+  };
+  await pick(page, "Right", { label: "pcss" }, ".live");
+  await page.waitForTimeout(500);
+  const before = await look();
+  await drag();
+  const turned = await look();
+  await shoot("live.turned");
+  await pick(page, "A drag turns", "light", ".live");
+  await drag();
+  assert.ok(before !== turned && turned !== (await look()));
+  await shoot("live.sun");
+  await page.locator(".live").getByRole("button", { name: "As it was" }).click();
+  await page.waitForFunction(() => !document.querySelector(".live").textContent.includes("No rays were traced"));
+  await page.waitForTimeout(500);
+  assert.equal(await note.textContent(), "");
+  assert.equal(await look(), before);
+
+  await press(page, "Check against the run");
+  const said = await page.locator(".live caption").textContent(), rmse = Number(/The mean of 256 maps .* RMSE of ([\d.]+) to the traced truth/.exec(said)[1]);
+  assert.ok(rmse > 0 && rmse < 0.01, said);
+  for (const [filter, own] of await readTable(page)) assert.match(own, /^[\d.e-]+$/, filter);
+  assert.deepEqual(messages, []);
+  await close();
+}));
+
+test("AContextThatIsLost_IsSaid_AndDrawsAgainOnceItIsBack", () => withBrowser(kMesa, async (browser) => {
+  const { page, close } = await openLive(pageOf("ball"), browser);
+  await page.evaluate(() => {
+    window.lost = document.querySelector(".live canvas").getContext("webgl2").getExtension("WEBGL_lose_context");
+    window.lost.loseContext();
+  });
+  await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the browser has taken the GPU away"));
+  await page.evaluate(() => window.lost.restoreContext());
+  await page.waitForFunction(() => !document.querySelector(".live").textContent.includes("taken the GPU away"));
+  await press(page, "Check against the run");
+  for (const [filter, own] of await readTable(page)) assert.match(own, /^[\d.e-]+$/, filter);
+  await close();
+}));
+
 test("OnAPhone_NothingIsWiderThanTheScreen", () => withBrowser(kOwn, async (browser) => {
   const { page, shoot, close } = await openLive(pageOf("several"), browser, { viewport: kNarrow });
   await page.waitForTimeout(1000);

@@ -27,6 +27,7 @@ const kRuns = {
     "none,pcf2x2,tent3x3,vsm,vsm:radius=1,esm:radius=1"],
   live: ["run", "--scene", "cubes", "--scene", "stack", "--scene", "lantern", "--scene", "avenue", "--filters", "all", "--size", "160x90", "--map-size", "128",
     "--rounds", "2", "--phases", "1", "--no-attribution", "--gpu", "none"],
+  ball: ["run", "--scene", "ball", "--filters", "none,pcss,vsm", "--size", "240x135", "--rounds", "2", "--phases", "1", "--no-attribution", "--gpu", "none"],
   lamps: ["run", "kinds", "--filters", "none,tent3x3,vsm,pcss", ...kSmall, "--phases", "1", "--no-attribution", "--gpu", "none"],
   fits: ["run", "cascades", "--filters", "none,vsm", ...kSmall, "--phases", "1", "--no-attribution", "--gpu", "none"],
   stress: ["stress", "--filters", "vsm", "--axes", "vsm-cancellation"],

@@ -26,7 +26,8 @@ export const runProgram = (words) => spawnSync(kProgram, words, { encoding: "utf
 export const open = async (file, { hash = "", waits = true, browser = common, ...options } = {}) => {
   const context = await browser.newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
   page.setDefaultTimeout(15000);
-  page.on("console", (message) => messages.push(message.text()));
+  // Chromium's own word on its software rasteriser, which draws the section Live wherever that is near, is no fault of a page.
+  page.on("console", (message) => /GL Driver Message \(OpenGL, Performance/.test(message.text()) || messages.push(message.text()));
   page.on("pageerror", (error) => messages.push(String(error)));
   await page.goto(pathToFileURL(file).href + hash);
   if (waits) await page.waitForFunction(() => document.querySelector(".viewer figcaption bdi"));

@@ -21,6 +21,7 @@ inline constexpr std::size_t kCells = 2 * 2 * (1 + 3 + 2 * 4);
 /// What a cell says but its times, and what a run says but what differs from run to run.
 inline json without_times(json cell) {
   for (const char* name : {"time_ms", "ratio_to_none", "measured_s"}) cell.erase(name);
+  cell["images"].erase("frames");  // a file of frames is named for the cells that were drawn together
   return cell;
 }
 

@@ -1,0 +1,74 @@
+// A reference where no rays were traced: the mean visibility of many maps, each drawn from another point of the sun.
+const kReferenceMaps = 256;
+const kGoldenAngle = Math.PI * (3 - Math.sqrt(5));
+// Points of a disk, spread evenly by the spiral of a sunflower: radius and angle.
+const diskPoint = (i, count) => [Math.sqrt((i + 0.5) / count), i * kGoldenAngle];
+
+// `frame` is that of a lookup without a filter.
+const makeReference = (gl, { player, picture, lightSize }, motion, visibility) => {
+  const { width, height } = player.textureOf(visibility);
+  const fragment = `#version 300 es
+    precision highp float;
+    uniform sampler2D mean;
+    uniform sampler2D next;
+    uniform float share;
+    out float visibility;
+    void main() {
+      ivec2 pixel = ivec2(gl_FragCoord.xy);
+      visibility = mix(texelFetch(mean, pixel, 0).x, texelFetch(next, pixel, 0).x, share);
+    }`;
+  const program = linkProgram(gl, "the reference", kTriangle, fragment);
+  const array = gl.createVertexArray();
+  const means = [0, 1].map(() => {
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, width, height);
+    const framebuffer = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    return { texture, framebuffer };
+  });
+  let maps = 0;
+  const add = (texture) => {
+    const [from, to] = [means[maps % 2], means[(maps + 1) % 2]];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, to.framebuffer);
+    gl.viewport(0, 0, width, height);
+    [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
+    gl.useProgram(program);
+    [from.texture, texture].forEach((each, unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, each);
+      gl.bindSampler(unit, null);
+      gl.uniform1i(gl.getUniformLocation(program, unit === 0 ? "mean" : "next"), unit);
+    });
+    gl.uniform1f(gl.getUniformLocation(program, "share"), 1 / ++maps);
+    gl.bindVertexArray(array);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  };
+  return {
+    // Begins anew, since light or camera have moved.
+    restart: () => (maps = 0),
+    count: () => maps,
+    texture: () => means[maps % 2].texture,
+    read: () => {
+      const texels = new Float32Array(4 * width * height);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, means[maps % 2].framebuffer);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
+      const values = new Float32Array(width * height);
+      for (let y = 0, i = 0; y < height; ++y)
+        for (let x = 0; x < width; ++x, ++i) values[i] = texels[4 * ((height - 1 - y) * width + x)];
+      return values;
+    },
+    // Adds some maps from points of a sun that is turned so.
+    refine: (light, count) => {
+      for (const last = Math.min(maps + count, kReferenceMaps); maps < last;) {
+        const [radius, angle] = diskPoint(maps, kReferenceMaps);
+        motion.moveLight(light, [angle, Math.atan(radius * 0.5 * lightSize)]);
+        player.draw(visibility);
+        add(player.textureOf(visibility).object);
+      }
+      motion.moveLight(light);
+      return maps < kReferenceMaps;
+    },
+  };
+};
