@@ -302,7 +302,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
     add(make_table_section(cells));
     add({"viewer", "Look closer", {document::Mount{"viewer", {}}}});
     if (std::ranges::any_of(cells, [](const auto& cell) { return cell.images.frames.has_value(); }))
-      add({"live", "Live, on your GPU", {document::Mount{"live", {}}}});
+      add({"live", "Live", {document::Mount{"live", {}}}});
     page.data = make_run_data(run, cells, request);
   }
   if (trade) add(make_trade_section(run, cells, *trade));

@@ -111,7 +111,7 @@ test("Keys_ChooseZoomFlipAndMove", async () => {
   assert.match((await labels(page))[0], /Flip. Left/);
   await page.keyboard.press("F");
   assert.match((await labels(page))[0], /Flip. Right/);
-  await page.getByRole("combobox", { name: "Right", exact: true }).focus();
+  await page.locator("#viewer").getByRole("combobox", { name: "Right", exact: true }).focus();
   await page.keyboard.press("f");
   assert.match((await labels(page))[0], /Flip. Right/, "a key typed into a control stays there");
   assert.deepEqual(messages, []);
