@@ -70,4 +70,18 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
   file.commit();
 }
 
+void copy_whole_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  PendingFile pending(to);
+  std::error_code error;
+  std::filesystem::copy_file(from, pending.temporary_path(), std::filesystem::copy_options::overwrite_existing, error);
+  if (error)
+    throw Error(
+        ErrorKind::kOutput,
+        fmt::format(
+            "it cannot be copied to {} ({}); check rights and free space there, or choose another folder with --out",
+            to.string(), error.message()),
+        from.string());
+  pending.commit();
+}
+
 }  // namespace shadowbench

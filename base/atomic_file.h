@@ -57,4 +57,8 @@ class AtomicFile {
 /// Throws Error(kOutput).
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
+/// Copies a file into a folder of the user's choice, in place of what was there.
+/// Throws Error(kOutput), which names both and --out.
+void copy_whole_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
 }  // namespace shadowbench

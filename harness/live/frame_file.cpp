@@ -261,19 +261,10 @@ std::string write_frames(const std::filesystem::path& folder, const std::map<std
 }
 
 void copy_frames(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::error_code error;
   if (!std::filesystem::exists(from / kFolder)) return;
   for (const auto& entry : std::filesystem::directory_iterator(from / kFolder)) {
     const std::filesystem::path copy = to / kFolder / entry.path().filename();
-    if (std::filesystem::exists(copy)) continue;
-    PendingFile pending(copy);
-    std::filesystem::copy_file(entry.path(), pending.temporary_path(), error);
-    if (error)
-      throw Error(ErrorKind::kOutput,
-                  fmt::format("it cannot be copied to {} ({}); check rights and free space there", copy.string(),
-                              error.message()),
-                  entry.path().string());
-    pending.commit();
+    if (!std::filesystem::exists(copy)) copy_whole_file(entry.path(), copy);
   }
 }
 

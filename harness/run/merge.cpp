@@ -95,20 +95,6 @@ void require_free(const std::filesystem::path& out, const std::vector<ShardRun>&
               out.string());
 }
 
-void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to) {
-  PendingFile pending(to);
-  std::error_code error;
-  std::filesystem::copy_file(from, pending.temporary_path(), std::filesystem::copy_options::overwrite_existing, error);
-  if (error)
-    throw Error(
-        ErrorKind::kOutput,
-        fmt::format(
-            "it cannot be copied to {} ({}); check rights and free space there, or choose another folder with --out",
-            to.string(), error.message()),
-        from.string());
-  pending.commit();
-}
-
 std::vector<std::string> list_files(const records::CellRecord& cell) {
   std::vector<std::string> files;
   for (const auto member :
@@ -162,8 +148,8 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
     const ShardRun& shard = shards[static_cast<std::size_t>(i) % shards.size()];
     const records::CellRecord& cell = shard.results.cells[static_cast<std::size_t>(i) / shards.size()];
     for (const std::string& file : list_files(cell))
-      if (copied.insert(file).second) copy_whole(shard.folder / file, out / file);
-    copy_whole(records::cell_path(shard.folder, cell.key), records::cell_path(out, cell.key));
+      if (copied.insert(file).second) copy_whole_file(shard.folder / file, out / file);
+    copy_whole_file(records::cell_path(shard.folder, cell.key), records::cell_path(out, cell.key));
     keys.push_back(cell.key);
   }
   for (const ShardRun& shard : shards) live::copy_frames(shard.folder, out);
