@@ -27,7 +27,7 @@ LONG = ["--map-size", "32,40,48,64,80,96"]  # long enough to be stopped in the m
 
 # What two runs of one experiment need not share: the times, the load and the work that was done.
 OF_ONE_CELL = {"time_ms", "ratio_to_none", "measured_s", "lights"}
-OF_ONE_RUN = {"command", "work", "repeat"}
+OF_ONE_RUN = {"command", "work", "repeat", "filter_files"}  # a sweep forgets paths: its parts may have run elsewhere
 
 
 def leave_out(record, names):
