@@ -24,14 +24,15 @@ using nlohmann::json;
 
 constexpr const char* kFolder = "live";
 
-/// Writes a script that hands a text to the page, unless the folder has it. Returns its path in the folder.
-std::string write_script(const std::filesystem::path& folder, std::span<const std::byte> bytes,
-                         const std::string& packed) {
+/// Writes a script that hands the page a text, which is made where the folder has none of what it holds yet. Returns
+/// its path in the folder.
+template <class Pack>
+std::string write_script(const std::filesystem::path& folder, std::span<const std::byte> bytes, const Pack& pack) {
   ContentHash hash;
   hash.add(bytes);
   const std::string path = fmt::format("{}/{}.js", kFolder, hash.name());
   if (!std::filesystem::exists(folder / path))
-    write_text_file(folder / path, fmt::format("shadowbenchValues(\"{}\",\"{}\");\n", path, packed));
+    write_text_file(folder / path, fmt::format("shadowbenchValues(\"{}\",\"{}\");\n", path, pack()));
   return path;
 }
 
@@ -80,31 +81,15 @@ class FrameGraph {
 
   json take() {
     translate_programs();
-    return {{"textures", std::move(textures_.items)},
-            {"programs", std::move(programs_json_)},
-            {"blobs", std::move(blobs_)},
-            {"steps", std::move(steps_)},
-            {"check", std::move(check_)},
-            {"cells", std::move(cells_)}};
+    return {{"textures", std::move(textures_)}, {"programs", std::move(programs_json_)},
+            {"blobs", std::move(blobs_)},       {"steps", std::move(steps_)},
+            {"check", std::move(check_)},       {"cells", std::move(cells_)}};
   }
 
  private:
-  /// Things that are named by their place, once each.
-  template <class Key>
-  struct List {
-    std::map<Key, std::size_t> places;
-    json items = json::array();
-
-    std::size_t add(const Key& key, const json& item) {
-      const auto [found, is_new] = places.try_emplace(key, items.size());
-      if (is_new) items.push_back(item);
-      return found->second;
-    }
-  };
-
   std::filesystem::path folder_;
-  List<const gl::RecordedTexture*> textures_;
-  std::map<const gl::RecordedProgram*, std::size_t> program_places_;
+  std::map<const gl::RecordedTexture*, std::size_t> texture_places_;
+  json textures_ = json::array();
   std::map<std::map<GLenum, std::string>, std::size_t> by_source_;
   std::vector<const gl::RecordedProgram*> programs_;
   json programs_json_ = json::array();
@@ -135,11 +120,14 @@ class FrameGraph {
   }
 
   std::size_t add_texture(const gl::TexturePointer& texture) {
-    return textures_.add(texture.get(), {{"format", gl::pixel_format(texture->format).name},
-                                         {"width", texture->width},
-                                         {"height", texture->height},
-                                         {"levels", texture->levels},
-                                         {"samples", texture->samples}});
+    const auto [place, is_new] = texture_places_.try_emplace(texture.get(), textures_.size());
+    if (is_new)
+      textures_.push_back({{"format", gl::pixel_format(texture->format).name},
+                           {"width", texture->width},
+                           {"height", texture->height},
+                           {"levels", texture->levels},
+                           {"samples", texture->samples}});
+    return place->second;
   }
 
   std::size_t add_program(const gl::RecordedProgram* program) {
@@ -152,8 +140,8 @@ class FrameGraph {
     const auto [place, is_new] = blob_places_.try_emplace(owner, blobs_.size());
     if (!is_new) return place->second;
     const std::size_t rows = columns > 0 ? bytes.size() / (columns * sizeof(float)) : 0;
-    const std::string packed = columns > 0 ? pack_vertices(bytes, rows, columns) : images::pack_bytes(bytes);
-    blobs_.push_back({{"path", write_script(folder_, bytes, packed)}, {"rows", rows}, {"columns", columns}});
+    const auto pack = [&] { return columns > 0 ? pack_vertices(bytes, rows, columns) : images::pack_bytes(bytes); };
+    blobs_.push_back({{"path", write_script(folder_, bytes, pack)}, {"rows", rows}, {"columns", columns}});
     return place->second;
   }
 
@@ -257,7 +245,7 @@ std::string write_frames(const std::filesystem::path& folder, const std::map<std
   graph.add(check);
   const std::string text = graph.take().dump(-1, ' ', false, json::error_handler_t::replace);
   const auto bytes = std::as_bytes(std::span(text));
-  return write_script(folder, bytes, images::pack_bytes(bytes));
+  return write_script(folder, bytes, [&] { return images::pack_bytes(bytes); });
 }
 
 void copy_frames(const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -188,10 +188,10 @@ class TaskRun {
   }
 
   void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {
+    write_frames(renderer_, options_, task, assets_, measured);
     const measure::SceneTruth& truth = assets_.truth(*task.camera);
     if (!options_.grids && !options_.part.is_worker()) {
       write_single_pictures(options_, task, measured, truth);
-      write_frames(renderer_, options_, task, assets_, measured);
       return;
     }
     if (!options_.part.is_worker() && options_.pictures) {
@@ -201,7 +201,6 @@ class TaskRun {
                      [this](double part) { steps_.advance(0.2 + 0.5 * part); });
     }
     note_float_images(options_, task, measured);
-    write_frames(renderer_, options_, task, assets_, measured);
     if (options_.border_page) draw_border_page(task);
     write_float_images(options_, task, measured, truth, renderer_.context->info());
   }

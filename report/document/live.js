@@ -66,7 +66,7 @@ const openLive = (holder) => {
   let isBusy = false;
   let isStopped = false;
 
-  const open = makeLoader(gl);
+  const { open, reset } = makeLoader(gl);
   const listFiltersAt = (place) => [...run.configurations.keys()].filter((who) => cellAt(who, place)?.frames);
 
   // How a side is drawn: the truth by the shading of another one's frame.
@@ -106,9 +106,7 @@ const openLive = (holder) => {
     const values = await getPlane(kTruth, place, "visibility");
     const rows = new Float32Array(values.length);
     for (let y = 0; y < height; ++y) rows.set(values.subarray(y * width, (y + 1) * width), (height - 1 - y) * width);
-    const texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, width, height);
+    const texture = makeTexture(gl, gl.R32F, width, height);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RED, gl.FLOAT, rows);
     truths.set(place, texture);
     return texture;
@@ -165,10 +163,10 @@ const openLive = (holder) => {
       if (!frame || !found.get(frame.cell.key)?.isSame) continue;
       const { player, empty } = frame;
       [frame.picture, empty].filter((step) => step !== null).forEach((step) => player.draw(step));
-      const parts = { ...stepsOf(frame), empty: empty === null ? [] : [empty] };
+      const parts = stepsOf(frame);
       const names = Object.keys(parts).filter((name) => parts[name].length > 0);
       const idOf = (name) => `${frame.cell.frames} ${parts[name].join()}`;
-      for (const name of names) drawn.set(idOf(name), () => parts[name].forEach((index) => player.redraw(index)));
+      for (const name of names) drawn.set(idOf(name), (count) => player.repeat(parts[name], count));
       keys.push({ key: frame.cell.key, ids: Object.fromEntries(names.map((name) => [name, idOf(name)])) });
     }
     const onRound = (round) => say(`round ${round} of ${kRounds}`);
@@ -210,8 +208,9 @@ const openLive = (holder) => {
     addMachine(times, true);
   };
   const saveTimes = () => {
+    if (!timesHere()) return (message.textContent = "Nothing was timed here yet: begin with 'Time on this GPU'.");
     const link = element(holder, "a", { download: "gpu-times.json" });
-    link.href = URL.createObjectURL(new Blob([JSON.stringify(collectTimes(), null, 1)], { type: "application/json" }));
+    link.href = URL.createObjectURL(new Blob([JSON.stringify(timesHere(), null, 1)], { type: "application/json" }));
     link.click();
     link.remove();
   };
@@ -280,13 +279,14 @@ const openLive = (holder) => {
     if (!frame || state.right === kTruth) return;
     const steps = [...frame.player.listSteps(frame.picture)];
     for (const { name, value, min, max, whole, unit, text } of frame.parameters) {
-      if (!steps.some((index) => frame.frames.steps[index].uniforms?.[name])) continue;
+      const own = steps.filter((index) => frame.frames.steps[index].uniforms?.[name]);
+      if (own.length === 0) continue;
       const title = element(parameters, "label", { title: text }, `${name}${unit ? `, ${unit}` : ""} `);
       const input = element(title, "input", { type: "range", min, max, step: whole ? 1 : (max - min) / 200, value });
       const shown = element(title, "output", {}, format(value));
       input.addEventListener("input", () => {
         shown.textContent = format(Number(input.value));
-        frame.player.setUniform(steps, name, [Number(input.value)]);
+        for (const index of own) frame.player.setUniforms(index, { [name]: [Number(input.value)] });
         show();
       });
     }
@@ -316,11 +316,17 @@ const openLive = (holder) => {
     ++turn;
     show();
   };
+  // Camera, sun and parameters are the run's own again.
+  const restore = async () => {
+    await reset();
+    fillParameters();
+    move([0, 0], [0, 0]);
+  };
   const work = async (action) => {
-    if (isMoved()) move([0, 0], [0, 0]); // what is checked and timed is the run's own view
     isBusy = true;
     isStopped = false;
     stopButton.hidden = false;
+    await restore(); // what is checked and timed is what the run measured
     const { message: why } = await attempt(action());
     isBusy = false;
     stopButton.hidden = true;
@@ -356,7 +362,7 @@ const openLive = (holder) => {
     }
   };
   addSelect(controls, "A drag turns", Object.entries(kDrags), {}, (value) => (state.drags = value));
-  addButton(controls, "As it was", () => move([0, 0], [0, 0]));
+  addButton(controls, "As it was", restore);
   addButton(controls, "Check against the run", () =>
     work(async () => {
       await checkAll();

@@ -38,7 +38,7 @@ const checkFrame = ({ player, picture, frames }, plane, mask, { weight, shift, t
 };
 
 // The steps of a frame by the part of the cost that they are.
-const stepsOf = ({ player, picture, frames }) => {
+const stepsOf = ({ player, picture, empty, frames }) => {
   const visibility = player.inputOf(picture, kVisibility);
   const all = [...player.listSteps(visibility)];
   const labelled = (label) => {
@@ -46,11 +46,13 @@ const stepsOf = ({ player, picture, frames }) => {
     return all.filter((index) => isOf(frames.steps[index]));
   };
   const textureOf = (index) => frames.steps[index].targets[0].texture;
-  const into = (indices) => all.filter((index) => indices.map(textureOf).includes(textureOf(index)));
-  const [map, lookups] = [into([...labelled("depth"), ...labelled("midpoint")]), into([visibility])];
-  const shared = [...map, ...lookups, ...labelled("gbuffer"), ...labelled("prepare_receivers")];
+  const into = (indices, among) => among.filter((index) => indices.map(textureOf).includes(textureOf(index)));
+  const lookupOf = (last) => (last === null ? [] : into([last], [...player.listSteps(last)]));
+  const map = into([...labelled("depth"), ...labelled("midpoint")], all);
+  const lookup = lookupOf(visibility);
+  const shared = [...map, ...lookup, ...labelled("gbuffer"), ...labelled("prepare_receivers")];
   const isOwn = (index) => frames.steps[index].op === "draw" && !shared.includes(index);
-  return { map, lookup: lookups, prefilter: all.filter(isOwn), empty: [] };
+  return { map, lookup, prefilter: all.filter(isOwn), empty: lookupOf(empty) };
 };
 
 // The lookup less its empty one, whose intervals add up.

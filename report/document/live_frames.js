@@ -1,5 +1,5 @@
 // Loads what a run wrote of its frames, when it is asked for: promises the frames, their buffers and textures, and the
-// player that draws them.
+// player that draws them. `reset` gives all that was loaded the run's own values again.
 const makeLoader = (gl) => {
   const players = new Map();
   const unpacked = new Map(); // by path: frames share them
@@ -25,5 +25,8 @@ const makeLoader = (gl) => {
     if (!players.has(path)) players.set(path, openFrames(path));
     return players.get(path);
   };
-  return open;
+  const reset = async () => {
+    for (const { value } of await attemptAll([...players.values()])) value?.player.reset();
+  };
+  return { open, reset };
 };

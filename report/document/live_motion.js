@@ -82,10 +82,7 @@ const makeMotion = (player, frames, blobs, picture) => {
 
   // What is not turned gets the run's own numbers again, to the last bit.
   const restore = (indices, names) => {
-    for (const index of indices) {
-      const own = Object.entries(uniformsOf(index)).filter(([name]) => names.includes(name));
-      player.setUniforms(index, Object.fromEntries(own));
-    }
+    for (const index of indices) player.setUniforms(index, Object.fromEntries(names.map((name) => [name, null])));
   };
   const moveCamera = ([yaw, pitch]) => {
     if (yaw === 0 && pitch === 0) return restore(seen, kOfCamera);

@@ -19,15 +19,7 @@ const makeReference = (gl, { player, picture, lightSize }, motion, visibility) =
     }`;
   const program = linkProgram(gl, "the reference", kTriangle, fragment);
   const array = gl.createVertexArray();
-  const means = [0, 1].map(() => {
-    const texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, width, height);
-    const framebuffer = gl.createFramebuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
-    return { texture, framebuffer };
-  });
+  const means = [0, 1].map(() => makeTarget(gl, gl.R32F, width, height));
   let maps = 0;
   const add = (texture) => {
     const [from, to] = [means[maps % 2], means[(maps + 1) % 2]];
@@ -51,13 +43,8 @@ const makeReference = (gl, { player, picture, lightSize }, motion, visibility) =
     count: () => maps,
     texture: () => means[maps % 2].texture,
     read: () => {
-      const texels = new Float32Array(4 * width * height);
       gl.bindFramebuffer(gl.FRAMEBUFFER, means[maps % 2].framebuffer);
-      gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
-      const values = new Float32Array(width * height);
-      for (let y = 0, i = 0; y < height; ++y)
-        for (let x = 0; x < width; ++x, ++i) values[i] = texels[4 * ((height - 1 - y) * width + x)];
-      return values;
+      return readValues(gl, width, height);
     },
     // Adds some maps from points of a sun that is turned so.
     refine: (light, count) => {

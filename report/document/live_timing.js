@@ -44,12 +44,7 @@ const pause = () => new Promise((resolve) => setTimeout(resolve));
 
 const makeTimer = (gl) => {
   const pixel = new Uint8Array(4);
-  const texture = gl.createTexture();
-  const framebuffer = gl.createFramebuffer();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, 1, 1);
-  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+  const { framebuffer } = makeTarget(gl, gl.RGBA8, 1, 1);
   // A pixel that is written after all that was drawn, and read back, comes when that is done.
   const finish = () => {
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
@@ -59,7 +54,7 @@ const makeTimer = (gl) => {
   const timeBatch = (draw, count) => {
     finish();
     const start = performance.now();
-    for (let i = 0; i < count; ++i) draw();
+    draw(count);
     finish();
     return performance.now() - start;
   };
@@ -72,11 +67,11 @@ const makeTimer = (gl) => {
   };
   const timeOnce = ({ draw, count }) => (timeBatch(draw, 2 * count) - timeBatch(draw, count)) / count;
 
-  // Promises what each of some draws takes, ms: in rounds, each in an order of its own. `isStopped` ends it early.
+  // Promises what each of some functions, which draw so many times, takes for once, ms: in rounds, each in an order of its own. `isStopped` ends it early.
   return async (draws, rounds, onRound, isStopped) => {
     const timed = [];
     for (const draw of draws) {
-      draw();
+      draw(1);
       timed.push({ draw, count: countDraws(draw), values: [] });
       await pause();
     }

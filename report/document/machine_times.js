@@ -106,20 +106,22 @@ const addMachine = (times, isHere) => {
   shadowbench.listCosts?.();
 };
 
-// What was timed here before is kept by the browser, by the place of the page.
+// What was timed here, now or before: it is kept by the browser, by the place of the page.
 const kTimesKey = `shadowbench gpu-times ${location.pathname}`;
+let heldTimes = null;
 const keepTimes = (times) => {
+  heldTimes = times;
   try {
     localStorage.setItem(kTimesKey, JSON.stringify(times));
   } catch {
     // A browser without storage times anew.
   }
 };
-const recallTimes = () => {
+const timesHere = () => {
   try {
-    const text = localStorage.getItem(kTimesKey);
-    return text && readTimes(text);
+    heldTimes ??= readTimes(localStorage.getItem(kTimesKey));
   } catch {
-    return null; // of a run that was here before
+    // Nothing is held, or times of a run that was here before.
   }
+  return heldTimes;
 };

@@ -22,5 +22,4 @@ for (const [name, begin] of [
   const holder = document.querySelector(name);
   if (holder) begin(holder);
 }
-const recalled = recallTimes();
-if (recalled && run.scopes.length > 0) addMachine(recalled, true);
+if (timesHere() && run.scopes.length > 0) addMachine(timesHere(), true);

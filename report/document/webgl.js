@@ -1,6 +1,6 @@
 // Draws with WebGL 2 what a run drew with OpenGL. A frame is a graph of steps (live/frame_file.h says what they hold):
 // a step is drawn again where what it depends on has changed, and at no other time.
-const kGl = WebGL2RenderingContext;
+const kGl = window.WebGL2RenderingContext ?? {}; // a browser without it still reads the rest of the page
 // What makes a texture of each of the run's formats, where it needs an extension with that.
 const kFormats = {
   r8: [kGl.R8],
@@ -65,11 +65,7 @@ const makePlayer = (gl, frames, blobs) => {
     const [internal, extension] = kFormats[format];
     need(extension);
     if (/32f$/.test(format) && format !== "d32f") need("OES_texture_float_linear");
-    const object = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, object);
-    gl.texStorage2D(gl.TEXTURE_2D, levels, internal, width, height);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    const object = makeTexture(gl, internal, width, height, levels);
     const isInteger = /ui$/.test(format);
     const isDepth = /^d/.test(format);
     textures[index] = { object, width, height, isDepth, isInteger, contents: Array(levels).fill(null), ringed: null };
@@ -125,15 +121,20 @@ const makePlayer = (gl, frames, blobs) => {
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebufferOf(plain));
   };
 
+  const bufferOf = (blob) => {
+    if (buffers[blob]) return buffers[blob];
+    buffers[blob] = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffers[blob]);
+    gl.bufferData(gl.ARRAY_BUFFER, blobs[blob], gl.STATIC_DRAW);
+    return buffers[blob];
+  };
   const arrayOf = (vertices) =>
     remember(arrays, JSON.stringify(vertices ?? null), () => {
       const array = gl.createVertexArray();
       if (!vertices) return array;
       if (vertices.blob === null) throw new Error("the scene has too many triangles for this page.");
       gl.bindVertexArray(array);
-      buffers[vertices.blob] ??= gl.createBuffer();
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffers[vertices.blob]);
-      gl.bufferData(gl.ARRAY_BUFFER, blobs[vertices.blob], gl.STATIC_DRAW);
+      gl.bindBuffer(gl.ARRAY_BUFFER, bufferOf(vertices.blob));
       for (const [location, components, offset] of vertices.attributes) {
         gl.enableVertexAttribArray(location);
         gl.vertexAttribPointer(location, components, gl.FLOAT, false, vertices.stride, offset);
@@ -327,8 +328,14 @@ const makePlayer = (gl, frames, blobs) => {
   return {
     // Draws a step, and what it needs of others.
     draw: (index) => ensure(index, new Map()),
-    // Draws a step alone, again: all that it reads is there.
-    redraw: (index) => kActions[frames.steps[index].op](index),
+    // Draws some steps alone, again and again: all that they read is there. What one step needs is set once, so that a
+    // fast GPU does not wait for the page.
+    repeat: (indices, count) => {
+      const [only] = indices.length === 1 ? indices.map((index) => frames.steps[index]) : [];
+      for (let i = 0; i < count; ++i)
+        if (i > 0 && only?.op === "draw") gl.drawArrays(gl.TRIANGLES, only.first, only.count);
+        else indices.forEach((index) => kActions[frames.steps[index].op](index));
+    },
     inputOf,
     textureOf: (index) => textureOf(frames.steps[index].targets[0].texture),
     listSteps,
@@ -341,16 +348,15 @@ const makePlayer = (gl, frames, blobs) => {
         frames.check.known.forEach(forget);
       }
     },
-    // Gives a uniform other values, in each of some steps that has it.
-    setUniform: (steps, name, values) => {
-      ++turn;
-      for (const index of steps)
-        if (frames.steps[index].uniforms?.[name]) overrides.set(`${index} ${name}`, { values, turn });
-    },
+    // Gives uniforms of a step other values; null gives them the run's own again.
     setUniforms: (index, changes) => {
       ++turn;
-      for (const [name, values] of Object.entries(changes)) overrides.set(`${index} ${name}`, { values, turn });
+      for (const [name, values] of Object.entries(changes))
+        if (values) overrides.set(`${index} ${name}`, { values, turn });
+        else overrides.delete(`${index} ${name}`);
     },
+    // Gives all uniforms the run's own values again.
+    reset: () => overrides.clear(),
     // Puts a texture in the place of one that a sampler reads; null takes it away.
     standIn: (sampler, texture) => {
       ++turn;
@@ -359,13 +365,8 @@ const makePlayer = (gl, frames, blobs) => {
     },
     read: (index) => {
       const { width, height } = textureOf(frames.steps[index].targets[0].texture);
-      const texels = new Float32Array(4 * width * height);
       bindTargets(frames.steps[index].targets);
-      gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
-      const values = new Float32Array(width * height);
-      for (let y = 0, i = 0; y < height; ++y)
-        for (let x = 0; x < width; ++x, ++i) values[i] = texels[4 * ((height - 1 - y) * width + x)];
-      return values;
+      return readValues(gl, width, height);
     },
   };
 };

@@ -22,6 +22,32 @@ const linkProgram = (gl, label, vertex, fragment) => {
   return program;
 };
 
+const makeTexture = (gl, internal, width, height, levels = 1) => {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.texStorage2D(gl.TEXTURE_2D, levels, internal, width, height);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  return texture;
+};
+// A texture that is drawn into; it is bound as the target.
+const makeTarget = (gl, internal, width, height) => {
+  const texture = makeTexture(gl, internal, width, height);
+  const framebuffer = gl.createFramebuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+  return { texture, framebuffer };
+};
+// The first channel of the target that is bound, or of any rows of it, the topmost first.
+const readValues = (gl, width, height) => {
+  const texels = new Float32Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
+  const values = new Float32Array(width * height);
+  for (let y = 0, i = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x, ++i) values[i] = texels[4 * ((height - 1 - y) * width + x)];
+  return values;
+};
+
 // Shows linear pictures on the canvas: each from one part of its width to another.
 const makeDisplay = (gl, canvas) => {
   const fragment = `#version 300 es
@@ -67,17 +93,10 @@ const measureSampling = (gl, size) => {
       lit = size > 0.0 ? texture(map, vec3(0.5 + (place - 0.5) / size, 0.5, 0.5)) : cos(6.28318530718 * place);
     }`;
   const program = linkProgram(gl, "the sampling's measurement", kTriangle, fragment);
-  const map = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, map);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT32F, size, 1);
+  const map = makeTexture(gl, gl.DEPTH_COMPONENT32F, size, 1);
   const texels = Float32Array.from({ length: size }, (_, i) => (i < size / 2 ? 0 : 1));
   gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, size, 1, gl.DEPTH_COMPONENT, gl.FLOAT, texels);
-  const target = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, target);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, kSteps, 1);
-  const framebuffer = gl.createFramebuffer();
-  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+  const { texture: target, framebuffer } = makeTarget(gl, gl.R32F, kSteps, 1);
   gl.viewport(0, 0, kSteps, 1);
   [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
   gl.useProgram(program);
@@ -94,11 +113,9 @@ const measureSampling = (gl, size) => {
     set(gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
     gl.bindSampler(0, sampler);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
-    const read = new Float32Array(4 * kSteps);
-    gl.readPixels(0, 0, kSteps, 1, gl.RGBA, gl.FLOAT, read);
     gl.bindSampler(0, null);
     gl.deleteSampler(sampler);
-    return Array.from({ length: kSteps }, (_, i) => read[4 * i]);
+    return Array.from(readValues(gl, kSteps, 1));
   };
   const farthest = (values) => Math.max(...values);
   const place = (i) => (i + 0.5) / kSteps;

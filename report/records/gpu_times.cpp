@@ -29,12 +29,12 @@ double read_number(const json& value) {
 
 OwnTime read_time(const json& part) {
   OwnTime time;
-  time.median = time.q1 = time.q3 = read_number(part.at("median"));
+  time.median = read_number(part.at("median"));
   time.n = part.at("rounds").get<int>();
   if (time.n < 1) throw std::invalid_argument("there are no rounds");
-  time.ci95 = {time.median, time.median};
-  if (const json& interval = part.at("interval"); !interval.is_null())
-    time.ci95 = {read_number(interval.at(0)), read_number(interval.at(1))};
+  const json& interval = part.at("interval");
+  time.ci95 = interval.is_null() ? Interval{time.median, time.median}
+                                 : Interval{read_number(interval.at(0)), read_number(interval.at(1))};
   time.q1 = time.ci95.low;
   time.q3 = time.ci95.high;
   return time;

@@ -5,12 +5,13 @@
 
 namespace shadowbench::gl {
 
-/// Puts itself in place of a function that the loader points to: calls it, and then `kThen` with the same arguments.
+/// Puts itself in place of a function without a result that the loader points to: calls it, and then `kThen` with the
+/// same arguments.
 template <auto* kSlot, auto kThen, class Function = std::remove_pointer_t<decltype(kSlot)>>
 class Hook;
 
-template <auto* kSlot, auto kThen, class Result, class... Arguments>
-class Hook<kSlot, kThen, Result (*)(Arguments...)> {
+template <auto* kSlot, auto kThen, class... Arguments>
+class Hook<kSlot, kThen, void (*)(Arguments...)> {
  public:
   /// Puts it in place, or takes it away: not where the loader has another function since, of another context.
   static void set(bool is_on) {
@@ -21,9 +22,9 @@ class Hook<kSlot, kThen, Result (*)(Arguments...)> {
   }
 
  private:
-  static inline Result (*original_)(Arguments...) = nullptr;
+  static inline void (*original_)(Arguments...) = nullptr;
 
-  static Result call(Arguments... arguments) {
+  static void call(Arguments... arguments) {
     original_(arguments...);
     kThen(arguments...);
   }
