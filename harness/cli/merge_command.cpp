@@ -13,20 +13,32 @@ namespace shadowbench::cli {
 
 Command make_merge_command() {
   struct Arguments {
-    std::vector<std::string> folders;
+    std::vector<std::string> folders, times;
     std::string out;
   };
-  Command command{"merge", "Write one report of the shards of 'run', or of the tasks of 'submit'"};
+  Command command{"merge",
+                  "Write one report of the shards of 'run', of the tasks of 'submit', or of times from other machines"};
   command.about =
       "Of several folders, which 'run --shard 1/N' to 'N/N' wrote, it makes a new one. Of the folder of a sweep that "
       "'submit' made, it writes the report into that folder, once all cells are measured; the last job of the sweep "
-      "does so by itself.";
+      "does so by itself. With --times, times that readers' browsers saved become costs of a report that there is: its "
+      "page, its fronts.csv and its answer then have a choice for each machine.";
   auto a = std::make_shared<Arguments>();
-  command.add("DIR", &a->folders, "the report folders of all shards of one experiment, or the folder of a sweep")
+  command
+      .add("DIR", &a->folders, "the report folders of all shards of one experiment, or the folder of a sweep or a run")
       .names(ValueKind::kFolder)
       .require();
   command.add("--out", &a->out, "folder of the whole report of shards; new or empty").names(ValueKind::kFolder);
+  command.add("--times", &a->times, "a gpu-times.json that a report's page saved, of the run in DIR; may be repeated")
+      .names(ValueKind::kFile);
   command.action = [a](const CommandLine&) {
+    if (!a->times.empty()) {
+      if (!a->out.empty() || a->folders.size() > 1)
+        fail("--times joins times to one report: name its folder alone, without --out");
+      run::merge_times(a->folders.front(), {a->times.begin(), a->times.end()});
+      fmt::print("report: {}\n", (std::filesystem::path(a->folders.front()) / "index.html").string());
+      return 0;
+    }
     const bool is_sweep = a->out.empty();
     if (is_sweep && (a->folders.size() > 1 || !submit::is_sweep(a->folders.front())))
       fail(

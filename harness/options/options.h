@@ -121,6 +121,7 @@ struct RunOptions {
   bool attribution = true;   ///< split the errors into their four parts; needs truth
   bool stability = false;    ///< find where numbers break, per texel and per pixel
   bool uncertainty = false;  ///< keep how far rounding and other seeds can move each pixel
+  bool all_parts = false;    ///< keep pictures, parts of errors, receivers and the map as floats, too
   bool grids = true;     ///< compare all filters of a view in one picture and keep their float images; else each cell's
                          ///< pictures alone
   bool pictures = true;  ///< draw what people look at beside the float images, which the window asks for alone

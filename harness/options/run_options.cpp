@@ -320,6 +320,11 @@ std::vector<RunOption> list_run_options() {
   t.add("--uncertainty", "keep how far rounding and other seeds can move each pixel, which 'regress' allows for",
         &RunOptions::uncertainty)
       .with_opposite();
+  t.add("--all-parts",
+        "keep pictures, the parts of errors, receivers and the depth map as floats, too, from which a filter can be "
+        "computed again: EXR files take eight times the room",
+        &RunOptions::all_parts)
+      .with_opposite();
   t.decides = Decides::kCells;
   t.add_row("--grids",
             fmt::format("compare all filters of a view in one picture, and keep their float images (default up to {} "

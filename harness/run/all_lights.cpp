@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 
+#include "harness/run/float_images.h"
 #include "harness/run/task_images.h"
 #include "report/files/file_name.h"
 #include "report/images/grid.h"

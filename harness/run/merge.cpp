@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <span>
 #include <system_error>
@@ -12,6 +13,7 @@
 #include "harness/live/frame_file.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
+#include "report/records/gpu_times.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::run {
@@ -156,6 +158,25 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
   std::vector<records::RunRecord> runs;
   for (const ShardRun& shard : shards) runs.push_back(shard.results.run);
   pages::write_report(out, join_runs(runs), keys);
+}
+
+void merge_times(const std::filesystem::path& report, const std::vector<std::filesystem::path>& files) {
+  const files::FolderLock lock(report);
+  const records::Results results = records::read_results(report / "results.json");
+  std::map<std::filesystem::path, std::filesystem::path> sources;  // by where each goes to
+  for (const std::filesystem::path& file : files) {
+    const records::GpuTimes times = records::read_gpu_times(file);
+    records::Results timed = results;
+    records::apply_gpu_times(timed, times, file);
+    const auto [place, is_new] = sources.emplace(records::gpu_times_path(report, times.renderer), file);
+    if (!is_new)
+      throw Error(ErrorKind::kUsage, fmt::format("--times: {} and {} are both times of {}: name one of them",
+                                                 place->second.string(), file.string(), times.renderer));
+  }
+  for (const auto& [place, file] : sources) copy_whole_file(file, place);
+  std::vector<std::string> keys;
+  for (const records::CellRecord& cell : results.cells) keys.push_back(cell.key);
+  pages::write_report(report, results.run, keys);
 }
 
 }  // namespace shadowbench::run

@@ -16,6 +16,7 @@
 #include "harness/measure/suspects.h"
 #include "harness/measure/traffic_meter.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/float_images.h"
 #include "harness/run/frames.h"
 #include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"

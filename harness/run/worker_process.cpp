@@ -25,7 +25,7 @@
 #include "filters/filter_errors.h"
 #include "harness/live/frame_file.h"
 #include "harness/options/experiment_file.h"
-#include "harness/run/task_images.h"
+#include "harness/run/float_images.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
 

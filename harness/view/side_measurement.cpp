@@ -11,7 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "harness/run/task_images.h"
+#include "harness/run/float_images.h"
 #include "harness/view/save.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
@@ -47,7 +47,7 @@ std::vector<std::string> list_arguments(const options::RunOptions& options, cons
           run::cache_word(options.cache),
           "--fresh",
           "--every-step",
-          "--no-pictures"};
+          "--no-pictures", "--all-parts"};
 }
 
 /// The last line that was written to its end, as far as the process tells what it does.

@@ -22,4 +22,5 @@ for (const [name, begin] of [
   const holder = document.querySelector(name);
   if (holder) begin(holder);
 }
+run.times.forEach((times) => addMachine(times, false));
 if (timesHere() && run.scopes.length > 0) addMachine(timesHere(), true);

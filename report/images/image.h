@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <vector>
@@ -45,5 +46,14 @@ struct Image {
            static_cast<std::size_t>(channels);
   }
 };
+
+/// Turns values, rows top to bottom, into an image of one channel.
+template <class T>
+Image make_image(int width, int height, const std::vector<T>& values) {
+  Image image(width, height, 1);
+  assert(values.size() == image.texels.size());
+  std::copy(values.begin(), values.end(), image.texels.begin());
+  return image;
+}
 
 }  // namespace shadowbench::images

@@ -18,7 +18,6 @@
 namespace shadowbench::images {
 namespace {
 
-constexpr double kHighestCode = 65534.0;
 constexpr std::uint32_t kNoCode = 65535, kNoFloat = 0x7fc00000;
 constexpr double kMostOff = 1.0 / 32768.0, kMostOffOfGreatest = 1.0 / 1024.0;  // else codes do not serve
 constexpr int kCompression = 6;

@@ -11,6 +11,9 @@
 
 namespace shadowbench::images {
 
+/// The code of the largest value of a plane; the next is that of a value that is not finite.
+inline constexpr double kHighestCode = 65534.0;
+
 /// Named planes of one size, 1 channel each.
 using ValuePlanes = std::vector<std::pair<std::string, Image>>;
 

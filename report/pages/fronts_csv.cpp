@@ -48,7 +48,7 @@ std::vector<std::string> describe_place(const std::vector<records::CellRecord>& 
 }
 
 std::string make_row(const std::vector<records::CellRecord>& cells, const analysis::TradeScope& scope,
-                     const analysis::TradeFront& front, std::size_t i) {
+                     const analysis::TradeFront& front, std::size_t i, const std::string& renderer) {
   const analysis::TradeConfiguration& each = scope.configurations[i];
   std::vector<std::string> fields = {scope.id,
                                      scope.scene,
@@ -67,7 +67,16 @@ std::string make_row(const std::vector<records::CellRecord>& cells, const analys
   append(fields, each.costs[front.cost].estimate);
   const auto place = describe_place(cells, scope, front, i);
   fields.insert(fields.end(), place.begin(), place.end());
+  fields.push_back(renderer);
   return join_front_row(fields);
+}
+
+std::string make_rows(const std::vector<records::CellRecord>& cells, const analysis::TradeScope& scope,
+                      std::size_t error, std::size_t cost, const std::string& renderer) {
+  const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
+  std::string rows;
+  for (std::size_t i = 0; i < scope.configurations.size(); ++i) rows += make_row(cells, scope, front, i, renderer);
+  return rows;
 }
 
 }  // namespace
@@ -98,23 +107,26 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"on_front", "1: on the front, 0: not, empty: left out"},
           {"dominated_by", "the cheapest cell of the front that beats it"},
           {"tie_with", "the cell of the front from which it cannot be told apart"},
-          {"left_out", "why it has no place on this front"}};
+          {"left_out", "why it has no place on this front"},
+          {"renderer", "the GPU that a browser timed the cost on; empty: the run's own"}};
 }
 
 void write_fronts_csv(const std::vector<records::CellRecord>& cells, const std::vector<analysis::TradeScope>& scopes,
+                      const std::vector<records::GpuTimes>& machines,
                       const std::function<void(std::string_view)>& write) {
   std::vector<std::string> names;
   for (const records::CsvColumn& column : list_front_columns()) names.push_back(column.name);
   write(join_front_row(names));
-  for (const analysis::TradeScope& scope : scopes) {
-    for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
-      for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) {
-        const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
-        std::string rows;
-        for (std::size_t i = 0; i < scope.configurations.size(); ++i) rows += make_row(cells, scope, front, i);
-        write(rows);
-      }
-    }
+  for (const analysis::TradeScope& scope : scopes)
+    for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error)
+      for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) write(make_rows(cells, scope, error, cost, {}));
+  for (const records::GpuTimes& times : machines) {
+    records::Results timed{{}, cells};
+    records::apply_gpu_times(timed, times, times.renderer);
+    for (const analysis::TradeScope& scope : analysis::make_trade_scopes(timed.cells))
+      for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error)
+        for (const std::size_t cost : {analysis::kMovingCost, analysis::kStaticCost})
+          write(make_rows(timed.cells, scope, error, cost, times.renderer));
   }
 }
 

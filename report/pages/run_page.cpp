@@ -289,7 +289,7 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
 }  // namespace
 
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& measured,
-                             const std::optional<Trade>& trade) {
+                             const std::optional<Trade>& trade, const std::vector<records::GpuTimes>& machines) {
   const auto withheld = analysis::withhold_mixed_times(measured);
   const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
   const analysis::AdviceRequest request = choose_request(cells);
@@ -304,6 +304,8 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
     if (std::ranges::any_of(cells, [](const auto& cell) { return cell.images.frames.has_value(); }))
       add({"live", "Live", {document::Mount{"live", {}}}});
     page.data = make_run_data(run, cells, request);
+    page.data["times"] = nlohmann::json::array();
+    for (const records::GpuTimes& times : machines) page.data["times"].push_back(records::gpu_times_json(times));
   }
   if (trade) add(make_trade_section(run, cells, *trade));
   if (auto gpus = make_gpu_section(cells)) add(std::move(*gpus));

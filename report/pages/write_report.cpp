@@ -32,16 +32,17 @@ void add_warnings(records::RunRecord& run, const std::vector<records::CellRecord
 void write_report(const std::filesystem::path& dir, records::RunRecord run, const std::vector<std::string>& keys) {
   std::vector<records::CellRecord> cells;
   for (const std::string& key : keys) cells.push_back(records::read_cell(dir, key));
+  const std::vector<records::GpuTimes> machines = records::list_gpu_times(dir, cells, run.warnings);
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));
   const std::optional<Trade> trade = make_trade(cells);
   if (trade && trade->has_fronts) {
     AtomicFile file(dir / "fronts.csv");
-    write_fronts_csv(cells, trade->scopes, [&](std::string_view rows) { file.write(rows); });
+    write_fronts_csv(cells, trade->scopes, machines, [&](std::string_view rows) { file.write(rows); });
     file.commit();
   }
-  write_page(dir, "run", make_run_page(run, cells, trade));
+  write_page(dir, "run", make_run_page(run, cells, trade, machines));
   records::write_results(dir, run, cells);
 }
 

@@ -2,22 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/temporary_files.h"
+#include "report/files/file_name.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::uintmax_t kMostBytes = 16 * kMebibyte;
+constexpr const char* kFolder = "times";
 constexpr const char* kSchema = "shadowbench gpu-times 1";  // report/document/machine_times.js writes it
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
+[[noreturn]] void refuse(const fs::path& file, const std::string& what) {
   throw Error(ErrorKind::kInput, what + "; choose a gpu-times.json that a report's page saved", file.string());
 }
 
@@ -46,6 +53,10 @@ TimedParts read_parts(const json& cell) {
   return parts;
 }
 
+json write_time(const OwnTime& time) {
+  return {{"median", time.median}, {"interval", {time.ci95.low, time.ci95.high}}, {"rounds", time.n}};
+}
+
 void add(OwnTime& sum, const OwnTime& part) {
   sum.median += part.median;
   sum.q1 += part.q1;
@@ -69,7 +80,7 @@ void set_times(CellRecord& cell, const TimedParts& parts) {
 
 }  // namespace
 
-GpuTimes read_gpu_times(const std::filesystem::path& file) {
+GpuTimes read_gpu_times(const fs::path& file) {
   const std::vector<unsigned char> bytes = read_file_bytes(file, kMostBytes);
   std::istringstream stream(std::string(bytes.begin(), bytes.end()));
   json written;
@@ -96,7 +107,7 @@ GpuTimes read_gpu_times(const std::filesystem::path& file) {
   return times;
 }
 
-void apply_gpu_times(Results& results, const GpuTimes& times, const std::filesystem::path& file) {
+void apply_gpu_times(Results& results, const GpuTimes& times, const fs::path& file) {
   results.run.gl.renderer = times.renderer;
   results.run.gl.software = times.software;
   bool is_any_timed = false;
@@ -114,6 +125,39 @@ void apply_gpu_times(Results& results, const GpuTimes& times, const std::filesys
     set_times(cell, found->second);
   }
   if (!is_any_timed) refuse(file, "it has times of another run: none of its cells is one of this one");
+}
+
+json gpu_times_json(const GpuTimes& times) {
+  json cells = json::object();
+  for (const auto& [key, parts] : times.cells)
+    cells[key] = {{"map", write_time(parts.map)},
+                  {"prefilter", parts.prefilter ? write_time(*parts.prefilter) : json()},
+                  {"filter", write_time(parts.filter)}};
+  return {{"schema", kSchema}, {"renderer", times.renderer}, {"isSoftware", times.software}, {"cells", cells}};
+}
+
+fs::path gpu_times_path(const fs::path& report, const std::string& renderer) {
+  return report / kFolder / (files::make_file_stem(renderer) + ".json");
+}
+
+std::vector<GpuTimes> list_gpu_times(const fs::path& report, const std::vector<CellRecord>& cells,
+                                     std::vector<std::string>& warnings) {
+  std::error_code error;
+  std::set<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(report / kFolder, error))
+    if (entry.path().extension() == ".json" && !is_temporary(entry.path())) paths.insert(entry.path());
+  std::vector<GpuTimes> list;
+  for (const fs::path& path : paths) {
+    try {
+      list.push_back(read_gpu_times(path));
+    } catch (const Error& damaged) {
+      warnings.push_back(fmt::format("{}; times of that machine are left out", damaged.what()));
+    }
+  }
+  std::erase_if(list, [&](const GpuTimes& times) {
+    return std::ranges::none_of(cells, [&](const CellRecord& cell) { return times.cells.contains(cell.key); });
+  });
+  return list;
 }
 
 }  // namespace shadowbench::records

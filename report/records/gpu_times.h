@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "report/records/json_io.h"
 
@@ -30,5 +32,16 @@ GpuTimes read_gpu_times(const std::filesystem::path& file);
 /// Puts these times in the place of those that the run measured; cells that were not timed have none then.
 /// Throws Error(kInput), naming `file`, where none of the run's cells was timed.
 void apply_gpu_times(Results& results, const GpuTimes& times, const std::filesystem::path& file);
+
+/// Writes them as the file has them, without what it says beside, for a page's script.
+nlohmann::json gpu_times_json(const GpuTimes& times);
+
+/// Where a report folder keeps times that were joined to it, those of this renderer.
+std::filesystem::path gpu_times_path(const std::filesystem::path& report, const std::string& renderer);
+
+/// Reads all that a report folder keeps, in the order of their files, but those that have none of its cells. What
+/// cannot be read is left out, and `warnings` say why.
+std::vector<GpuTimes> list_gpu_times(const std::filesystem::path& report, const std::vector<CellRecord>& cells,
+                                     std::vector<std::string>& warnings);
 
 }  // namespace shadowbench::records

@@ -177,7 +177,7 @@ def compare(label, layer, place, depth, depth_map, size, layers):
 
 def check(program, scene, options, folder):
     out = folder / "run"
-    subprocess.run([program, "run", "--scene", scene, *options, *SETTINGS, "--out", str(out), "--fresh"], check=True,
+    subprocess.run([program, "run", "--scene", scene, *options, *SETTINGS, "--all-parts", "--out", str(out), "--fresh"], check=True,
                    stdout=subprocess.DEVNULL)
     file = ExrFile(next(out.glob("*.exr")), folder)
     layers = file.layers()

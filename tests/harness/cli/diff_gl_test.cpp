@@ -34,7 +34,8 @@ TEST_F(Recheck, DiffOfTheSavedPictures_GivesTheErrorsOfTheRun) {
 TEST_F(Recheck, FlipOfTheSavedPictures_IsTheFlipOfTheRun) {
   // A user's filter is drawn by another process: its picture has been through a file already.
   write("copied.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
-  ASSERT_EQ(run("run --grids --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --filters pcf2x2,copied "
+  ASSERT_EQ(run("run --grids --all-parts --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --filters "
+                "pcf2x2,copied "
                 "--filter-file copied.glsl")
                 .exit_code,
             0);

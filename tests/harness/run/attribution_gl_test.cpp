@@ -33,6 +33,7 @@ class Attributed : public ::testing::Test {
     options_.reference = filters::Catalogue(options_.resources.filters).parse_requests("none").front();
     options_.out = folder_;
     options_.command = {"test"};
+    options_.all_parts = true;
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
+#include "harness/run/float_images.h"
 #include "harness/run/scene_loading.h"
-#include "harness/run/task_images.h"
 #include "harness/view/save.h"
 #include "report/records/json_io.h"
 #include "tests/harness/scene/gltf_parts.h"

@@ -25,7 +25,7 @@ const Estimate& cost_of(const TradeScope& scope, std::size_t i, std::size_t meas
 
 std::string make_fronts_csv(const std::vector<CellRecord>& cells, const std::vector<TradeScope>& scopes) {
   std::string csv;
-  pages::write_fronts_csv(cells, scopes, [&](std::string_view rows) { csv += rows; });
+  pages::write_fronts_csv(cells, scopes, {}, [&](std::string_view rows) { csv += rows; });
   return csv;
 }
 

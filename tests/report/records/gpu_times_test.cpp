@@ -85,5 +85,26 @@ TEST_F(GpuTimesTest, TimesOfAnotherRunAreRefused) {
   EXPECT_THROW(apply_gpu_times(results, times, file_), Error);
 }
 
+TEST_F(GpuTimesTest, AReportHasTheTimesOfItsCellsThatLieInItsFolder) {
+  std::vector<CellRecord> cells(1);
+  cells[0].key = "a";
+  const auto put = [&](const std::string& renderer, const std::string& text) {
+    std::filesystem::create_directories(gpu_times_path(scratch_.path(), renderer).parent_path());
+    std::ofstream(gpu_times_path(scratch_.path(), renderer)) << text;
+  };
+  put("One", write(kFilter, kFilter));
+  put("../Two", write(kFilter, "null", "elsewhere"));
+  put("Three", "{");
+  std::vector<std::string> warnings;
+  const std::vector<GpuTimes> list = list_gpu_times(scratch_.path(), cells, warnings);
+  ASSERT_EQ(list.size(), 1u);
+  const GpuTimes back = read(gpu_times_json(list[0]).dump());
+  EXPECT_EQ(back.renderer, "A GPU");
+  EXPECT_EQ(back.cells.at("a").prefilter->ci95.high, 2.5);
+  EXPECT_EQ(back.cells.at("a").filter.n, 11);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("Three.json: this is no JSON"));
+}
+
 }  // namespace
 }  // namespace shadowbench::records
