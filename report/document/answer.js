@@ -18,7 +18,6 @@ const startAnswer = (holder) => {
   const titleOf = (field) => limitOf(field)?.title ?? field;
   const fieldOf = (field) => (field === kTime ? costChoice().field : field);
   const [all] = run.scopes;
-
   // The worst value of a configuration in a scope, or a text that says why there is none.
   const worstOf = (index, field, scope = all) => scope.rows[index].worst[fieldOf(field)];
   const costOf = (index, scope = all) => scope.rows[index][costChoice().field];
@@ -341,18 +340,18 @@ const startAnswer = (holder) => {
     showSliders();
     change();
   };
-  const costs = run.costs.map(({ id, title }) => [id, title]);
-  const cost = addSelect(controls, "Cost", costs, { name: "cost" }, (value) => {
-    shadowbench.cost = value;
+  const chooseCost = (value) => {
+    if (value === kMeasure) return measurer.begin();
+    measurer.end();
+    shadowbench.cost = cost.value = value;
     delete state.limits[kTime];
     choose({});
     shadowbench.drawTable?.();
-  });
-  cost.value = shadowbench.cost;
+  };
+  const cost = addSelect(controls, "Cost", [], { name: "cost" }, chooseCost);
   // Costs that came after the page was opened.
   shadowbench.listCosts = () => {
-    cost.replaceChildren(...run.costs.map(({ id, title }) => new Option(title, id)));
-    cost.value = shadowbench.cost;
+    fillCosts(cost);
     showSliders();
     show();
     shadowbench.drawTable?.();
@@ -364,6 +363,7 @@ const startAnswer = (holder) => {
   softLabel.append(" Soft shadows that harden at contacts");
   softLabel.hidden = !run.configurations.some(({ hardens, teaching }) => hardens && !teaching);
   soft.addEventListener("change", () => choose({ soft: soft.checked }));
+  const measurer = makeMeasurer(cost, chooseCost);
   const openShown = () => {
     const [label, title] = readLink("shown") ?? [];
     const [index, place] = [run.configurations.findIndex((each) => each.label === label), places.indexOf(title)];

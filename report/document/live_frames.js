@@ -1,5 +1,5 @@
 // Loads what a run wrote of its frames, when it is asked for: promises the frames, their buffers and textures, and the
-// player that draws them. `reset` gives all that was loaded the run's own values again.
+// player that draws them.
 const makeLoader = (gl) => {
   const players = new Map();
   const unpacked = new Map(); // by path: frames share them
@@ -21,12 +21,8 @@ const makeLoader = (gl) => {
     const blobs = await Promise.all(frames.blobs.map(unpack));
     return { frames, blobs, player: makePlayer(gl, frames, blobs) };
   };
-  const open = (path) => {
+  return (path) => {
     if (!players.has(path)) players.set(path, openFrames(path));
     return players.get(path);
   };
-  const reset = async () => {
-    for (const { value } of await attemptAll([...players.values()])) value?.player.reset();
-  };
-  return { open, reset };
 };

@@ -82,7 +82,8 @@ const addScopeTimes = (times, { id, field, isStatic, title }, scope) => {
   }
   scope.advice[id] = advice;
 };
-// Puts a machine's times among the costs, in the place of older ones of the same renderer.
+// Puts a machine's times among the costs, in the place of older ones of the same renderer; gives the id of that of a
+// moving light.
 const addMachine = (times, isHere) => {
   const old = machines.findIndex(({ renderer }) => renderer === times.renderer);
   const at = old < 0 ? machines.push(times) - 1 : old;
@@ -104,6 +105,7 @@ const addMachine = (times, isHere) => {
     for (const cell of run.cells) cell.values_of[id] = timeOfFrame(times.cells[cell.key], isStatic)?.value ?? null;
   }
   shadowbench.listCosts?.();
+  return `machine${at}.moving`;
 };
 
 // What was timed here, now or before: it is kept by the browser, by the place of the page.

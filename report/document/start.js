@@ -14,6 +14,8 @@ if (run.cells.some(({ picture, values }) => picture || values)) {
   const [first = kTruth, second = first] = listAll(0);
   if (!openLink()) start({ place: 0, left: first, right: second });
 } else section.hidden = true;
+run.times.forEach((times) => addMachine(times, false));
+if (timesHere() && run.scopes.length > 0) addMachine(timesHere(), true);
 for (const [name, begin] of [
   [".numbers", startTable],
   [".answer", startAnswer],
@@ -22,5 +24,3 @@ for (const [name, begin] of [
   const holder = document.querySelector(name);
   if (holder) begin(holder);
 }
-run.times.forEach((times) => addMachine(times, false));
-if (timesHere() && run.scopes.length > 0) addMachine(timesHere(), true);

@@ -351,12 +351,12 @@ const makePlayer = (gl, frames, blobs) => {
     // Gives uniforms of a step other values; null gives them the run's own again.
     setUniforms: (index, changes) => {
       ++turn;
-      for (const [name, values] of Object.entries(changes))
-        if (values) overrides.set(`${index} ${name}`, { values, turn });
-        else overrides.delete(`${index} ${name}`);
+      for (const [name, values] of Object.entries(changes)) {
+        const key = `${index} ${name}`;
+        const isNew = String(overrides.get(key)?.values ?? null) !== String(values);
+        if (isNew) overrides.set(key, { values, turn });
+      }
     },
-    // Gives all uniforms the run's own values again.
-    reset: () => overrides.clear(),
     // Puts a texture in the place of one that a sampler reads; null takes it away.
     standIn: (sampler, texture) => {
       ++turn;

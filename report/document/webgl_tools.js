@@ -48,8 +48,8 @@ const readValues = (gl, width, height) => {
   return values;
 };
 
-// Shows linear pictures on the canvas: each from one part of its width to another.
-const makeDisplay = (gl, canvas) => {
+// Shows linear pictures on the canvas.
+const makeDisplay = (gl) => {
   const fragment = `#version 300 es
     precision highp float;
     uniform sampler2D picture;
@@ -61,20 +61,17 @@ const makeDisplay = (gl, canvas) => {
     }`;
   const program = linkProgram(gl, "the display", kTriangle, fragment);
   const array = gl.createVertexArray();
-  return ({ object, width, height }, from, to) => {
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+  return ({ object, width, height }) => {
+    if (gl.canvas.width !== width || gl.canvas.height !== height) Object.assign(gl.canvas, { width, height });
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE].forEach((each) => gl.disable(each));
+    [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
     gl.viewport(0, 0, width, height);
-    gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(Math.round(from * width), 0, Math.round(to * width) - Math.round(from * width), height);
     gl.useProgram(program);
     gl.bindVertexArray(array);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindSampler(0, null);
     gl.bindTexture(gl.TEXTURE_2D, object);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.disable(gl.SCISSOR_TEST);
   };
 };
 

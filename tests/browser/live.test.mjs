@@ -1,46 +1,10 @@
 // The section that draws with WebGL 2: as the run drew, on two implementations of it; by sliders; and timed.
 import assert from "node:assert/strict";
-import { cpSync, existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
-import { deflateSync, inflateSync } from "node:zlib";
-import { folderOf, kNarrow, launch, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
-
-// Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
-const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const openLive = async (file, browser, options = {}) => {
-  const opened = await open(file, { browser, ...options });
-  await opened.page.locator("#live").evaluate((section) => section.scrollIntoView());
-  await opened.page.waitForSelector(".live canvas");
-  return opened;
-};
-const press = async (page, name) => {
-  await page.locator(".live").getByRole("button", { name }).click();
-  await page.waitForFunction(() => [...document.querySelectorAll(".live button")].find((each) => each.textContent === "Stop").hidden, null, { timeout: 240000 });
-};
-const readTable = (page) => page.locator(".live table tbody tr").evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
-const withBrowser = async (args, action) => {
-  const browser = await launch(args);
-  try {
-    await action(browser);
-  } finally {
-    await browser.close();
-  }
-};
-// A copy of a run, of whose scripts of frames a function changes the JSON.
-const changeFrames = (run, name, edit) => {
-  const folder = folderOf(run) + "." + name;
-  cpSync(folderOf(run), folder, { recursive: true });
-  for (const file of readdirSync(join(folder, "live"))) {
-    const path = join(folder, "live", file), [, head, text] = /^(shadowbenchValues\("[^"]*",)"([^"]*)"/.exec(readFileSync(path, "utf8"));
-    const json = inflateSync(Buffer.from(text, "base64")).toString();
-    if (!json.startsWith("{")) continue;
-    const frames = JSON.parse(json);
-    edit(frames);
-    writeFileSync(path, `${head}"${deflateSync(JSON.stringify(frames)).toString("base64")}");`);
-  }
-  return join(folder, "index.html");
-};
+import { changeFrames, keepContexts, kMesa, kOwn, openLive, press, readTable, withBrowser } from "./live_support.mjs";
+import { folderOf, kNarrow, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 for (const [title, args] of [["OnTheRunsOwnRasteriser", kMesa], ["OnAnotherImplementation", kOwn]])
   test(`EveryFilterDrawsAsTheRunDid_${title}`, () => withBrowser(args, async (browser) => {
@@ -223,9 +187,9 @@ test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () 
 }));
 
 test("AContextThatIsLost_IsSaid_AndDrawsAgainOnceItIsBack", () => withBrowser(kMesa, async (browser) => {
-  const { page, close } = await openLive(pageOf("ball"), browser);
+  const { page, close } = await openLive(pageOf("ball"), browser, { init: keepContexts });
   await page.evaluate(() => {
-    window.lost = document.querySelector(".live canvas").getContext("webgl2").getExtension("WEBGL_lose_context");
+    window.lost = window.contexts[0].getExtension("WEBGL_lose_context");
     window.lost.loseContext();
   });
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the browser has taken the GPU away"));

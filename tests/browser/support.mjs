@@ -22,10 +22,12 @@ export const pageOf = (run, file = "index.html") => join(folderOf(run), file);
 export const readResults = (run) => JSON.parse(readFileSync(pageOf(run, "results.json"), "utf8"));
 export const runProgram = (words) => spawnSync(kProgram, words, { encoding: "utf8" });
 
-// Opens a page from disk in a profile of its own, and keeps every word that the console gets.
-export const open = async (file, { hash = "", waits = true, browser = common, ...options } = {}) => {
+// Opens a page from disk in a profile of its own, and keeps every word that the console gets; `init` runs in it before
+// its own scripts.
+export const open = async (file, { hash = "", waits = true, browser = common, init, ...options } = {}) => {
   const context = await browser.newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
   page.setDefaultTimeout(15000);
+  if (init) await page.addInitScript(init);
   // Chromium's own word on its software rasteriser, which draws the section Live wherever that is near, is no fault of a page.
   page.on("console", (message) => /GL Driver Message \(OpenGL, Performance/.test(message.text()) || messages.push(message.text()));
   page.on("pageerror", (error) => messages.push(String(error)));

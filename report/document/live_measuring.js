@@ -1,0 +1,144 @@
+// Checks and times the filters of a place as the run measured them: how far each is from the run, and what its parts take.
+const kRounds = 11;
+const makeMeasuring = (engine) => {
+  const { gl } = engine;
+  const time = makeTimer(gl);
+  const found = new Map(); // by a cell's key
+  const samplings = new Map(); // by a map's size
+  const references = new Map(); // by place: how far the mean of many maps is from the truth, in words
+  let whyStopped = "";
+  const isStopped = () => whyStopped !== "";
+
+  const samplingAt = (size) => {
+    if (!samplings.has(size)) samplings.set(size, measureSampling(gl, size));
+    return samplings.get(size);
+  };
+  const loadAsRun = async (who, place) => {
+    const frame = await engine.load(who, place);
+    engine.pose(frame, kAsRun);
+    return frame;
+  };
+  const check = async (who, place) => {
+    const frame = await engine.load(who, place);
+    const [plane, mask] = [await getPlane(who, place, "visibility"), await getMask(place)];
+    engine.pose(frame, kAsRun);
+    const result = checkFrame(frame, plane, mask, samplingAt(run.configurations[who].map));
+    found.set(frame.cell.key, { ...found.get(frame.cell.key), ...result, refused: undefined });
+  };
+  const checkPlace = async (place, onEach) => {
+    for (const who of listFiltersAt(place)) {
+      if (isStopped()) return;
+      const { message: why } = await attempt(check(who, place));
+      if (why) found.set(cellAt(who, place).key, { refused: why });
+      onEach();
+      await pause();
+    }
+  };
+  // How far the reference is from the traced truth.
+  const checkReference = async (place) => {
+    const reference = await engine.findReference(kAsRun, place);
+    if (!reference || isStopped() || !run.truths[place]) return;
+    while (engine.refine(reference, kAsRun) && !isStopped()) await pause();
+    const [plane, mask] = [await getPlane(kTruth, place, "visibility"), await getMask(place)];
+    const { width, height } = await loadFile(kTruth, place);
+    const { rmse } = compareValues(reference.read(), plane, mask, width, { x: 0, y: 0, width, height }, 0);
+    const maps = `The mean of ${reference.count()} maps from points of the sun`;
+    references.set(place, ` ${maps} has an RMSE of ${format(rmse)} to the traced truth.`);
+  };
+  // Times the filters of a place that draw as the run did; what they share is timed once.
+  const timePlace = async (place, onRound) => {
+    const drawn = new Map();
+    const keys = [];
+    for (const who of listFiltersAt(place)) {
+      const { value: frame } = await attempt(loadAsRun(who, place));
+      if (!frame || !found.get(frame.cell.key)?.isSame) continue;
+      const { player, empty } = frame;
+      [frame.picture, empty].filter((step) => step !== null).forEach((step) => player.draw(step));
+      const parts = stepsOf(frame);
+      const names = Object.keys(parts).filter((name) => parts[name].length > 0);
+      const idOf = (name) => `${frame.cell.frames} ${parts[name].join()}`;
+      for (const name of names) drawn.set(idOf(name), (count) => player.repeat(parts[name], count));
+      keys.push({ key: frame.cell.key, ids: Object.fromEntries(names.map((name) => [name, idOf(name)])) });
+    }
+    const times = await time([...drawn.values()], kRounds, onRound, isStopped);
+    const byId = new Map([...drawn.keys()].map((id, i) => [id, times[i]]));
+    for (const { key, ids } of keys) {
+      const [map, lookup, prefilter, empty] = ["map", "lookup", "prefilter", "empty"].map((name) =>
+        byId.get(ids[name]),
+      );
+      if (map && lookup)
+        found.set(key, { ...found.get(key), map, prefilter: prefilter ?? null, filter: subtractTimes(lookup, empty) });
+    }
+  };
+  // Throws why there are none that could be costs.
+  const collectTimes = () => {
+    if (isStopped()) throw new Error(whyStopped);
+    const timed = [...found].filter(([, { map, filter }]) => map && filter);
+    if (timed.length === 0) throw new Error("Nothing that is drawn here agrees with the run, so nothing was timed.");
+    const parts = ([key, { map, prefilter, filter }]) => [key, { map, prefilter, filter }];
+    return {
+      schema: kTimesSchema,
+      renderer: engine.renderer,
+      browser: navigator.userAgent,
+      isSoftware: engine.isSoftware,
+      cells: Object.fromEntries(timed.map(parts)),
+    };
+  };
+  return {
+    found,
+    samplingAt,
+    sayReference: (place) => references.get(place) ?? "",
+    begin: () => (whyStopped = ""),
+    stop: (why) => (whyStopped ||= why),
+    isStopped,
+    checkPlace,
+    checkReference,
+    timePlace,
+    collectTimes,
+  };
+};
+
+const kResultColumns = [
+  "filter",
+  "RMSE to the run, same map",
+  "farthest pixel",
+  "RMSE to the run, own map",
+  "filter, ms",
+  "prefilter, ms",
+];
+// Shows what is known of the filters of a place.
+const fillResults = (table, place, { found, samplingAt, sayReference }) => {
+  const whos = listFiltersAt(place);
+  const rows = whos.map((who) => [who, found.get(cellAt(who, place).key) ?? {}]);
+  table.replaceChildren();
+  if (rows.every(([, { rmse, refused }]) => rmse === undefined && !refused)) return;
+  const { weight, shift, turn } = samplingAt(run.configurations[whos[0]].map);
+  const isExact = weight < 1e-5 && shift === 0 && turn < 1e-6;
+  const parts = `weights of 2x2 texels ${format(weight)}, nearest texels ${format(shift)}, cosines ${format(turn)}`;
+  const sampling = isExact
+    ? "Its sampling is exact."
+    : `It may be off, by its own measure, in ${parts}: as much is allowed for.`;
+  const [, { map } = {}] = rows.find(([, { map }]) => map) ?? [];
+  const ofMap = map ? ` The map takes ${format(map.median)} ms.` : "";
+  const title = `What this GPU draws on ${run.places[place].title}.`;
+  element(table, "caption", {}, `${title} ${sampling}${ofMap}${sayReference(place)}`);
+  const head = element(element(table, "thead"), "tr");
+  for (const column of kResultColumns) element(head, "th", { scope: "col" }, column);
+  const body = element(table, "tbody");
+  const say = (each) => (each ? format(each.median) : "");
+  const sayInterval = (each) =>
+    each?.interval ? `95 %: ${each.interval.map((end) => format(end)).join(" to ")}, of ${each.rounds} rounds` : "";
+  for (const [who, { rmse, worst, all, isSame, refused, filter, prefilter }] of rows) {
+    const row = element(body, "tr");
+    element(element(row, "th", { scope: "row" }), "bdi", {}, nameOf(who));
+    if (refused) {
+      element(row, "td", { colSpan: kResultColumns.length - 1, className: "text" }, refused);
+      continue;
+    }
+    const isKnown = rmse !== undefined;
+    const verdict = isKnown ? (isSame ? "" : "✗ ") + format(rmse) : "";
+    element(row, "td", { className: isKnown && !isSame ? "bad" : "" }, verdict);
+    for (const value of [worst, all]) element(row, "td", {}, isKnown ? format(value) : "");
+    for (const each of [filter, prefilter]) element(row, "td", { title: sayInterval(each) }, say(each));
+  }
+};

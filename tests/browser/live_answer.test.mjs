@@ -1,0 +1,84 @@
+// The answer on top of the page, where this GPU takes part in it: its times, and its picture.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { changeFrames, keepContexts, kMesa, withBrowser } from "./live_support.mjs";
+import { kNarrow, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
+
+const kMeasure = "this GPU (measure)";
+const listTitles = (page) => page.locator("select[name=cost] option").allTextContents();
+const chosen = (page) => page.locator("select[name=cost]").evaluate((select) => select.selectedOptions[0].textContent);
+const measure = (page) => page.locator("select[name=cost]").selectOption({ label: kMeasure });
+const line = (page) => page.locator(".answer form [role=status]");
+const whenItSays = (page, text) => page.waitForFunction((words) => document.querySelector(".answer form [role=status]").textContent.includes(words), text, { timeout: 120000 });
+const whenItEnds = (page) => page.waitForFunction(() => document.querySelector(".answer form button").hidden, null, { timeout: 120000 });
+
+test("ThisGpuIsACost_ThatIsMeasuredWhenItIsChosen", () => withBrowser(kMesa, async (browser) => {
+  const { page, messages, shoot, close } = await open(pageOf("untrue"), { browser, viewport: kNarrow });
+  const before = await chosen(page), top = await page.evaluate(() => scrollY);
+  assert.equal((await listTitles(page)).at(-1), kMeasure);
+  await measure(page);
+  await whenItSays(page, "This GPU is being timed. cubes: round");
+  assert.deepEqual(await listViolations(page), []);
+  assert.ok((await measureOverflow(page)) <= 0);
+  await shoot("answer.measuring");
+  await whenItEnds(page);
+  assert.equal(await line(page).textContent(), "");
+  assert.equal(await chosen(page), "moving light, this GPU");
+  assert.ok(!(await listTitles(page)).includes(kMeasure) && before !== (await chosen(page)));
+  assert.equal(await page.evaluate(() => scrollY), top);
+  assert.match(await page.locator(".answer code").first().textContent(), / --times gpu-times.json/);
+  await page.waitForFunction(() => location.hash.includes("machine0.moving"));
+  await page.reload();
+  assert.equal(await chosen(page), "moving light, this GPU", "the link holds it");
+  assert.deepEqual(messages, []);
+  await close();
+}));
+
+test("MeasuringThatEnds_LeavesTheChoiceAsItWas_AndSaysWhy", () => withBrowser(kMesa, async (browser) => {
+  const { page, close } = await open(pageOf("untrue"), { browser, init: keepContexts });
+  const before = await chosen(page);
+  const endsWith = async (words) => {
+    await whenItEnds(page);
+    assert.equal(await line(page).textContent(), words);
+    assert.equal(await chosen(page), before);
+    assert.ok((await listTitles(page)).includes(kMeasure));
+  };
+  await measure(page);
+  await whenItSays(page, "round 1 of");
+  await page.locator(".answer form").getByRole("button", { name: "Stop" }).click();
+  await endsWith("Timing was stopped before it had all times.");
+  await measure(page);
+  await whenItSays(page, "round 1 of");
+  await page.evaluate(() => (window.lost = window.contexts[0].getExtension("WEBGL_lose_context")).loseContext());
+  await endsWith("The browser has taken the GPU away from this page, and may give it back.");
+  await page.evaluate(() => window.lost.restoreContext());
+  await page.waitForFunction(() => document.querySelector(".live select"));
+  await measure(page);
+  await whenItSays(page, "round 1 of");
+  await page.locator("select[name=cost]").selectOption({ label: before });
+  await endsWith("Timing was stopped before it had all times.");
+  await close();
+}));
+
+test("WhereNothingAgreesWithTheRun_MeasuringSaysSo", () => withBrowser(kMesa, async (browser) => {
+  const file = changeFrames("single", "disagrees", ({ programs }) => {
+    for (const each of programs.filter(({ label }) => label.endsWith("lookup"))) each.fragment = each.fragment.replace("void main()", "void nothing()");
+  });
+  const { page, close } = await open(file, { browser });
+  const before = await chosen(page);
+  await measure(page);
+  await whenItSays(page, "Nothing that is drawn here agrees with the run");
+  await whenItEnds(page);
+  assert.equal(await chosen(page), before);
+  await close();
+}));
+
+test("WithoutWebGl_MeasuringSaysSo", () => withBrowser(["--disable-gpu", "--disable-3d-apis"], async (browser) => {
+  const { page, close } = await open(pageOf("untrue"), { browser });
+  const before = await chosen(page);
+  await measure(page);
+  await whenItSays(page, "no WebGL 2");
+  await whenItEnds(page);
+  assert.equal(await chosen(page), before);
+  await close();
+}));

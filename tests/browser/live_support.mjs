@@ -1,0 +1,51 @@
+// What the tests of the pages that draw with WebGL 2 share.
+import { cpSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { deflateSync, inflateSync } from "node:zlib";
+import { folderOf, launch, open } from "./support.mjs";
+
+// Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
+export const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+export const openLive = async (file, browser, options = {}) => {
+  const opened = await open(file, { browser, ...options });
+  await opened.page.locator("#live").evaluate((section) => section.scrollIntoView());
+  await opened.page.waitForSelector(".live canvas");
+  return opened;
+};
+export const press = async (page, name) => {
+  await page.locator(".live").getByRole("button", { name }).click();
+  await page.waitForFunction(() => [...document.querySelectorAll(".live button")].find((each) => each.textContent === "Stop").hidden, null, { timeout: 240000 });
+};
+export const readTable = (page) => page.locator(".live table tbody tr").evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
+export const withBrowser = async (args, action) => {
+  const browser = await launch(args);
+  try {
+    await action(browser);
+  } finally {
+    await browser.close();
+  }
+};
+// A copy of a run, of whose scripts of frames a function changes the JSON.
+export const changeFrames = (run, name, edit) => {
+  const folder = folderOf(run) + "." + name;
+  cpSync(folderOf(run), folder, { recursive: true });
+  for (const file of readdirSync(join(folder, "live"))) {
+    const path = join(folder, "live", file), [, head, text] = /^(shadowbenchValues\("[^"]*",)"([^"]*)"/.exec(readFileSync(path, "utf8"));
+    const json = inflateSync(Buffer.from(text, "base64")).toString();
+    if (!json.startsWith("{")) continue;
+    const frames = JSON.parse(json);
+    edit(frames);
+    writeFileSync(path, `${head}"${deflateSync(JSON.stringify(frames)).toString("base64")}");`);
+  }
+  return join(folder, "index.html");
+};
+// Runs in a page before its scripts: keeps each WebGL context that they get in window.contexts.
+export const keepContexts = () => {
+  const { getContext } = HTMLCanvasElement.prototype;
+  window.contexts = [];
+  HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+    const context = getContext.call(this, kind, ...rest);
+    if (kind === "webgl2" && context) window.contexts.push(context);
+    return context;
+  };
+};
