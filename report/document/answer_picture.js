@@ -12,6 +12,9 @@ const startPicture = (holder) => {
   const caption = figure.querySelector("figcaption") ?? element(figure, "figcaption");
   let shown = null;
   const button = addButton(figure, "Look closer", () => shadowbench.openViewer(shown));
+  const say = (text) => (message.textContent = text);
+  const sayTruth = (text) => shown && shown.left === kTruth && (caption.firstChild.textContent = text);
+  const live = startLivePicture({ figure, stage, slider, line, sayTruth, say });
   const message = element(figure, "p", { className: "note" });
 
   const show = (index, place) => {
@@ -22,14 +25,18 @@ const startPicture = (holder) => {
     const hasBoth = Boolean(truth && cell.picture);
     shown = { place, left: truth ? kTruth : index, right: index, layer: "picture", rect: { x, y, width, height } };
     stage.style.aspectRatio = `${width}/${height}`;
+    stage.style.setProperty("--before", `${(100 * x) / wholeWidth}%`); // what the stage hides at its left
+    stage.style.setProperty("--share", width / wholeWidth);
     [truth, cell.picture].forEach((path, i) => {
       images[i].hidden = !path;
       if (path && images[i].getAttribute("src") !== path) images[i].src = path;
       images[i].alt = `${i === 0 ? "truth" : nameOf(index)} on ${run.places[place].title}`;
-      images[i].style.width = `${(100 * wholeWidth) / width}%`;
-      images[i].style.left = `${(-100 * x) / width}%`;
-      images[i].style.top = `${(-100 * y) / height}%`;
     });
+    for (const { style } of [...images, ...live.canvases]) {
+      style.width = `${(100 * wholeWidth) / width}%`;
+      style.left = `${(-100 * x) / width}%`;
+      style.top = `${(-100 * y) / height}%`;
+    }
     stage.classList.toggle("single", !hasBoth);
     slider.hidden = line.hidden = !hasBoth;
     stage.hidden = caption.hidden = button.hidden = !truth && !cell.picture;
@@ -38,6 +45,7 @@ const startPicture = (holder) => {
     caption.replaceChildren();
     for (const text of hasBoth ? ["truth", name] : [truth ? "truth" : name]) element(caption, "bdi", {}, text);
     message.textContent = truth || cell.picture ? "" : "This run stored no pictures.";
+    live.show(index, place, Boolean(hasBoth && cell.frames && run.truths[place].values));
   };
   images.forEach((image) =>
     image.addEventListener("error", () => {

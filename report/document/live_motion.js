@@ -151,12 +151,12 @@ const makeMotion = (player, frames, blobs, picture) => {
   return { isSun, moveCamera, moveLight };
 };
 
-// Calls with the angles, radians, that a pointer's way over an element turns by.
-const followDrags = (node, onTurn) => {
+// Calls with the angles, radians, that a pointer's way over an element turns by, where it begins as `begins` says.
+const followDrags = (node, onTurn, begins = () => true) => {
   const kTurnPerPixel = 0.006;
   let from = null;
-  node.style.touchAction = "none";
   node.addEventListener("pointerdown", (event) => {
+    if (!begins(event)) return;
     node.setPointerCapture(event.pointerId);
     from = event;
   });

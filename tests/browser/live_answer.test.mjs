@@ -1,8 +1,10 @@
 // The answer on top of the page, where this GPU takes part in it: its times, and its picture.
 import assert from "node:assert/strict";
+import { cpSync, rmSync } from "node:fs";
+import { join } from "node:path";
 import test from "node:test";
-import { changeFrames, keepContexts, kMesa, withBrowser } from "./live_support.mjs";
-import { kNarrow, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
+import { changeFrames, compareShots, keepContexts, kMesa, withBrowser } from "./live_support.mjs";
+import { changePage, folderOf, kNarrow, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
 
 const kMeasure = "this GPU (measure)";
 const listTitles = (page) => page.locator("select[name=cost] option").allTextContents();
@@ -80,5 +82,110 @@ test("WithoutWebGl_MeasuringSaysSo", () => withBrowser(["--disable-gpu", "--disa
   await whenItSays(page, "no WebGL 2");
   await whenItEnds(page);
   assert.equal(await chosen(page), before);
+  await close();
+}));
+
+// A renderer's name that is not that of a CPU.
+const nameGpu = () => {
+  const { getParameter } = WebGL2RenderingContext.prototype;
+  WebGL2RenderingContext.prototype.getParameter = function (name) { return name === 0x9246 ? "A GPU" : getParameter.call(this, name); };
+};
+const stageOf = (page) => page.locator(".answer .stage");
+const isLive = (page) => page.waitForFunction(() => document.querySelector(".stage.turns canvas:not([hidden])"), null, { timeout: 30000 });
+const drag = async (page, way) => {
+  const { x, y, width, height } = await stageOf(page).boundingBox();
+  await page.mouse.move(x + 0.25 * width, y + 0.6 * height);
+  await page.mouse.down();
+  await page.mouse.move(x + 0.25 * width + way, y + 0.6 * height, { steps: 4 });
+  await page.mouse.up();
+};
+const splitOf = (page) => page.locator(".stage input").inputValue();
+
+test("ThePictureOfTheAnswer_IsTheStillOne_UntilItIsTurned", (context) => withBrowser(kMesa, async (browser) => {
+  for (const viewport of [undefined, kNarrow]) {
+    const { page, messages, shoot, close } = await open(pageOf("ball"), { browser, ...(viewport && { viewport }) });
+    const requests = [], bottom = () => page.locator(".answer").evaluate((each) => each.getBoundingClientRect().bottom + scrollY);
+    page.on("request", (request) => requests.push(request.url()));
+    const [still, before] = [await stageOf(page).screenshot(), await bottom()];
+    await stageOf(page).hover({ position: { x: 20, y: 100 } });
+    await page.waitForTimeout(700);
+    assert.ok(!requests.some((url) => url.includes("/live/")), "a CPU draws when it is asked to");
+    await page.locator(".answer").getByRole("button", { name: "Live" }).click();
+    await isLive(page);
+    assert.equal(await bottom(), before, "nothing moves");
+    const live = await stageOf(page).screenshot(), gap = await compareShots(browser, [still, live]);
+    context.diagnostic(`mean gap ${gap.mean} of 255, ${gap.share} of the values farther than 8`);
+    assert.ok(gap.mean < 0.5 && gap.share < 0.003, JSON.stringify(gap));
+    await drag(page, 60);
+    await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("mean of 256 maps"), null, { timeout: 60000 });
+    assert.equal(await splitOf(page), "50");
+    const turned = await compareShots(browser, [still, await stageOf(page).screenshot()]);
+    assert.ok(turned.share > 0.03, JSON.stringify(turned));
+    await shoot(`answer.live.${viewport ? "phone" : "wide"}`);
+    assert.ok((await measureOverflow(page)) <= 0);
+    assert.deepEqual(await listViolations(page), []);
+    // The line is still the slider's, and the keys too.
+    const { x, y, width, height } = await stageOf(page).boundingBox();
+    await page.mouse.move(x + width / 2, y + height / 2);
+    await page.mouse.down();
+    await page.mouse.move(x + 0.7 * width, y + height / 2, { steps: 3 });
+    await page.mouse.up();
+    assert.equal(await splitOf(page), "70");
+    await page.locator(".stage input").press("ArrowLeft");
+    assert.equal(await splitOf(page), "69");
+    await page.locator(".stage input").fill("50");
+    await page.locator(".answer").getByRole("button", { name: "Live" }).click();
+    assert.deepEqual(await compareShots(browser, [still, await stageOf(page).screenshot()], 0), { mean: 0, share: 0 });
+    assert.deepEqual(messages, []);
+    await close();
+  }
+}));
+
+test("AGpu_DrawsThePictureOfTheAnswer_WhenAPointerComes", () => withBrowser(kMesa, async (browser) => {
+  const { page, close } = await open(pageOf("several"), { browser, init: nameGpu });
+  await stageOf(page).hover({ position: { x: 20, y: 100 } });
+  await isLive(page);
+  const look = () => stageOf(page).screenshot(), before = await look();
+  await page.locator(".answer").getByLabel("A drag turns").selectOption("light");
+  await drag(page, 80);
+  await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("maps"));
+  assert.ok((await compareShots(browser, [before, await look()])).share > 0.01);
+  // Another filter is drawn with the same light.
+  await page.locator(".picks button:not([aria-pressed=true])").first().click();
+  await isLive(page);
+  await close();
+}));
+
+test("WhereFramesAreMissing_TheStillPicturesStay", () => withBrowser(kMesa, async (browser) => {
+  const folder = folderOf("ball") + ".bare";
+  cpSync(folderOf("ball"), folder, { recursive: true });
+  rmSync(join(folder, "live"), { recursive: true });
+  for (const init of [undefined, nameGpu]) {
+    const { page, close } = await open(join(folder, "index.html"), { browser, init });
+    const still = await stageOf(page).screenshot();
+    await stageOf(page).hover({ position: { x: 20, y: 100 } });
+    await page.waitForTimeout(500);
+    assert.equal(await page.locator(".answer .split p.note").textContent(), "");
+    await page.locator(".answer").getByRole("button", { name: "Live" }).click();
+    await page.waitForFunction(() => document.querySelector(".answer .split p.note").textContent.includes("not beside this page"));
+    assert.ok((await compareShots(browser, [still, await stageOf(page).screenshot()])).mean < 0.001);
+    await close();
+  }
+}));
+
+test("TheRightPicture_BeginsAtTheLine_WhereAPartIsShown", () => withBrowser(kMesa, async (browser) => {
+  const file = changePage("ball", "part.html", ({ cells }) => { for (const cell of cells) cell.part = [100, 40, 120, 67.5]; });
+  const { page, close } = await open(file, { browser });
+  await page.locator(".answer").getByRole("button", { name: "Live" }).click();
+  await isLive(page);
+  for (const split of [20, 50, 90]) {
+    await page.locator(".stage input").fill(`${split}`);
+    const seen = await stageOf(page).evaluate((stage, at) => {
+      const { left, top, width, height } = stage.getBoundingClientRect();
+      const layersAt = (share) => document.elementsFromPoint(left + share * width, top + height / 2);
+      return [at - 2, at + 2].map((percent) => layersAt(percent / 100).filter(({ tagName }) => /IMG|CANVAS/.test(tagName)).length);
+    }, split);
+    assert.deepEqual(seen, [2, 4], `at ${split} %`);
+  }
   await close();
 }));

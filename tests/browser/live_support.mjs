@@ -49,3 +49,22 @@ export const keepContexts = () => {
     return context;
   };
 };
+// How far two screenshots of one size are apart, in steps of 255: the mean, and the share of pixels beyond `far`.
+export const compareShots = async (browser, shots, far = 8) => {
+  const page = await browser.newPage();
+  const found = await page.evaluate(async ([texts, most]) => {
+    const [a, b] = await Promise.all(texts.map(async (text) => {
+      const image = new Image();
+      image.src = "data:image/png;base64," + text;
+      await image.decode();
+      const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
+      context.drawImage(image, 0, 0);
+      return context.getImageData(0, 0, image.width, image.height).data;
+    }));
+    if (a.length !== b.length) throw new Error("the shots have different sizes");
+    const gaps = a.map((value, i) => Math.abs(value - b[i]));
+    return { mean: gaps.reduce((sum, gap) => sum + gap, 0) / gaps.length, share: gaps.filter((gap) => gap > most).length / gaps.length };
+  }, [shots.map((shot) => shot.toString("base64")), far]);
+  await page.close();
+  return found;
+};
