@@ -48,7 +48,11 @@ const writeLink = (name, fields) => {
   unsaved.set(name, fields.map(encodeURIComponent).join(","));
   clearTimeout(saving);
   saving = setTimeout(() => {
-    const parts = new Map([...readParts(), ...unsaved]);
+    const parts = readParts();
+    for (const [part, text] of unsaved) {
+      parts.delete(part); // the one that was changed last stands last
+      parts.set(part, text);
+    }
     unsaved.clear();
     try {
       history.replaceState(null, "", "#" + [...parts].map((part) => part.join("=")).join("&"));

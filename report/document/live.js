@@ -3,17 +3,25 @@ const startLive = (holder) => {
   let opened = null;
   const open = () => (opened ??= openLive(holder));
   onceSeen(holder, open);
+  const followLink = () => {
+    if (!readLink("live")) return;
+    if (opened) opened.openLink();
+    else open();
+    if (isNewerInLink("live", "view")) holder.closest("section").scrollIntoView();
+  };
+  window.addEventListener("hashchange", followLink);
   gpuEvents.addEventListener("lost", () => opened?.lose());
   gpuEvents.addEventListener("back", () => opened && (opened = openLive(holder)));
   // Times all scenes, and promises the id of the cost that they became; `say` hears how far that is.
   shadowbench.timeHere = (say) => open().timeHere(say);
   shadowbench.stopTiming = () => opened?.stop();
+  followLink();
 };
 const kDrags = { camera: "the camera", light: "the sun" };
 // A view's drags turn its camera or its sun.
 const turnView = (view, drags, yaw, pitch) => {
   const [oldYaw, oldPitch] = view[drags];
-  view[drags] = [oldYaw + yaw, clamp(oldPitch + pitch, -1, 1)];
+  view[drags] = [oldYaw + yaw, clamp(oldPitch + pitch, -1, 1)].map((angle) => Number(angle.toFixed(4)));
 };
 const openLive = (holder) => {
   holder.replaceChildren();
@@ -23,7 +31,8 @@ const openLive = (holder) => {
     engine = getEngine();
   } catch ({ message }) {
     status.textContent = message;
-    return { lose: () => {}, stop: () => {}, timeHere: () => Promise.reject(new Error(message)) };
+    const ignore = () => {};
+    return { lose: ignore, stop: ignore, openLink: ignore, timeHere: () => Promise.reject(new Error(message)) };
   }
   const controls = element(holder, "div", { className: "controls" });
   const stage = element(holder, "div", { className: "live-stage" });
@@ -37,6 +46,11 @@ const openLive = (holder) => {
   });
   const message = element(holder, "p", { className: "note" });
   const parameters = element(holder, "div", { className: "controls" });
+  const command = element(holder, "p", { className: "note", hidden: true }, "Measure the right side: ");
+  const code = element(command, "code");
+  command.append(" ");
+  addButton(command, "Copy", () => navigator.clipboard?.writeText(code.textContent));
+  const unsaid = element(command, "span", { className: "unsaid" });
   const results = element(element(holder, "div", { className: "scroll", tabIndex: 0 }), "table");
   const measuring = makeMeasuring(engine);
   const places = run.places
@@ -67,6 +81,13 @@ const openLive = (holder) => {
       "aria-label",
       `Left ${nameOf(state.left)}, right ${nameOf(state.right)}, on ${run.places[state.place].title}`,
     );
+  };
+  const showCommand = async () => {
+    const { right, place } = state;
+    const { value: frame } = right === kTruth ? {} : await attempt(engine.load(right, place));
+    code.textContent = frame ? writeRun(state, frame) : "";
+    command.hidden = code.textContent === "";
+    unsaid.textContent = listUnsaid(state).join(" ");
   };
   const fillTable = () => fillResults(results, state.place, measuring);
   const sayRenderer = () =>
@@ -100,8 +121,10 @@ const openLive = (holder) => {
   };
   const loadTimes = async (files) => {
     for (const file of files) {
-      const { message: why } = await attempt(file.text().then((text) => addMachine(readTimes(text), false)));
-      message.textContent = why ? `${file.name}: ${why}` : `${file.name}: its times are among the costs.`;
+      const { value: times, message: why } = await attempt(file.text().then(readTimes));
+      if (times) addMachine(times, false);
+      const said = why ?? `its times are among the costs. ${sayEstimates(times.renderer)}`;
+      message.textContent = `${file.name}: ${said}`;
     }
   };
   // Nothing else is drawn meanwhile. Promises what an action does, or throws what went wrong.
@@ -115,16 +138,28 @@ const openLive = (holder) => {
     stopButton.hidden = true;
     status.textContent = sayRenderer();
     fillTable();
+    saveLive(state);
     await show();
     if (why) throw new Error((message.textContent = why));
     return value;
   };
   const timeHere = (onStep) => work(() => timeAll(onStep));
 
+  const changed = () => {
+    saveLive(state);
+    showCommand();
+    show();
+  };
   const fillParameters = async () => {
     const { right, place } = state;
     const { value: frame } = await attempt(engine.load(right, place));
+    if (right !== state.right || place !== state.place) return;
     parameters.replaceChildren();
+    const own = state.parameters.get(right) ?? {};
+    const known = frame?.parameters.filter(({ name }) => name in own) ?? [];
+    const bounded = known.map(({ name, min, max }) => [name, clamp(own[name], min, max)]);
+    state.parameters.set(right, Object.fromEntries(bounded)); // a link may say anything
+    showCommand();
     if (!frame || right === kTruth) return;
     for (const { name, value, min, max, whole, unit, text } of frame.parameters) {
       const now = state.parameters.get(right)?.[name] ?? value;
@@ -134,8 +169,9 @@ const openLive = (holder) => {
       const shown = element(title, "output", {}, format(now));
       input.addEventListener("input", () => {
         shown.textContent = format(Number(input.value));
-        state.parameters.set(right, { ...state.parameters.get(right), [name]: Number(input.value) });
-        show();
+        const chosen = Number(Number(input.value).toPrecision(6));
+        state.parameters.set(right, { ...state.parameters.get(right), [name]: chosen });
+        changed();
       });
     }
   };
@@ -143,7 +179,7 @@ const openLive = (holder) => {
   const restore = () => {
     Object.assign(state, { camera: [0, 0], light: [0, 0], parameters: new Map() });
     fillParameters();
-    show();
+    changed();
   };
   const options = () => [kTruth, ...listFiltersAt(state.place)].map((who) => [who, nameOf(who)]);
   const addChoice = (title, name, list) =>
@@ -152,7 +188,7 @@ const openLive = (holder) => {
       if (name === "place") fillSides();
       fillParameters();
       fillTable();
-      show();
+      changed();
     });
   const selects = {
     place: addChoice(
@@ -188,19 +224,27 @@ const openLive = (holder) => {
   addButton(controls, "Load times", () => chooser.click(), "Of other machines, as their pages saved them");
   slider.addEventListener("input", () => {
     state.split = slider.value / 100;
-    show();
+    changed();
   });
-  fillSides();
   status.textContent = sayRenderer();
   followDrags(canvas, (yaw, pitch) => {
     if (engine.isBusy) return;
     turnView(state, state.drags, yaw, pitch);
-    show();
+    changed();
   });
-  fillParameters();
-  show();
+  const openLink = () => {
+    Object.assign(state, readLive(places) ?? {});
+    selects.place.value = state.place;
+    slider.value = 100 * state.split;
+    fillSides();
+    fillParameters();
+    fillTable();
+    show();
+  };
+  openLink();
   return {
     timeHere,
+    openLink,
     stop,
     lose: () => {
       measuring.stop(kGpuIsGone);

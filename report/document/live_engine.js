@@ -43,9 +43,10 @@ const makeEngine = (gl) => {
       if (motion.isSun) motion.moveLight(light);
     }
     if (who === kTruth) return;
-    for (const { name, steps } of parameters) {
+    for (const { name, steps, min, max } of parameters) {
       const value = own.get(who)?.[name];
-      for (const index of steps) player.setUniforms(index, { [name]: value === undefined ? null : [value] });
+      const values = value === undefined ? null : [clamp(value, min, max)];
+      for (const index of steps) player.setUniforms(index, { [name]: values });
     }
   };
   // The mean over many maps, of the frame without a filter; null where there is none, or no sun that could be moved.

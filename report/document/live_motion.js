@@ -148,7 +148,8 @@ const makeMotion = (player, frames, blobs, picture) => {
       player.setUniforms(index, changes);
     }
   };
-  return { isSun, moveCamera, moveLight };
+  const directionOf = ([yaw, pitch]) => transform(turnAround(middle, direction, yaw, pitch).forth, direction, 0);
+  return { isSun, moveCamera, moveLight, directionOf };
 };
 
 // Calls with the angles, radians, that a pointer's way over an element turns by, where it begins as `begins` says.

@@ -105,6 +105,7 @@ const addMachine = (times, isHere) => {
     for (const cell of run.cells) cell.values_of[id] = timeOfFrame(times.cells[cell.key], isStatic)?.value ?? null;
   }
   shadowbench.listCosts?.();
+  showEstimates();
   return `machine${at}.moving`;
 };
 

@@ -20,7 +20,7 @@ after(() => common.close());
 export const folderOf = (run) => join(kFolder, "runs", run);
 export const pageOf = (run, file = "index.html") => join(folderOf(run), file);
 export const readResults = (run) => JSON.parse(readFileSync(pageOf(run, "results.json"), "utf8"));
-export const runProgram = (words) => spawnSync(kProgram, words, { encoding: "utf8" });
+export const runProgram = (words, options = {}) => spawnSync(kProgram, words, { encoding: "utf8", ...options });
 
 // Opens a page from disk in a profile of its own, and keeps every word that the console gets; `init` runs in it before
 // its own scripts.

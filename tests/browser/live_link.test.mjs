@@ -1,0 +1,129 @@
+// What the section Live shows is in the page's address, and a command measures it.
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import test from "node:test";
+import { compareShots, kMesa, openLive, withBrowser } from "./live_support.mjs";
+import { kNarrow, measureOverflow, pageOf, pick, readData, runProgram } from "./support.mjs";
+
+const canvasOf = (page) => page.locator(".live-stage canvas");
+const settled = async (page) => {
+  await page.waitForTimeout(800);
+  await page.evaluate(() => document.querySelector(".live-stage").scrollIntoView({ block: "center" }));
+  return (await canvasOf(page).screenshot()).toString("base64");
+};
+const drag = async (page, across, down) => {
+  await canvasOf(page).scrollIntoViewIfNeeded();
+  const { x, y } = await canvasOf(page).boundingBox();
+  await page.mouse.move(x + 150, y + 100);
+  await page.mouse.down();
+  await page.mouse.move(x + 150 + across, y + 100 + down, { steps: 3 });
+  await page.mouse.up();
+};
+const commandOf = async (page) => {
+  await page.waitForFunction(() => document.querySelector(".live code")?.textContent.startsWith("shadowbench run "));
+  return page.locator(".live code").textContent();
+};
+// A command's words as a shell has them.
+const splitWords = (command) => [...command.matchAll(/'((?:[^']|'\\'')*)'|(\S+)/g)].map(([, quoted, plain]) => plain ?? quoted.replaceAll("'\\''", "'"));
+const setParameter = async (page, name, value) => {
+  const slider = page.locator(".live").getByLabel(name);
+  return slider.evaluate((input, wanted) => {
+    input.value = wanted;
+    input.dispatchEvent(new Event("input"));
+    return Number(Number(input.value).toPrecision(6));
+  }, value);
+};
+
+test("ALink_HoldsAllThatIsSeen", () => withBrowser(kMesa, async (browser) => {
+  const { page, messages, close } = await openLive(pageOf("several"), browser);
+  const titles = (await readData(page)).places.map(({ title }) => title);
+  await pick(page, "Scene", { label: titles[1] }, ".live");
+  await pick(page, "Left", { label: "none" }, ".live");
+  await pick(page, "Right", { label: "tent3x3" }, ".live");
+  const plain = await settled(page);
+  await pick(page, "Right", { label: (await page.locator(".live select").nth(2).locator("option").allTextContents()).find((text) => text.startsWith("vsm")) }, ".live");
+  const value = await setParameter(page, "bleed_reduction", 0.9);
+  await drag(page, 60, 10);
+  await pick(page, "A drag turns", "light", ".live");
+  await drag(page, -70, 20);
+  await page.locator(".live-stage input").fill("30");
+  const seen = await settled(page);
+  assert.notEqual(seen, plain);
+  await page.waitForFunction(() => /live=/.test(location.hash));
+  await page.waitForTimeout(500);
+  const { hash } = new URL(page.url());
+  await page.reload();
+  await page.waitForSelector(".live-stage canvas");
+  assert.equal(await settled(page), seen, "reloaded");
+  assert.deepEqual(messages, []);
+  await close();
+
+  const again = await openLive(pageOf("several"), browser, { hash });
+  assert.equal(await settled(again.page), seen, "opened");
+  assert.equal(Number(await again.page.locator(".live").getByLabel("bleed_reduction").inputValue()), value);
+  assert.equal(await again.page.locator(".live-stage input").inputValue(), "30");
+  await again.page.locator(".live").getByRole("button", { name: "As it was" }).click();
+  assert.notEqual(await settled(again.page), seen);
+  await again.close();
+
+  // A link of another run, and links that nobody could have made.
+  for (const bad of [hash, "#live=cubes,nobody,nobody,x,1e9,,2,3,right:radius:2", "#live=cubes,none,none,0.5,0,0,0,0,left:constructor:1,left:radius:1e99,left", "#live="]) {
+    const other = await openLive(pageOf("untrue"), browser, { hash: bad });
+    await other.page.waitForFunction(() => document.querySelector(".live-stage canvas").width > 1);
+    await settled(other.page);
+    assert.deepEqual(other.messages, [], bad);
+    await other.close();
+  }
+}));
+
+test("TheCommand_MeasuresWhatIsSeen", (context) => withBrowser(kMesa, async (browser) => {
+  const folder = mkdtempSync(join(tmpdir(), "shadowbench-"));
+  for (const [run, filter, name, wanted] of [["ball", "vsm", "bleed_reduction", 0.7], ["odd", "nine_compares", "weight", 0.5]]) {
+    const { page, shoot, close } = await openLive(pageOf(run), browser, { viewport: kNarrow });
+    const data = await readData(page), labels = await page.locator(".live select").nth(2).locator("option").allTextContents();
+    await pick(page, "Right", { label: labels.find((label) => label === filter || data.configurations.find((each) => each.label === label)?.filter === filter) }, ".live");
+    const value = await setParameter(page, name, wanted);
+    assert.notEqual(value, undefined);
+    const before = splitWords(await commandOf(page)), [beforeKey] = await page.evaluate(() => [...document.querySelectorAll(".live select")].map(({ value }) => Number(value))).then(([place, , right]) => data.cells.filter((each) => each.place === place && each.configuration === right).map(({ key }) => key));
+    assert.ok(!before.includes("--light"));
+    await pick(page, "A drag turns", "light", ".live");
+    await drag(page, 50, 15);
+    await page.waitForFunction(() => document.querySelector(".live code").textContent.includes("--light"));
+    assert.doesNotMatch(await page.locator(".live").textContent(), /camera that was turned/);
+    const words = splitWords(await commandOf(page));
+    assert.equal(words.shift(), "shadowbench");
+    const out = join(folder, run), said = runProgram([...words, "--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd: pageOf(run, "..") });
+    assert.equal(said.status, 0, said.stderr);
+    const { cells } = JSON.parse(readFileSync(join(out, "results.json"), "utf8")), [cell] = cells;
+    assert.equal(cells.length, 1);
+    const sky = words[words.indexOf("--light") + 1], configuration = data.configurations.find((each) => each.filter === filter);
+    assert.deepEqual([cell.filter, cell.params[name], cell.light, cell.map_size, cell.size.width, cell.size.height], [filter, value, sky, configuration.map, ...configuration.size]);
+    // The program's picture is the one that is seen: its sun stands there. Its map has a window of its own.
+    await page.locator(".live-stage input").fill("0");
+    await settled(page);
+    const shown = await canvasOf(page).evaluate((canvas) => canvas.toDataURL().split(",")[1]), drawn = readFileSync(join(out, cell.images.picture));
+    const gap = await compareShots(browser, [Buffer.from(shown, "base64"), drawn], 24), moved = await compareShots(browser, [readFileSync(pageOf(run, decodeURI(data.cells.find(({ key }) => key === beforeKey).picture))), drawn], 24);
+    context.diagnostic(`${run}: ${gap.share} of the values differ from the program's, and ${moved.share} from those of the run's own sun`);
+    const isModel = run === "odd"; // its camera and floor follow the light
+    assert.equal((await page.locator(".live .unsaid").textContent()).includes("follow its light"), isModel);
+    assert.ok(isModel || (gap.share < 0.02 && gap.share < moved.share / 4), JSON.stringify([gap, moved]));
+    // The scene as it was, with the run's own parameters, is the run's own cell.
+    await page.locator(".live").getByRole("button", { name: "As it was" }).click();
+    await page.waitForFunction(() => !document.querySelector(".live code").textContent.includes("--light"));
+    const plain = splitWords(await commandOf(page)).slice(1), same = join(folder, run + " same");
+    const again = runProgram([...plain, "--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids", "--out", same], { cwd: pageOf(run, "..") });
+    assert.equal(again.status, 0, again.stderr);
+    const key = JSON.parse(readFileSync(join(same, "results.json"), "utf8")).cells[0].key, place = await page.locator(".live select").first().inputValue();
+    assert.equal(data.cells.find((each) => each.key === key)?.place, Number(place));
+    // A camera cannot be given.
+    await pick(page, "A drag turns", "camera", ".live");
+    await drag(page, 50, 0);
+    await page.waitForFunction(() => document.querySelector(".live").textContent.includes("camera that was turned"));
+    assert.ok((await measureOverflow(page)) <= 0);
+    await shoot(`live.command.${run}`);
+    await close();
+  }
+  rmSync(folder, { recursive: true });
+}));
