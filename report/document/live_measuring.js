@@ -1,5 +1,6 @@
 // Checks and times the filters of a place as the run measured them: how far each is from the run, and what its parts take.
 const kRounds = 11;
+const kShownEveryMs = 500; // a table of many rows takes a while to lay out
 const makeMeasuring = (engine) => {
   const { gl } = engine;
   const time = makeTimer(gl);
@@ -25,12 +26,16 @@ const makeMeasuring = (engine) => {
     const result = checkFrame(frame, plane, mask, samplingAt(run.configurations[who].map));
     found.set(frame.cell.key, { ...found.get(frame.cell.key), ...result, refused: undefined });
   };
-  const checkPlace = async (place, onEach) => {
+  const checkPlace = async (place, show) => {
+    let next = 0;
     for (const who of listFiltersAt(place)) {
       if (isStopped()) return;
       const { message: why } = await attempt(check(who, place));
       if (why) found.set(cellAt(who, place).key, { refused: why });
-      onEach();
+      if (performance.now() > next) {
+        show();
+        next = performance.now() + kShownEveryMs;
+      }
       await pause();
     }
   };
