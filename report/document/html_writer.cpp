@@ -259,9 +259,11 @@ class HtmlWriter {
       pictures += fmt::format("<img src=\"{}\" alt=\"{}\" style=\"{}\">", files::encode_url_path(each->path),
                               escape_html(each->caption), place);
     return fmt::format(
-        "<figure class=\"split\"><div class=\"stage\" style=\"aspect-ratio:{}/{};--before:{:.3f}%;--share:{:.5f}\">{}<i></i>"
+        "<figure class=\"split\"><div class=\"stage\" "
+        "style=\"aspect-ratio:{}/{};--before:{:.3f}%;--share:{:.5f}\">{}<i></i>"
         "</div><figcaption><bdi>{}</bdi><bdi>{}</bdi></figcaption></figure>\n",
-        width, height, 100.0 * left / split.width, width / split.width, pictures, escape_html(split.left.caption), escape_html(split.right.caption));
+        width, height, 100.0 * left / split.width, width / split.width, pictures, escape_html(split.left.caption),
+        escape_html(split.right.caption));
   }
 
   std::string write(const Bars& bars) {
