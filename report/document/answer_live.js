@@ -14,12 +14,9 @@ const startLivePicture = ({ figure, stage, slider, line, sayTruth, say }) => {
   let isStale = false;
   let drags = "camera";
 
-  const button = addButton(
-    figure,
-    "Live",
-    () => (isWanted ? end("") : begin(true)),
-    "Drawn by this GPU; a drag turns it",
-  );
+  const isLive = () => stage.classList.contains("turns");
+  const toggle = () => (isLive() ? end("") : begin(true));
+  const button = addButton(figure, "Live", toggle, "Drawn by this GPU; a drag turns it");
   const choice = addSelect(figure, "A drag turns", Object.entries(kDrags), {}, (value) => (drags = value)).parentNode;
   const reveal = (isShown) => {
     canvases.forEach((canvas) => (canvas.hidden = !isShown));
@@ -72,7 +69,6 @@ const startLivePicture = ({ figure, stage, slider, line, sayTruth, say }) => {
   stage.addEventListener("pointerdown", hold(true), true);
   ["pointerup", "pointercancel"].forEach((name) => window.addEventListener(name, hold(false), true));
   stage.addEventListener("pointerenter", () => begin(false), { once: true });
-  const isLive = () => stage.classList.contains("turns");
   followDrags(
     stage,
     (yaw, pitch) => {
