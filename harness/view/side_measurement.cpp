@@ -47,7 +47,8 @@ std::vector<std::string> list_arguments(const options::RunOptions& options, cons
           run::cache_word(options.cache),
           "--fresh",
           "--every-step",
-          "--no-pictures", "--all-parts"};
+          "--no-pictures",
+          "--all-parts"};
 }
 
 /// The last line that was written to its end, as far as the process tells what it does.

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 constexpr std::uintmax_t kMostBytes = 16 * kMebibyte;
 constexpr const char* kFolder = "times";
-constexpr const char* kSchema = "shadowbench gpu-times 1";  // report/document/machine_times.js writes it
+constexpr const char* kSchema = "shadowbench gpu-times 1";  // report/document/live/machine_times.js writes it
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& what) {
   throw Error(ErrorKind::kInput, what + "; choose a gpu-times.json that a report's page saved", file.string());
