@@ -1,0 +1,133 @@
+// The section that draws with WebGL 2, as its readers use it: timed, turned, taken away, on a phone and without WebGL.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import test from "node:test";
+import { keepContexts, kMesa, kOwn, openLive, press, readTable, withBrowser } from "./live_support.mjs";
+import { folderOf, kNarrow, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
+
+const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
+const load = async (page, name, text) => {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator(".live").getByRole("button", { name: "Load times" }).click()]);
+  await chooser.setFiles([{ name, mimeType: "application/json", buffer: Buffer.from(text) }]);
+  await page.waitForFunction((file) => document.querySelector(".live").textContent.includes(file + ":"), name);
+  return page.locator(".live p.note", { hasText: `${name}:` }).textContent();
+};
+
+test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts", () => withBrowser(kMesa, async (browser) => {
+  const { page, messages, close } = await openLive(pageOf("odd"), browser);
+  const times = [];
+  for (let i = 0; i < 2; ++i) {
+    await press(page, "Time on this GPU");
+    times.push(Object.fromEntries((await readTable(page)).map((row) => [row[0], row[4] === "" ? NaN : Number(row[4])])));
+  }
+  for (const { none, constant, nine_compares: nine } of times) assert.ok(nine > none && Math.abs(constant) < nine / 3, JSON.stringify(times)); // on a machine that is busy
+  assert.ok(Math.abs(Math.log(times[0].nine_compares / times[1].nine_compares)) < Math.log(2), JSON.stringify(times));
+
+  // What was timed is a cost of the answer and the table, can be saved, and is there when the page is opened again.
+  await chooseCost(page, "static light, this GPU");
+  const { order } = await page.evaluate(() => shadowbench.answer.judge() && { order: shadowbench.answer.judge().keeping.map(({ index }) => index) });
+  const labels = (await readData(page)).configurations.map(({ label }) => label);
+  assert.deepEqual(order.map((index) => labels[index]), ["none", "nine_compares"]);
+  assert.match(await page.locator(".answer code").first().textContent(), / --light-motion static/);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
+  const saved = JSON.parse(readFileSync(await download.path(), "utf8"));
+  assert.equal(Object.keys(saved.cells).length, 6);
+
+  // The terminal says the same of the file that was saved.
+  for (const motion of ["moving", "static"]) {
+    await chooseCost(page, `${motion} light, this GPU`);
+    const said = runProgram(["advise", folderOf("odd"), "--times", await download.path(), "--light-motion", motion, "--json"]);
+    assert.ok(said.status === 0, said.stderr);
+    const advice = JSON.parse(said.stdout), [first] = await page.locator(".picks tbody tr").first().locator("td").allTextContents();
+    assert.equal(await page.evaluate(() => shadowbench.answer.judge().keeping.length), advice.keep);
+    assert.ok(first.startsWith(advice.picks[0].label), `${first}, not ${advice.picks[0].label}`);
+    assert.ok(Math.abs(Number(/(\d[\d.e-]*) ms/.exec(first)[1]) / advice.picks[0].cost - 1) < 0.01, `${first}, not ${advice.picks[0].cost}`);
+  }
+  await page.reload();
+  await chooseCost(page, "moving light, this GPU");
+
+  // Times of other machines, and files that are none.
+  await page.locator("#live").evaluate((section) => section.scrollIntoView());
+  await page.waitForSelector(".live canvas");
+  const [again] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
+  assert.deepEqual(JSON.parse(readFileSync(await again.path(), "utf8")), saved, "what the browser kept is saved");
+  const key = Object.keys(saved.cells)[0], spoil = (edit) => { const copy = structuredClone(saved); edit(copy); return JSON.stringify(copy); };
+  assert.match(await load(page, "a.json", "{"), /is no JSON/);
+  assert.match(await load(page, "b.json", spoil((file) => { file.schema = "another"; })), /schema is not "shadowbench gpu-times 1"/);
+  assert.match(await load(page, "c.json", spoil((file) => { file.cells = { other: file.cells[key] }; })), /of another run/);
+  assert.match(await load(page, "d.json", spoil((file) => { file.cells[key].map.median = null; })), /map of .* is no time/);
+  assert.match(await load(page, "e.json", " ".repeat(17e6)), /is larger/);
+  assert.match(await load(page, "f.json", spoil((file) => { file.renderer = "Another GPU"; })), /its times are among the costs/);
+  await chooseCost(page, "moving light, Another GPU");
+  assert.deepEqual(messages, []);
+  await close();
+}));
+
+test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () => withBrowser(kMesa, async (browser) => {
+  const { page, messages, shoot, close } = await openLive(pageOf("ball"), browser);
+  const canvas = page.locator(".live canvas"), look = async () => (await canvas.screenshot()).toString("base64"), note = page.locator(".live p.note").nth(1);
+  const drag = async () => {
+    const { x, y } = await canvas.boundingBox();
+    await page.mouse.move(x + 300, y + 200);
+    await page.mouse.down();
+    await page.mouse.move(x + 380, y + 210, { steps: 3 });
+    await page.mouse.up();
+    await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the mean of 256 maps"), null, { timeout: 60000 });
+  };
+  await pick(page, "Right", { label: "pcss" }, ".live");
+  await page.waitForTimeout(500);
+  const before = await look();
+  await drag();
+  const turned = await look();
+  await shoot("live.turned");
+  await pick(page, "A drag turns", "light", ".live");
+  await drag();
+  assert.ok(before !== turned && turned !== (await look()));
+  await shoot("live.sun");
+  await page.locator(".live").getByRole("button", { name: "As it was" }).click();
+  await page.waitForFunction(() => !document.querySelector(".live").textContent.includes("No rays were traced"));
+  await page.waitForTimeout(500);
+  assert.equal(await note.textContent(), "");
+  assert.equal(await look(), before);
+
+  // What is checked is what the run measured, whatever the sliders say.
+  await pick(page, "Right", { label: "vsm" }, ".live");
+  const parameter = page.locator(".live .controls input[type=range]").first();
+  await parameter.fill(await parameter.getAttribute("max"));
+  await press(page, "Check against the run");
+  const said = await page.locator(".live caption").textContent(), rmse = Number(/The mean of 256 maps .* RMSE of ([\d.]+) to the traced truth/.exec(said)[1]);
+  assert.ok(rmse > 0 && rmse < 0.01, said);
+  for (const [filter, own] of await readTable(page)) assert.match(own, /^[\d.e-]+$/, filter);
+  assert.deepEqual(messages, []);
+  await close();
+}));
+
+test("AContextThatIsLost_IsSaid_AndDrawsAgainOnceItIsBack", () => withBrowser(kMesa, async (browser) => {
+  const { page, close } = await openLive(pageOf("ball"), browser, { init: keepContexts });
+  await page.evaluate(() => {
+    window.lost = window.contexts[0].getExtension("WEBGL_lose_context");
+    window.lost.loseContext();
+  });
+  await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the browser has taken the GPU away"));
+  await page.evaluate(() => window.lost.restoreContext());
+  await page.waitForFunction(() => !document.querySelector(".live").textContent.includes("taken the GPU away"));
+  await press(page, "Check against the run");
+  for (const [filter, own] of await readTable(page)) assert.match(own, /^[\d.e-]+$/, filter);
+  await close();
+}));
+
+test("OnAPhone_NothingIsWiderThanTheScreen", () => withBrowser(kOwn, async (browser) => {
+  const { page, shoot, close } = await openLive(pageOf("several"), browser, { viewport: kNarrow });
+  await page.waitForTimeout(1000);
+  assert.ok((await measureOverflow(page)) <= 0);
+  await shoot("live.phone");
+  await close();
+}));
+
+test("WithoutWebGl_ThePageSaysSo", () => withBrowser(["--disable-gpu", "--disable-3d-apis"], async (browser) => {
+  const opened = await open(pageOf("several"), { browser });
+  await opened.page.locator("#live").evaluate((section) => section.scrollIntoView());
+  await opened.page.waitForFunction(() => document.querySelector(".live").textContent.includes("no WebGL 2"));
+  assert.deepEqual(opened.messages.filter((text) => /Error/.test(text)), []);
+  await opened.close();
+}));
