@@ -33,7 +33,7 @@ struct Measure {
 /// Lists the errors: rmse, kernel_rmse, leak, flip.
 const std::array<Measure, kErrorMeasures>& list_error_measures();
 
-/// Lists the costs: moving, filter, fetches, bytes, and an estimate for each GPU that a cell names. The first is what
+/// Lists the costs: moving, static, fetches, bytes, and an estimate for each GPU that a cell names. The first is what
 /// is compared unless something else is asked for. Where several kinds of machine measured the cells, moving_ratio and
 /// static_ratio stand in place of the first two.
 std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells = {});

@@ -89,7 +89,7 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"height", "picture, pixels"},
           {"error", "which error: rmse, kernel_rmse, leak, flip"},
           {"cost",
-           "which cost: moving and filter in ms of the run's clock, or moving_ratio and static_ratio to 'none' where "
+           "which cost: moving and static in ms of the run's clock, or moving_ratio and static_ratio to 'none' where "
            "several "
            "kinds of machine measured the run, fetches, bytes, gpu_NAME in us"},
           {"cell", "the cell's key; of all scenes: the keys of its cells, joined by +"},

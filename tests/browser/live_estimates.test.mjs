@@ -87,7 +87,7 @@ test("AReportIsGivenTimesOfOtherMachines_ForItsPageAndItsFronts", async () => {
   assert.deepEqual(opened.messages, []);
   await opened.close();
   const [head, ...rows] = readFileSync(join(report, "fronts.csv"), "utf8").trim().split("\r\n").map((row) => row.split(","));
-  const own = rows.filter((row) => row.at(-1) === "Another GPU" && row[head.indexOf("cost")] === "filter" && row[head.indexOf("error")] === "rmse");
+  const own = rows.filter((row) => row.at(-1) === "Another GPU" && row[head.indexOf("cost")] === "static" && row[head.indexOf("error")] === "rmse");
   const costOf = (each) => Number(own.find((row) => row[head.indexOf("cell")] === each).at(head.indexOf("cost_value") - head.length));
   assert.equal(costOf(key), 77);
   const other = data.cells.find((each) => each.configuration !== configuration && costOf(each.key) > 0);
