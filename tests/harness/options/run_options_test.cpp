@@ -66,7 +66,8 @@ const std::map<std::string, std::vector<std::string>>& list_others() {
                                                                          {"attribution", {"false"}},
                                                                          {"truth_weight", {"cosine"}},
                                                                          {"stability", {"true"}},
-                                                                         {"uncertainty", {"true"}}};
+                                                                         {"uncertainty", {"true"}},
+                                                                         {"all_parts", {"true"}}};
   return others;
 }
 

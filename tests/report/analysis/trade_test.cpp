@@ -176,7 +176,7 @@ TEST(TradeFronts, CompareKernelsOfOneClass) {
   EXPECT_EQ(front.placements[1].by, 0u);
   EXPECT_EQ(front.placements[1].standing, Standing::kDominated);
   EXPECT_EQ(front.placements[3].standing, Standing::kApart);
-  EXPECT_THAT(make_fronts_csv(cells, {scope}), HasSubstr(",,,,its kernel is of no class of width\r\n"));
+  EXPECT_THAT(make_fronts_csv(cells, {scope}), HasSubstr(",,,,its kernel is of no class of width,\r\n"));
 }
 
 TEST(TradeFronts, ValuesThatAreNotFinite_AreLeftOut) {
@@ -215,11 +215,12 @@ TEST(FrontsCsv, HasARowPerCellOfEveryFront) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 * 3);
   EXPECT_THAT(
       csv, HasSubstr("rmse,moving," + cells[1].key +
-                     ",vsm,\"{\"\"radius\"\":4}\",1024,4,medium,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,\r\n"));
-  EXPECT_THAT(csv, HasSubstr(",0,," + cells[0].key + ",\r\n"));
+                     ",vsm,\"{\"\"radius\"\":4}\",1024,4,medium,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,,\r\n"));
+  EXPECT_THAT(csv, HasSubstr(",0,," + cells[0].key + ",,\r\n"));
   EXPECT_THAT(csv, HasSubstr("\"a,\"\"b\""));
-  EXPECT_THAT(csv, HasSubstr("leak,moving," + cells[0].key +
-                             ",none,\"{\"\"radius\"\":0}\",1024,0,medium,,,,4,4,4,,,,artefact.leak: not measured\r\n"));
+  EXPECT_THAT(csv,
+              HasSubstr("leak,moving," + cells[0].key +
+                        ",none,\"{\"\"radius\"\":0}\",1024,0,medium,,,,4,4,4,,,,artefact.leak: not measured,\r\n"));
 }
 
 }  // namespace
