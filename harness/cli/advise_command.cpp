@@ -88,8 +88,7 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
 int advise(const AdviseArguments& arguments) {
   const AdviceRequest request = make_request(arguments);
   records::Results results = records::read_results(find_results(arguments.run));
-  if (!arguments.times.empty())
-    records::apply_gpu_times(results, records::read_gpu_times(arguments.times), arguments.times);
+  if (!arguments.times.empty()) records::apply_gpu_times(results, records::read_gpu_times(arguments.times));
   if (auto withheld = analysis::withhold_mixed_times(results.cells)) results.cells = std::move(*withheld);
   const analysis::Advice advice = analysis::advise(results.cells, request);
   if (arguments.json) {

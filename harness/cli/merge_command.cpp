@@ -32,23 +32,20 @@ Command make_merge_command() {
   command.add("--times", &a->times, "a gpu-times.json that a report's page saved, of the run in DIR; may be repeated")
       .names(ValueKind::kFile);
   command.action = [a](const CommandLine&) {
-    if (!a->times.empty()) {
-      if (!a->out.empty() || a->folders.size() > 1)
-        fail("--times joins times to one report: name its folder alone, without --out");
-      run::merge_times(a->folders.front(), {a->times.begin(), a->times.end()});
-      fmt::print("report: {}\n", (std::filesystem::path(a->folders.front()) / "index.html").string());
-      return 0;
-    }
-    const bool is_sweep = a->out.empty();
+    const bool has_times = !a->times.empty(), is_sweep = !has_times && a->out.empty();
+    if (has_times && (!a->out.empty() || a->folders.size() > 1))
+      fail("--times joins times to one report: name its folder alone, without --out");
     if (is_sweep && (a->folders.size() > 1 || !submit::is_sweep(a->folders.front())))
       fail(
           fmt::format("'{}' is not the folder of a sweep that 'submit' made; to join shards, name the folder of the "
                       "whole report with --out",
                       a->folders.front()));
-    const std::filesystem::path out = is_sweep ? a->folders.front() : a->out;
+    const std::filesystem::path out = a->out.empty() ? a->folders.front() : a->out;
     {
       const Interruption interruption(out, kStoppedAdvice);
-      if (is_sweep)
+      if (has_times)
+        run::merge_times(out, {a->times.begin(), a->times.end()});
+      else if (is_sweep)
         submit::merge_sweep(out);
       else
         run::merge_runs({a->folders.begin(), a->folders.end()}, out);

@@ -47,9 +47,7 @@ records::FlickerMotion describe_motion(Motion motion, double step) {
 }
 
 images::Image to_image(const metrics::FlickerStats& stats, const options::RunOptions& options) {
-  images::Image image(options.width, options.height, 1);
-  image.texels = stats.by_pixel;
-  return image;
+  return images::make_image(options.width, options.height, stats.by_pixel);
 }
 
 class FlickerRun {

@@ -28,12 +28,6 @@ void put_layer(images::Image& image, int layer, const std::vector<float>& values
   }
 }
 
-images::Image make_view_image(std::vector<float> values, const options::RunOptions& options) {
-  images::Image image(options.width, options.height, 1);
-  image.texels = std::move(values);
-  return image;
-}
-
 void note_absent(records::CellRecord& record, std::initializer_list<const char*> fields, const std::string& reason) {
   for (const char* field : fields) record.absent[std::string("stability.") + field] = reason;
 }
@@ -182,8 +176,8 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
   cell.record.stability.bound_shortfall_max = check.shortfall_max;
   cell.record.stability.bound_violations = check.violations;
   cell.record.stability.bound_exact_violations = check.exact_violations;
-  cell.stability.shortfall = make_view_image(std::move(check.shortfall), options_);
-  cell.stability.violation = make_view_image(std::move(check.violation), options_);
+  cell.stability.shortfall = images::make_image(options_.width, options_.height, check.shortfall);
+  cell.stability.violation = images::make_image(options_.width, options_.height, check.violation);
 }
 
 /// Compares both at the depth that the filter itself compares with: another bias would be another bound.

@@ -190,10 +190,7 @@ ComparedImages make_images(const Pair& pair, const ComparisonOptions& options) {
     made.difference.texels[i] = !pair.counts[i] ? std::numeric_limits<float>::infinity()
                                 : pair.mask[i]  ? made.image_grey.texels[i] - made.truth_grey.texels[i]
                                                 : std::numeric_limits<float>::quiet_NaN();
-  if (options.mask) {
-    made.mask = images::Image(a.width, a.height, 1);
-    std::copy(pair.counts.begin(), pair.counts.end(), made.mask.texels.begin());
-  }
+  if (options.mask) made.mask = images::make_image(a.width, a.height, pair.counts);
   if (!has_colors) return made;
   made.image = to_linear_rgb(pair.image);
   made.truth = to_linear_rgb(pair.truth);

@@ -62,7 +62,7 @@ struct KeptParts {
 /// Most of it takes much room for few readers. All lights at once are added up from pictures.
 KeptParts choose_parts(const options::RunOptions& options, const scene::Scene& scene) {
   const bool is_worker = options.part.is_worker(), has_all = options.all_parts || is_worker;
-  return {has_all || !scene.light.name.empty(), has_all, options.all_parts, is_worker};
+  return {has_all || !scene.light.name.empty(), has_all, options.all_parts && !is_worker, is_worker};
 }
 
 /// Calls `visit(name, image)` for what a filter draws, and the parts of its error; `Cell` is const where images are
@@ -86,6 +86,7 @@ void visit_known(Cell& cell, const Visit& visit) {
     visit(fmt::format("{}.{}", cell.label, each.id), cell.uncertainty.*each.image);
   for (std::size_t i = 0; i < cell.phases.size(); ++i) visit(fmt::format("{}.phase.{}", cell.label, i), cell.phases[i]);
 }
+
 constexpr const char* kConvention =
     "A point p of the world, metres, has (U, V, D, W) = uv_depth_from_world * (p, 1), rows first. u = U / W and v "
     "= V / W where the layer is projective, else U and V; depth is D, 0 near and 1 far. A logarithmic layer has v "
@@ -171,6 +172,7 @@ images::Metadata describe_task(const options::RunOptions& options, const measure
       metadata[fmt::format("shadowbench:bias.layer{}.{}", layer.frustum.layer, cell.label)] = describe_bias(layer.bias);
   return metadata;
 }
+
 }  // namespace
 
 std::string exr_name(const options::RunOptions& options, const measure::SceneTask& task) {
@@ -218,4 +220,5 @@ void note_float_images(const options::RunOptions& options, const measure::SceneT
     if (!options.pictures) cell.record.absent["images"] = "the run was made with --no-pictures";
   }
 }
+
 }  // namespace shadowbench::run

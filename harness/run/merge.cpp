@@ -161,13 +161,12 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
 }
 
 void merge_times(const std::filesystem::path& report, const std::vector<std::filesystem::path>& files) {
-  const files::FolderLock lock(report);
   const records::Results results = records::read_results(report / "results.json");
+  const files::FolderLock lock(report);
   std::map<std::filesystem::path, std::filesystem::path> sources;  // by where each goes to
   for (const std::filesystem::path& file : files) {
     const records::GpuTimes times = records::read_gpu_times(file);
-    records::Results timed = results;
-    records::apply_gpu_times(timed, times, file);
+    records::require_times_of(results.cells, times);
     const auto [place, is_new] = sources.emplace(records::gpu_times_path(report, times.renderer), file);
     if (!is_new)
       throw Error(ErrorKind::kUsage, fmt::format("--times: {} and {} are both times of {}: name one of them",

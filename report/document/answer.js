@@ -18,6 +18,7 @@ const startAnswer = (holder) => {
   const titleOf = (field) => limitOf(field)?.title ?? field;
   const fieldOf = (field) => (field === kTime ? costChoice().field : field);
   const [all] = run.scopes;
+
   // The worst value of a configuration in a scope, or a text that says why there is none.
   const worstOf = (index, field, scope = all) => scope.rows[index].worst[fieldOf(field)];
   const costOf = (index, scope = all) => scope.rows[index][costChoice().field];
@@ -122,13 +123,7 @@ const startAnswer = (holder) => {
   element(folded, "summary", {}, "Why, limits and commands");
   const sliders = element(folded, "div", { className: "limits sliders" });
   const reasons = element(folded, "ul");
-  const codes = ["In a terminal: ", "In a window: "].map((text) => {
-    const line = element(folded, "p", { className: "note" }, text);
-    const code = element(line, "code");
-    line.append(" ");
-    addButton(line, "Copy", () => navigator.clipboard?.writeText(code.textContent));
-    return code;
-  });
+  const codes = ["In a terminal: ", "In a window: "].map((lead) => addCommand(folded, lead));
   // An item of the reasons, in which a number stands for a configuration's name.
   const explain = (lead, ...parts) => {
     const item = element(reasons, "li");

@@ -55,6 +55,15 @@ const startPicture = (holder) => {
   return { figure, show };
 };
 
+// A command that can be copied; gives the element that it stands in.
+const addCommand = (holder, lead) => {
+  const line = element(holder, "p", { className: "note" }, lead);
+  const code = element(line, "code");
+  line.append(" ");
+  addButton(line, "Copy", () => navigator.clipboard?.writeText(code.textContent));
+  return code;
+};
+
 // The commands that say and show the same: the run's folder is that of the page, where it was opened from a disk.
 const writeWord = (word) => (/^[\w./+:,=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 const folderOfPage = () =>

@@ -122,7 +122,7 @@ void write_fronts_csv(const std::vector<records::CellRecord>& cells, const std::
       for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) write(make_rows(cells, scope, error, cost, {}));
   for (const records::GpuTimes& times : machines) {
     records::Results timed{{}, cells};
-    records::apply_gpu_times(timed, times, times.renderer);
+    records::apply_gpu_times(timed, times);
     for (const analysis::TradeScope& scope : analysis::make_trade_scopes(timed.cells))
       for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error)
         for (const std::size_t cost : {analysis::kMovingCost, analysis::kStaticCost})

@@ -78,6 +78,11 @@ void set_times(CellRecord& cell, const TimedParts& parts) {
   cell.time_ms.moving = moving;
 }
 
+bool is_any_timed(const std::vector<CellRecord>& cells, const GpuTimes& times) {
+  return std::ranges::any_of(
+      cells, [&](const CellRecord& cell) { return times.cells.contains(cell.key); });
+}
+
 }  // namespace
 
 GpuTimes read_gpu_times(const fs::path& file) {
@@ -92,6 +97,7 @@ GpuTimes read_gpu_times(const fs::path& file) {
   if (!written.is_object() || written.value("schema", json()) != kSchema)
     refuse(file, fmt::format("its schema is not \"{}\"", kSchema));
   GpuTimes times;
+  times.file = file;
   std::string key;
   try {
     times.renderer = written.at("renderer").get<std::string>();
@@ -107,10 +113,15 @@ GpuTimes read_gpu_times(const fs::path& file) {
   return times;
 }
 
-void apply_gpu_times(Results& results, const GpuTimes& times, const fs::path& file) {
+void require_times_of(const std::vector<CellRecord>& cells, const GpuTimes& times) {
+  if (!is_any_timed(cells, times))
+    refuse(times.file, "it has times of another run: none of its cells is one of this one");
+}
+
+void apply_gpu_times(Results& results, const GpuTimes& times) {
+  require_times_of(results.cells, times);
   results.run.gl.renderer = times.renderer;
   results.run.gl.software = times.software;
-  bool is_any_timed = false;
   for (CellRecord& cell : results.cells) {
     cell.ratio_to_none = {};
     cell.lights = std::nullopt;
@@ -121,10 +132,8 @@ void apply_gpu_times(Results& results, const GpuTimes& times, const fs::path& fi
       cell.absent["time_ms"] = fmt::format("{} did not time it", times.renderer);
       continue;
     }
-    is_any_timed = true;
     set_times(cell, found->second);
   }
-  if (!is_any_timed) refuse(file, "it has times of another run: none of its cells is one of this one");
 }
 
 json gpu_times_json(const GpuTimes& times) {
@@ -154,9 +163,7 @@ std::vector<GpuTimes> list_gpu_times(const fs::path& report, const std::vector<C
       warnings.push_back(fmt::format("{}; times of that machine are left out", damaged.what()));
     }
   }
-  std::erase_if(list, [&](const GpuTimes& times) {
-    return std::ranges::none_of(cells, [&](const CellRecord& cell) { return times.cells.contains(cell.key); });
-  });
+  std::erase_if(list, [&](const GpuTimes& times) { return !is_any_timed(cells, times); });
   return list;
 }
 

@@ -20,6 +20,7 @@ struct TimedParts {
 
 /// A file that a report's page saved, gpu-times.json: what a browser's GPU took for the run's cells.
 struct GpuTimes {
+  std::filesystem::path file;
   std::string renderer;
   bool software = false;                    ///< a rasteriser on the CPU
   std::map<std::string, TimedParts> cells;  ///< by key
@@ -29,9 +30,12 @@ struct GpuTimes {
 /// Throws Error(kInput) where it is larger than 16 MiB, no such file, or holds what is no time.
 GpuTimes read_gpu_times(const std::filesystem::path& file);
 
+/// Throws Error(kInput) where they are of another run: none of these cells was timed.
+void require_times_of(const std::vector<CellRecord>& cells, const GpuTimes& times);
+
 /// Puts these times in the place of those that the run measured; cells that were not timed have none then.
-/// Throws Error(kInput), naming `file`, where none of the run's cells was timed.
-void apply_gpu_times(Results& results, const GpuTimes& times, const std::filesystem::path& file);
+/// Throws Error(kInput) as require_times_of() does.
+void apply_gpu_times(Results& results, const GpuTimes& times);
 
 /// Writes them as the file has them, without what it says beside, for a page's script.
 nlohmann::json gpu_times_json(const GpuTimes& times);

@@ -14,6 +14,14 @@ const line = (page) => page.locator(".answer form [role=status]");
 const whenItSays = (page, text) => page.waitForFunction((words) => document.querySelector(".answer form [role=status]").textContent.includes(words), text, { timeout: 120000 });
 const whenItEnds = (page) => page.waitForFunction(() => document.querySelector(".answer form button").hidden, null, { timeout: 120000 });
 
+const measureInVain = async (page, words) => {
+  const before = await chosen(page);
+  await measure(page);
+  await whenItSays(page, words);
+  await whenItEnds(page);
+  assert.equal(await chosen(page), before);
+};
+
 test("ThisGpuIsACost_ThatIsMeasuredWhenItIsChosen", () => withBrowser(kMesa, async (browser) => {
   const { page, messages, shoot, close } = await open(pageOf("untrue"), { browser, viewport: kNarrow });
   const before = await chosen(page), top = await page.evaluate(() => scrollY);
@@ -67,21 +75,13 @@ test("WhereNothingAgreesWithTheRun_MeasuringSaysSo", () => withBrowser(kMesa, as
     for (const each of programs.filter(({ label }) => label.endsWith("lookup"))) each.fragment = each.fragment.replace("void main()", "void nothing()");
   });
   const { page, close } = await open(file, { browser });
-  const before = await chosen(page);
-  await measure(page);
-  await whenItSays(page, "Nothing that is drawn here agrees with the run");
-  await whenItEnds(page);
-  assert.equal(await chosen(page), before);
+  await measureInVain(page, "Nothing that is drawn here agrees with the run");
   await close();
 }));
 
 test("WithoutWebGl_MeasuringSaysSo", () => withBrowser(["--disable-gpu", "--disable-3d-apis"], async (browser) => {
   const { page, close } = await open(pageOf("untrue"), { browser });
-  const before = await chosen(page);
-  await measure(page);
-  await whenItSays(page, "no WebGL 2");
-  await whenItEnds(page);
-  assert.equal(await chosen(page), before);
+  await measureInVain(page, "no WebGL 2");
   await close();
 }));
 

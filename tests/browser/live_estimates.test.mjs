@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { cpSync, existsSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
-import { kMesa, openLive, withBrowser } from "./live_support.mjs";
+import { kMesa, loadTimes, openLive, withBrowser } from "./live_support.mjs";
 import { folderOf, kNarrow, listViolations, measureOverflow, open, pageOf, readData, runProgram } from "./support.mjs";
 
 const kRenderer = "AMD Radeon RX 6900 XT (RADV NAVI21)", kEstimate = "gpu.navi21.estimate_us";
@@ -13,13 +13,7 @@ const forge = (data, renderer, takes) => {
   const cells = data.cells.map(({ key, configuration }) => [key, { map: time(0), prefilter: null, filter: time(takes(data.configurations[configuration])) }]);
   return JSON.stringify({ schema: "shadowbench gpu-times 1", renderer, browser: "none", isSoftware: false, cells: Object.fromEntries(cells) });
 };
-const load = async (page, text) => {
-  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator(".live").getByRole("button", { name: "Load times" }).click()]);
-  await page.locator(".live p.note").evaluateAll((notes) => notes.forEach((note) => note.getAttribute("role") || note.querySelector("code") || (note.textContent = "")));
-  await chooser.setFiles([{ name: "gpu-times.json", mimeType: "application/json", buffer: Buffer.from(text) }]);
-  await page.waitForFunction(() => document.querySelector(".live").textContent.includes("gpu-times.json:"));
-  return page.locator(".live p.note", { hasText: "gpu-times.json:" }).textContent();
-};
+const load = (page, text) => loadTimes(page, "gpu-times.json", text);
 const readCorrelation = (text) => /Over (\d+) configurations, the rank correlation .* is (-?[\d.]+)\./.exec(text)?.slice(1).map(Number);
 
 test("EstimatesMeetTimes_OfTheGpuThatTheyAreFor", () => withBrowser(kMesa, async (browser) => {

@@ -17,6 +17,14 @@ export const press = async (page, name) => {
   await page.waitForFunction(() => [...document.querySelectorAll(".live button")].find((each) => each.textContent === "Stop").hidden, null, { timeout: 240000 });
 };
 export const readTable = (page) => page.locator(".live table tbody tr").evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
+// Hands the page a file of times, and gives what it says of that file.
+export const loadTimes = async (page, name, text) => {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator(".live").getByRole("button", { name: "Load times" }).click()]);
+  await page.locator(".live p.note").evaluateAll((notes) => notes.forEach((note) => note.getAttribute("role") || note.querySelector("code") || (note.textContent = "")));
+  await chooser.setFiles([{ name, mimeType: "application/json", buffer: Buffer.from(text) }]);
+  await page.waitForFunction((file) => document.querySelector(".live").textContent.includes(file + ":"), name);
+  return page.locator(".live p.note", { hasText: `${name}:` }).textContent();
+};
 export const withBrowser = async (args, action) => {
   const browser = await launch(args);
   try {

@@ -2,16 +2,10 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { keepContexts, kMesa, kOwn, openLive, press, readTable, withBrowser } from "./live_support.mjs";
+import { keepContexts, kMesa, kOwn, loadTimes, openLive, press, readTable, withBrowser } from "./live_support.mjs";
 import { folderOf, kNarrow, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
-const load = async (page, name, text) => {
-  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator(".live").getByRole("button", { name: "Load times" }).click()]);
-  await chooser.setFiles([{ name, mimeType: "application/json", buffer: Buffer.from(text) }]);
-  await page.waitForFunction((file) => document.querySelector(".live").textContent.includes(file + ":"), name);
-  return page.locator(".live p.note", { hasText: `${name}:` }).textContent();
-};
 
 test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts", () => withBrowser(kMesa, async (browser) => {
   const { page, messages, close } = await openLive(pageOf("odd"), browser);
@@ -52,12 +46,12 @@ test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts
   const [again] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
   assert.deepEqual(JSON.parse(readFileSync(await again.path(), "utf8")), saved, "what the browser kept is saved");
   const key = Object.keys(saved.cells)[0], spoil = (edit) => { const copy = structuredClone(saved); edit(copy); return JSON.stringify(copy); };
-  assert.match(await load(page, "a.json", "{"), /is no JSON/);
-  assert.match(await load(page, "b.json", spoil((file) => { file.schema = "another"; })), /schema is not "shadowbench gpu-times 1"/);
-  assert.match(await load(page, "c.json", spoil((file) => { file.cells = { other: file.cells[key] }; })), /of another run/);
-  assert.match(await load(page, "d.json", spoil((file) => { file.cells[key].map.median = null; })), /map of .* is no time/);
-  assert.match(await load(page, "e.json", " ".repeat(17e6)), /is larger/);
-  assert.match(await load(page, "f.json", spoil((file) => { file.renderer = "Another GPU"; })), /its times are among the costs/);
+  assert.match(await loadTimes(page, "a.json", "{"), /is no JSON/);
+  assert.match(await loadTimes(page, "b.json", spoil((file) => { file.schema = "another"; })), /schema is not "shadowbench gpu-times 1"/);
+  assert.match(await loadTimes(page, "c.json", spoil((file) => { file.cells = { other: file.cells[key] }; })), /of another run/);
+  assert.match(await loadTimes(page, "d.json", spoil((file) => { file.cells[key].map.median = null; })), /map of .* is no time/);
+  assert.match(await loadTimes(page, "e.json", " ".repeat(17e6)), /is larger/);
+  assert.match(await loadTimes(page, "f.json", spoil((file) => { file.renderer = "Another GPU"; })), /its times are among the costs/);
   await chooseCost(page, "moving light, Another GPU");
   assert.deepEqual(messages, []);
   await close();

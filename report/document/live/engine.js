@@ -4,12 +4,14 @@ const kAsRun = { id: "run", camera: [0, 0], light: [0, 0], parameters: new Map()
 const kMapsAtOnce = 4; // of a reference, in each frame
 const kGpuIsGone = "The browser has taken the GPU away from this page, and may give it back.";
 const listFiltersAt = (place) => [...run.configurations.keys()].filter((who) => cellAt(who, place)?.frames);
-const isMoved = ({ camera, light }) => [...camera, ...light].some((angle) => angle !== 0);
+const isTurned = (angles) => angles.some((angle) => angle !== 0);
+const isMoved = ({ camera, light }) => isTurned(camera) || isTurned(light);
 
 const makeEngine = (gl) => {
   const names = gl.getExtension("WEBGL_debug_renderer_info");
   const renderer = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
   const open = makeLoader(gl);
+  const frames = new Map(); // by filter and place
   const truths = new Map(); // by place
   const motions = new Map(); // by what they move
   const references = new Map(); // by view and place
@@ -18,19 +20,24 @@ const makeEngine = (gl) => {
   let display = null;
 
   // How a side is drawn: the truth by the shading of another one's frame.
-  const load = async (who, place) => {
+  const readFrame = async (who, place) => {
     const shown = who === kTruth ? listFiltersAt(place)[0] : who;
     const cell = cellAt(shown, place);
     if (!cell?.frames) throw new Error(`${nameOf(shown)} was not measured there.`);
-    const { frames, blobs, player } = await open(cell.frames);
-    if (!frames.cells[cell.key]) throw new Error(`${cell.frames} does not hold it.`);
-    const frame = { ...frames.cells[cell.key], frames, player, cell, who };
+    const { frames: graph, blobs, player } = await open(cell.frames);
+    if (!graph.cells[cell.key]) throw new Error(`${cell.frames} does not hold it.`);
+    const frame = { ...graph.cells[cell.key], frames: graph, player, cell, who };
     const key = `${cell.frames} ${frame.picture}`;
-    if (!motions.has(key)) motions.set(key, { ...makeMotion(player, frames, blobs, frame.picture), turn: 0 });
+    if (!motions.has(key)) motions.set(key, { ...makeMotion(player, graph, blobs, frame.picture), turn: 0 });
     const steps = [...player.listSteps(frame.picture)];
-    const stepsWith = (name) => steps.filter((index) => frames.steps[index].uniforms?.[name]);
+    const stepsWith = (name) => steps.filter((index) => graph.steps[index].uniforms?.[name]);
     const parameters = frame.parameters.map((each) => ({ ...each, steps: stepsWith(each.name) }));
     return { ...frame, motion: motions.get(key), parameters: parameters.filter((each) => each.steps.length > 0) };
+  };
+  const load = (who, place) => {
+    const key = `${who} ${place}`;
+    if (!frames.has(key)) frames.set(key, readFrame(who, place));
+    return frames.get(key);
   };
   // Turns a frame as a view is turned, and gives it the view's parameters.
   const pose = ({ player, motion, parameters, who }, { camera, light, parameters: own }) => {

@@ -51,8 +51,7 @@ const writeRun = ({ place, right, light, parameters }, { motion }) => {
   const [scene, ...of] = run.places[place].view;
   const file = run.files[filter];
   if (scene === undefined || file === null) return "";
-  const isTurned = motion.isSun && light.some((angle) => angle !== 0);
-  const sky = isTurned ? findSkyAngles(motion.directionOf(light)).join() : given;
+  const sky = motion.isSun && isTurned(light) ? findSkyAngles(motion.directionOf(light)).join() : given;
   const words = [
     ...["--scene", scene, ...of, ...(file ? ["--filter-file", file] : [])],
     ...["--filters", writeChanges(request, parameters.get(right)), "--map-size", map, "--size", size.join("x")],
@@ -63,7 +62,6 @@ const writeRun = ({ place, right, light, parameters }, { motion }) => {
 // What the command leaves out, or makes otherwise.
 const listUnsaid = ({ place, camera, light }) => {
   const { view } = run.places[place];
-  const isTurned = (angles) => angles.some((angle) => angle !== 0);
   const isModel = view.includes("--ground") || /\.(obj|gltf|glb)$/i.test(view[0]);
   return [
     ...(isTurned(camera) ? ["The camera that was turned is not in it: the program has the scene's own."] : []),

@@ -46,10 +46,9 @@ const openLive = (holder) => {
   });
   const message = element(holder, "p", { className: "note" });
   const parameters = element(holder, "div", { className: "controls" });
-  const command = element(holder, "p", { className: "note", hidden: true }, "Measure the right side: ");
-  const code = element(command, "code");
-  command.append(" ");
-  addButton(command, "Copy", () => navigator.clipboard?.writeText(code.textContent));
+  const code = addCommand(holder, "Measure the right side: ");
+  const command = code.parentNode;
+  command.hidden = true;
   const unsaid = element(command, "span", { className: "unsaid" });
   const results = element(element(holder, "div", { className: "scroll", tabIndex: 0 }), "table");
   const measuring = makeMeasuring(engine);

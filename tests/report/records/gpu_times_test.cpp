@@ -54,7 +54,7 @@ TEST_F(GpuTimesTest, AFrameIsTheSumOfItsParts_AndACellThatWasNotTimedHasNoTime) 
   results.cells[0].key = "a";
   results.cells[1].key = "b";
   results.cells[1].time_ms.lookup = Quartiles{};
-  apply_gpu_times(results, times, file_);
+  apply_gpu_times(results, times);
   EXPECT_EQ(results.run.gl.renderer, "A GPU");
   const TimeRecord& timed = results.cells[0].time_ms;
   EXPECT_DOUBLE_EQ(timed.moving->median, 7.0);
@@ -82,7 +82,7 @@ TEST_F(GpuTimesTest, TimesOfAnotherRunAreRefused) {
   const GpuTimes times = read(write(kFilter, "null", "elsewhere"));
   Results results;
   results.cells.resize(1);
-  EXPECT_THROW(apply_gpu_times(results, times, file_), Error);
+  EXPECT_THROW(apply_gpu_times(results, times), Error);
 }
 
 TEST_F(GpuTimesTest, AReportHasTheTimesOfItsCellsThatLieInItsFolder) {
