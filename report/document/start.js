@@ -14,7 +14,7 @@ if (run.cells.some(({ picture, values }) => picture || values)) {
   const [first = kTruth, second = first] = listAll(0);
   if (!openLink()) start({ place: 0, left: first, right: second });
 } else section.hidden = true;
-run.times?.forEach((times) => addMachine(times, false));
+run.times?.forEach(({ file, ...times }) => addMachine(times, false, `${folderOfPage()}/${file}`));
 if (timesHere() && run.scopes.length > 0) addMachine(timesHere(), true);
 for (const [name, begin] of [
   [".numbers", startTable],

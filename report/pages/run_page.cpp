@@ -305,7 +305,10 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
       add({"live", "Live", {document::Mount{"live", {}}}});
     page.data = make_run_data(run, cells, request);
     page.data["times"] = nlohmann::json::array();
-    for (const records::GpuTimes& times : machines) page.data["times"].push_back(records::gpu_times_json(times));
+    for (const records::GpuTimes& times : machines) {
+      page.data["times"].push_back(records::gpu_times_json(times));
+      page.data["times"].back()["file"] = records::gpu_times_path({}, times.renderer).generic_string();
+    }
   }
   if (trade) add(make_trade_section(run, cells, *trade));
   if (auto gpus = make_gpu_section(cells)) add(std::move(*gpus));

@@ -78,6 +78,11 @@ test("AReportIsGivenTimesOfOtherMachines_ForItsPageAndItsFronts", async () => {
   ].sort());
   await costs().selectOption({ label: "static light, Another GPU" });
   assert.ok((await opened.page.evaluate(() => shadowbench.answer.judge().keeping.length)) > 0);
+  // The command of that choice names the file that the report keeps.
+  const [, words] = /^shadowbench (advise .*)$/.exec(await opened.page.locator(".answer code").first().textContent());
+  const said = runProgram([...words.match(/(?:'[^']*'|\S)+/g).map((word) => word.replaceAll("'", "")), "--json"]);
+  assert.equal(said.status, 0, said.stderr);
+  assert.ok((await opened.page.locator(".picks tbody tr").first().locator("td").first().textContent()).startsWith(JSON.parse(said.stdout).picks[0].label), words);
   assert.deepEqual(opened.messages, []);
   await opened.close();
   const [head, ...rows] = readFileSync(join(report, "fronts.csv"), "utf8").trim().split("\r\n").map((row) => row.split(","));

@@ -1,5 +1,6 @@
 // What the tests of the pages that draw with WebGL 2 share.
-import { cpSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { deflateSync, inflateSync } from "node:zlib";
 import { folderOf, launch, open } from "./support.mjs";
@@ -21,8 +22,11 @@ export const readTable = (page) => page.locator(".live table tbody tr").evaluate
 export const loadTimes = async (page, name, text) => {
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator(".live").getByRole("button", { name: "Load times" }).click()]);
   await page.locator(".live p.note").evaluateAll((notes) => notes.forEach((note) => note.getAttribute("role") || note.querySelector("code") || (note.textContent = "")));
-  await chooser.setFiles([{ name, mimeType: "application/json", buffer: Buffer.from(text) }]);
-  await page.waitForFunction((file) => document.querySelector(".live").textContent.includes(file + ":"), name);
+  const folder = mkdtempSync(join(tmpdir(), "times")), file = join(folder, name);
+  writeFileSync(file, text);
+  await chooser.setFiles(file);
+  await page.waitForFunction((said) => document.querySelector(".live").textContent.includes(said + ":"), name);
+  rmSync(folder, { recursive: true });
   return page.locator(".live p.note", { hasText: `${name}:` }).textContent();
 };
 export const withBrowser = async (args, action) => {

@@ -83,8 +83,8 @@ const addScopeTimes = (times, { id, field, isStatic, title }, scope) => {
   scope.advice[id] = advice;
 };
 // Puts a machine's times among the costs, in the place of older ones of the same renderer; gives the id of that of a
-// moving light.
-const addMachine = (times, isHere) => {
+// moving light. `file` is where a terminal finds them.
+const addMachine = (times, isHere, file = "gpu-times.json") => {
   const old = machines.findIndex(({ renderer }) => renderer === times.renderer);
   const at = old < 0 ? machines.push(times) - 1 : old;
   machines[at] = times;
@@ -92,7 +92,7 @@ const addMachine = (times, isHere) => {
     const id = `machine${at}.${isStatic ? "static" : "moving"}`;
     const name = isHere ? "this GPU" : times.renderer.slice(0, 40);
     const title = `${isStatic ? "static" : "moving"} light, ${name}`;
-    const option = `--times gpu-times.json${isStatic ? " --light-motion static" : ""}`;
+    const option = `--times ${file}${isStatic ? " --light-motion static" : ""}`;
     const choice = { id, field: id, title, unit: "ms", option, isEstimate: false };
     const text = `${isStatic ? "lookup" : "map, prefilter and lookup"}, timed in a browser on ${times.renderer}`;
     const known = run.costs.findIndex((each) => each.id === id);
