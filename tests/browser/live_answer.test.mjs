@@ -4,7 +4,7 @@ import { cpSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 import { changeFrames, compareShots, keepContexts, kMesa, withBrowser } from "./live_support.mjs";
-import { changePage, folderOf, kNarrow, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
+import { changePage, folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
 
 const kMeasure = "this GPU (measure)";
 const listTitles = (page) => page.locator("select[name=cost] option").allTextContents();
@@ -37,7 +37,7 @@ test("ThisGpuIsACost_ThatIsMeasuredWhenItIsChosen", () => withBrowser(kMesa, asy
   assert.ok(!(await listTitles(page)).includes(kMeasure) && before !== (await chosen(page)));
   assert.equal(await page.evaluate(() => scrollY), top);
   assert.match(await page.locator(".answer code").first().textContent(), / --times gpu-times.json/);
-  await page.waitForFunction(() => location.hash.includes("machine0.moving"));
+  assert.match(await linkOf(page), /machine0\.moving/);
   await page.reload();
   assert.equal(await chosen(page), "moving light, this GPU", "the link holds it");
   assert.deepEqual(messages, []);

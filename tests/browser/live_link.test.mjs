@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
 import { compareShots, kMesa, openLive, withBrowser } from "./live_support.mjs";
-import { kNarrow, measureOverflow, pageOf, pick, readData, runProgram } from "./support.mjs";
+import { kNarrow, linkOf, measureOverflow, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 const canvasOf = (page) => page.locator(".live-stage canvas");
 const settled = async (page) => {
@@ -51,9 +51,8 @@ test("ALink_HoldsAllThatIsSeen", () => withBrowser(kMesa, async (browser) => {
   await page.locator(".live-stage input").fill("30");
   const seen = await settled(page);
   assert.notEqual(seen, plain);
-  await page.waitForFunction(() => /live=/.test(location.hash));
-  await page.waitForTimeout(500);
-  const { hash } = new URL(page.url());
+  const hash = await linkOf(page);
+  assert.match(hash, /live=/);
   await page.reload();
   await page.waitForSelector(".live-stage canvas");
   assert.equal(await settled(page), seen, "reloaded");

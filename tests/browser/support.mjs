@@ -56,11 +56,14 @@ export const readData = (page) => page.evaluate(() => JSON.parse(document.getEle
 export const pick = (page, title, value, within = ".viewer") =>
   page.locator(within).getByRole("combobox", { name: title, exact: true }).selectOption(value);
 export const labels = (page) => page.locator(".viewer .panes canvas:visible").evaluateAll((all) => all.map((each) => each.getAttribute("aria-label")));
-export const hashOf = async (page) => {
-  await page.waitForTimeout(450);
-  await page.waitForFunction(() => location.hash !== "").catch(() => {}); // on a busy machine it is written later
-  return decodeURIComponent(new URL(page.url()).hash);
+// The page's address with all that the reader chose: it is written 300 ms after the last choice by a timer of the page, and
+// timers of one page end in order however busy the machine is.
+export const linkOf = async (page) => {
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve, 600))));
+  await page.waitForFunction(() => location.hash !== "").catch(() => {});
+  return page.evaluate(() => location.hash);
 };
+export const hashOf = async (page) => decodeURIComponent(await linkOf(page));
 // Draws a screenshot of one pane into a canvas of another page, since a page from disk may not read its own pictures.
 export const colours = async (page, index = 0) => {
   const shot = await page.locator(".viewer .panes canvas").nth(index).screenshot();

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { inflateSync } from "node:zlib";
-import { colours, hashOf, labels, openViewer, pageOf, pick, settle, showCrops } from "./support.mjs";
+import { colours, hashOf, labels, linkOf, openViewer, pageOf, pick, settle, showCrops } from "./support.mjs";
 
 const kPage = pageOf("several");
 
@@ -166,7 +166,7 @@ test("Link_RestoresTheView_AndUnknownNamesAreSaid", async () => {
   await showCrops(first.page);
   await settle(first.page);
   await first.shoot("crop");
-  const hash = new URL((await hashOf(first.page), first.page.url())).hash, before = await labels(first.page);
+  const hash = await linkOf(first.page), before = await labels(first.page);
   assert.match(decodeURIComponent(hash), /^#view=ball,vsm \(radius 1\),none,error,side,[\d.]+,[\d.]+,[\d.]+,\d+-\d+-\d+-\d+$/);
   const again = await openViewer(kPage, { hash });
   await showCrops(again.page);
