@@ -18,6 +18,8 @@ Command make_tune_command();
 Command make_stress_command();
 Command make_regress_command();
 Command make_flicker_command();
+Command make_export_command();
+Command make_score_command();
 Command make_view_command();
 
 /// Makes the command that compiles passes for a GPU, in a process that a crash of the driver may end. Only a run needs

@@ -12,8 +12,6 @@
 namespace shadowbench::cli {
 namespace {
 
-constexpr const char* kReferenceFilter = "none";  // the times of the others are given as ratios to its times
-
 /// The two filters of the run that --until-different names. Throws Error(kUsage) where they are not two of them.
 std::vector<filters::FilterRequest> parse_pair(const filters::Catalogue& catalogue, const std::string& text,
                                                const options::RunOptions& options) {
@@ -55,15 +53,22 @@ void choose_filters(options::RunOptions& options, RunArguments& arguments) {
 
 }  // namespace
 
+void add_told(Command& command, RunArguments& arguments, const std::vector<std::string>& names) {
+  for (options::RunOption& each : arguments.told) {
+    if (std::ranges::count(names, each.name) == 0) continue;
+    each.variable = std::visit([](auto& told) { return Variable(&told); }, each.told);
+    command.options.push_back(each);
+  }
+}
+
 void add_run_options(Command& command, RunArguments& a) {
   a.out = "report/out";
   command
       .add("experiment", &a.experiment, "an experiment, by name or as a .toml file, whose keys these options override")
       .names(ValueKind::kExperiment);
-  for (options::RunOption& each : a.told) {
-    each.variable = std::visit([](auto& told) { return Variable(&told); }, each.told);
-    command.options.push_back(each);
-  }
+  std::vector<std::string> names;
+  for (const options::RunOption& each : a.told) names.push_back(each.name);
+  add_told(command, a, names);
   command
       .add("--until-different", &a.until_different,
            fmt::format("A,B: two of the filters; phases are doubled until their RMSEs are told apart, or {} are done",
@@ -89,6 +94,7 @@ std::string apply_experiment(const CommandLine& line, RunArguments& arguments) {
   };
   const options::Experiment experiment = read(arguments.experiment);
   std::ranges::for_each(experiment.settings, take);
+  arguments.engines = experiment.engines;
   if (line.has("--filters")) return experiment.title;
   if (experiment.filters.empty()) {
     for (const options::ExperimentSetting& setting : read(kDefaultExperiment).settings)

@@ -4,18 +4,23 @@
 #include <vector>
 
 #include "harness/cli/arguments.h"
+#include "harness/options/experiment_file.h"
 
 namespace shadowbench::cli {
 
 /// The experiment of a run that names none, whose filters are those of every run that names none.
 inline constexpr const char* kDefaultExperiment = "default";
 
+/// The times of the others are given as ratios to its times.
+inline constexpr const char* kReferenceFilter = "none";
+
 /// The options of `shadowbench run` as they are told; all of them are checked before anything is made.
 struct RunArguments : DrawingArguments {
   std::string experiment = kDefaultExperiment;
   std::vector<options::RunOption> told = options::list_run_options();
   bool strict = false;
-  std::string until_different;  ///< two filters; empty: phases are as they are told
+  std::vector<options::Engine> engines;  ///< of the experiment
+  std::string until_different;           ///< two filters; empty: phases are as they are told
   bool worker = false;
   bool check = false;       ///< as a worker: only compile the filters
   std::string task;         ///< folder of the task of a sweep that is to be done
@@ -27,6 +32,9 @@ struct RunArguments : DrawingArguments {
 
 /// Adds the options of `shadowbench run`; parsing fills `arguments`, which must outlive the command.
 void add_run_options(Command& command, RunArguments& arguments);
+
+/// Adds some of them, by their names.
+void add_told(Command& command, RunArguments& arguments, const std::vector<std::string>& names);
 
 /// Takes what an experiment file says for every option that was not given on the command line. An experiment that names
 /// no filters takes those of the default one. Returns the experiment's title. Throws Error as options::read_experiment

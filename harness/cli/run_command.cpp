@@ -8,6 +8,7 @@
 #include "harness/cli/commands.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
+#include "harness/engines/engine_command.h"
 #include "harness/gpu/facts_request.h"
 #include "harness/run/run_experiment.h"
 #include "harness/run/until_different.h"
@@ -24,6 +25,13 @@ void run_with_notes(const options::RunOptions& options, options::Progress& progr
     run::run_experiment(options, progress);
   else
     progress.note(run::run_until_different(options, progress));
+}
+
+/// Adds the rows of the experiment's other renderers to the finished report.
+void run_engines(const options::RunOptions& options, const RunArguments& arguments, options::Progress& progress) {
+  if (arguments.engines.empty()) return;
+  engines::RunScorer scorer(options, progress);
+  engines::run_engines(scorer, arguments.engines, {}, options.cell_timeout_s, progress);
 }
 
 /// What --strict asks of a report, whether it was written now or before. Throws Error(kLimit).
@@ -79,7 +87,11 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
     return 0;
   }
   work_with_progress(
-      options.out, [&](options::Progress& progress) { run_with_notes(options, progress); },
+      options.out,
+      [&](options::Progress& progress) {
+        run_with_notes(options, progress);
+        run_engines(options, arguments, progress);
+      },
       "what was finished stays, and the same command goes on from there", arguments.every_step);
   fmt::print("report: {}\n", (options.out / "index.html").string());
   if (arguments.strict) require_no_warnings(options.out);

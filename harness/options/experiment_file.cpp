@@ -31,7 +31,7 @@ class ExperimentReader {
     std::erase_if(known, [](const RunOption& option) { return option.decides == Decides::kWay; });
     std::vector<std::string> keys;
     for (const RunOption& option : known) keys.push_back(option.key());
-    root_.require_known_keys(keys, {"title", "filter"});
+    root_.require_known_keys(keys, {"title", "filter", "engine"});
     Experiment experiment;
     experiment.title = root_.string("title", std::string());
     for (const RunOption& option : known)
@@ -39,6 +39,10 @@ class ExperimentReader {
     if (const auto filter = root_.find("filter"); filter && filter->as_table(""))
       throw filter->error("'filter' must be tables, each headed [[filter]]");
     for (const TomlTable& table : root_.tables("filter")) experiment.filters.push_back(read_filter(table));
+    for (const TomlTable& table : root_.tables("engine")) {
+      table.require_known_keys({"name", "command"});
+      experiment.engines.push_back({table.string("name"), table.string("command"), folder_});
+    }
     if (root_.has("filters") && !experiment.filters.empty())
       throw root_.error("filters", "'filters' and [[filter]] both name filters: keep one of them");
     return experiment;

@@ -32,11 +32,19 @@ struct SweptFilter {
   std::string where;               ///< "file:line"
 };
 
+/// One [[engine]]: another renderer, as a command of the shell that draws a scene.
+struct Engine {
+  std::string name;                   ///< of its rows
+  std::string command;                ///< is given a scene.json and the EXR file to write
+  std::filesystem::path folder = {};  ///< it is run there; empty: where the program is
+};
+
 /// What an experiment file says.
 struct Experiment {
   std::string title;
   std::vector<ExperimentSetting> settings;
   std::vector<SweptFilter> filters;  ///< empty: the options name the filters
+  std::vector<Engine> engines;       ///< whose pictures are scored once the run is done
 };
 
 /// Names the experiments of a folder.

@@ -140,7 +140,7 @@ class Experiment {
     steps_.begin_report();
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
-    if (!options_.part.is_worker()) pages::write_report(options_.out, run_, list_keys(plan));
+    if (!options_.part.is_worker()) pages::write_report(options_.out, run_, list_report_keys(plan));
   }
 
   void count(const measure::SceneMeasurement& measured) {
@@ -219,7 +219,11 @@ class Experiment {
       const auto is_current = [&](const std::string& key, const records::CellRecord& cell) {
         return records::to_json(records::read_cell(options_.out, key)) == records::to_json(cell);
       };
-      return is_same(results.run.experiment) && std::ranges::equal(list_keys(plan), results.cells, is_current);
+      const std::vector<std::string> keys = list_report_keys(plan);
+      return is_same(results.run.experiment) && keys.size() == results.cells.size() &&
+             std::ranges::all_of(results.cells, [&](const records::CellRecord& cell) {
+               return std::ranges::count(keys, cell.key) > 0 && is_current(cell.key, cell);
+             });
     } catch (const Error&) {
       return false;
     }
@@ -228,6 +232,23 @@ class Experiment {
   static std::vector<std::string> list_keys(const RunPlan& plan) {
     std::vector<std::string> keys;
     for (const PlannedTask& task : plan.tasks) keys.insert(keys.end(), task.keys.begin(), task.keys.end());
+    return keys;
+  }
+
+  /// With the rows that other renderers have in the report, where their scene is still measured.
+  std::vector<std::string> list_report_keys(const RunPlan& plan) const {
+    std::vector<std::string> keys = list_keys(plan);
+    const std::filesystem::path file = options_.out / "results.json";
+    if (options_.part.is_worker() || !std::filesystem::exists(file)) return keys;
+    try {
+      for (const records::CellRecord& cell : records::read_results(file).cells)
+        if (cell.external && std::ranges::any_of(plan.tasks, [&](const PlannedTask& task) {
+              return task.task.scene->name == cell.scene && task.task.camera->name == cell.view;
+            }))
+          keys.push_back(cell.key);
+    } catch (const Error&) {
+      // A report that cannot be read has no rows to keep.
+    }
     return keys;
   }
 

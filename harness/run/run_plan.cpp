@@ -303,6 +303,15 @@ RunPlan make_plan(const options::RunOptions& options, const std::string& rendere
   return Planner(options, renderer).plan();
 }
 
+std::string name_view(const PlannedScene& planned, const scene::Camera& camera) {
+  scene::Scene seen = planned.scene;
+  seen.cameras = {camera};
+  ContentHash hash;
+  add_scene(hash, seen);
+  hash.add(fmt::format("{} x {}", planned.options.width, planned.options.height));
+  return hash.name();
+}
+
 void add_cell(ContentHash& cells, const std::string& key, const std::string& content) {
   cells.add(key);
   cells.add(content);

@@ -44,6 +44,9 @@ struct RunPlan {
 /// has, scenes or cells of one name, a shard of nothing.
 RunPlan make_plan(const options::RunOptions& options, const std::string& renderer);
 
+/// Names all that the truth of a view depends on, and its picture's size: geometry, textures, light and camera.
+std::string name_view(const PlannedScene& planned, const scene::Camera& camera);
+
 /// Adds a cell to the name of several: planner and sweeps agree on it.
 void add_cell(ContentHash& cells, const std::string& key, const std::string& content);
 

@@ -22,6 +22,9 @@ namespace shadowbench::run {
 namespace {
 
 std::string caption(const records::CellRecord& cell, const records::GlRecord& gl) {
+  if (cell.external)
+    return fmt::format("another renderer{} · RMSE {}", cell.external->engine ? ": " + *cell.external->engine : "",
+                       records::format_number(cell.error.rmse));
   std::string text = records::describe_params(cell.params);
   if (!cell.suspect_of.empty()) text += fmt::format("{}SUSPECT: see the report", text.empty() ? "" : " · ");
   if (!cell.time_ms.lookup) return text;
@@ -114,7 +117,7 @@ images::ValuePlanes list_planes(const measure::MeasuredCell& cell) {
   return planes;
 }
 
-/// Writes a cell's own pictures; no two labels share a file.
+/// No two labels share a file.
 void write_cell_pictures(const options::RunOptions& options, const std::string& stem, measure::MeasuredCell& cell) {
   if (cell.picture.empty()) return;
   const std::string base = "images/" + stem + "." + files::make_file_stem(cell.label);
@@ -181,6 +184,18 @@ std::string task_stem(const options::RunOptions& options, const measure::SceneTa
   return files::make_file_stem(name);
 }
 
+void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                         measure::MeasuredCell& cell) {
+  write_cell_pictures(options, task_stem(options, task), cell);
+}
+
+void write_grid(const options::RunOptions& options, const measure::SceneTask& task, measure::SceneMeasurement& measured,
+                const measure::SceneTruth& truth, const records::GlRecord& gl) {
+  const std::string grid_name = task_stem(options, task) + ".grid.png";
+  images::write_grid(options.out / grid_name, make_grid(options, task, measured, truth, gl));
+  for (measure::MeasuredCell& cell : measured.cells) cell.record.images.grid = grid_name;
+}
+
 void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                            measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
   write_shown(options, task_stem(options, task), measured, truth, [](double) {});
@@ -190,12 +205,9 @@ void write_single_pictures(const options::RunOptions& options, const measure::Sc
 void write_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                     measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl,
                     const std::function<void(double part)>& on_part) {
-  const std::string stem = task_stem(options, task);
-  const std::string grid_name = stem + ".grid.png";
-  images::write_grid(options.out / grid_name, make_grid(options, task, measured, truth, gl));
+  write_grid(options, task, measured, truth, gl);
   on_part(0.5);
-  write_shown(options, stem, measured, truth, [&](double part) { on_part(0.5 + 0.5 * part); });
-  for (measure::MeasuredCell& cell : measured.cells) cell.record.images.grid = grid_name;
+  write_shown(options, task_stem(options, task), measured, truth, [&](double part) { on_part(0.5 + 0.5 * part); });
 }
 
 }  // namespace shadowbench::run

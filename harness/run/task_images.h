@@ -24,6 +24,14 @@ images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images
 void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                            measure::SceneMeasurement& measured, const measure::SceneTruth& truth);
 
+/// Writes a cell's picture, visibility and values, and notes their paths.
+void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                         measure::MeasuredCell& cell);
+
+/// Draws the grid of a task and notes its path.
+void write_grid(const options::RunOptions& options, const measure::SceneTask& task, measure::SceneMeasurement& measured,
+                const measure::SceneTruth& truth, const records::GlRecord& gl);
+
 /// Writes what people look at: grid and single pictures; notes their paths in the records. `on_part` hears how much of
 /// it is done, 0 .. 1, from many threads.
 /// Throws Error(kOutput).

@@ -83,12 +83,15 @@ Scene load_model(const fs::path& file, const LoadOptions& options) {
   MeshFile model = import_mesh_file(file);
   Scene scene;
   scene.name = file.stem().string();
-  scene.title = scene.name;
   scene.cameras = std::move(model.cameras);
   const std::vector<Light> lights = model.lights;
+  const std::vector<bool> aimed = model.aimed;
+  scene.title = model.extras.title.value_or(scene.name);
+  scene.background = model.extras.background.value_or(scene.background);
   scene = validate_geometry(add_mesh_file(std::move(scene), std::move(model)), file.string());
   const Bounds bounds = scene.bounds();
-  for (const Light& light : lights) scene.other_lights.push_back(aim_light(light, 0.5f * (bounds.min + bounds.max)));
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    scene.other_lights.push_back(aimed[i] ? lights[i] : aim_light(lights[i], 0.5f * (bounds.min + bounds.max)));
   if (!lights.empty()) {
     scene.light = scene.other_lights.front();
     scene.other_lights.erase(scene.other_lights.begin());

@@ -75,7 +75,7 @@ std::vector<const records::CellRecord*> choose_cells(const std::vector<records::
   for (const records::CellRecord& cell : cells) {
     const bool scene_fits = request.scenes.empty() || std::ranges::count(request.scenes, cell.scene) > 0;
     const bool size_fits = !request.size || std::pair(cell.width, cell.height) == *request.size;
-    if (!scene_fits || !size_fits) continue;
+    if (!scene_fits || !size_fits || cell.external) continue;
     if (cell.teaching.value_or(false))
       advice.teaching.insert(cell.filter);
     else

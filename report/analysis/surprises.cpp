@@ -34,7 +34,7 @@ class Finder {
     places_ = list_places(all_);
     configurations_ = list_configurations(all_);
     std::vector<const records::CellRecord*> ranked = all_;
-    std::erase_if(ranked, [](const auto* cell) { return cell->teaching.value_or(false); });
+    std::erase_if(ranked, [](const auto* cell) { return !records::is_advised(*cell); });
     ranked_places_ = list_places(ranked).size();
     std::erase_if(ranked, [](const auto* cell) { return cell->status != records::CellStatus::kOk; });
     sound_ = list_configurations(ranked);

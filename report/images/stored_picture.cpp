@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -84,12 +85,15 @@ void check(const OIIO::ImageSpec& spec, const std::string& where) {
   fail(where, fmt::format("the picture has {} x {} pixels: at most {} are read", spec.width, spec.height, kMostPixels));
 }
 
+bool is_alpha(std::string_view channel) {
+  const std::string name = OIIO::Strutil::lower(channel.substr(channel.rfind('.') + 1));
+  return name == "a" || name == "alpha";
+}
+
 /// Some readers give the index of a channel that is not there (GIF): names count first.
 int find_alpha(const OIIO::ImageSpec& spec) {
-  for (int c = 0; c < spec.nchannels; ++c) {
-    const std::string name = OIIO::Strutil::lower(spec.channel_name(c));
-    if (name == "a" || name == "alpha") return c;
-  }
+  for (int c = 0; c < spec.nchannels; ++c)
+    if (is_alpha(spec.channel_name(c))) return c;
   return spec.alpha_channel < spec.nchannels ? spec.alpha_channel : -1;
 }
 
@@ -98,19 +102,55 @@ bool is_srgb(const OIIO::ImageSpec& spec) {
          OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "sRGB");
 }
 
+StoredPicture read_part(OIIO::ImageInput& input, int part, const std::string& where) {
+  const OIIO::ImageSpec spec = input.spec(part);
+  check(spec, where);
+  StoredPicture picture{Image(spec.width, spec.height, spec.nchannels), find_alpha(spec), is_srgb(spec), spec.x,
+                        spec.y};
+  if (!input.read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.image.texels.data()))
+    fail(where, fmt::format("the picture is damaged ({})", make_line(input.geterror())));
+  return picture;
+}
+
+/// Some channels of a picture, in this order.
+StoredPicture choose_channels(const StoredPicture& whole, const OIIO::ImageSpec& spec,
+                              const std::vector<int>& channels) {
+  StoredPicture chosen = whole;
+  const auto count = channels.size(), all = static_cast<std::size_t>(whole.image.channels);
+  chosen.image = Image(whole.image.width, whole.image.height, static_cast<int>(count));
+  for (std::size_t i = 0; i < chosen.image.texels.size(); ++i)
+    chosen.image.texels[i] = whole.image.texels[i / count * all + static_cast<std::size_t>(channels[i % count])];
+  const auto alpha = std::ranges::find_if(channels, [&](int c) { return is_alpha(spec.channel_name(c)); });
+  chosen.alpha_channel = alpha == channels.end() ? -1 : static_cast<int>(alpha - channels.begin());
+  return chosen;
+}
+
 }  // namespace
 
 StoredPicture read_stored_picture(const std::string& name) {
   const PictureName parsed = parse_name(name);
   const auto input = open_file(parsed.file);
-  const int part = find_part(*input, parsed);
-  const OIIO::ImageSpec spec = input->spec(part);
-  check(spec, name);
-  StoredPicture picture{Image(spec.width, spec.height, spec.nchannels), find_alpha(spec), is_srgb(spec), spec.x,
-                        spec.y};
-  if (!input->read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.image.texels.data()))
-    fail(name, fmt::format("the picture is damaged ({})", make_line(input->geterror())));
-  return picture;
+  return read_part(*input, find_part(*input, parsed), name);
+}
+
+std::map<std::string, StoredPicture> read_layers(const std::string& file) {
+  if (!exists(file)) fail(file, "there is no such file: check the path");
+  const auto input = open_file(file);
+  std::map<std::string, StoredPicture> layers;
+  const std::vector<std::string> parts = list_parts(*input);
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const OIIO::ImageSpec spec = input->spec(static_cast<int>(part));
+    const StoredPicture whole = read_part(*input, static_cast<int>(part), file);
+    std::map<std::string, std::vector<int>> channels;  // by layer
+    for (int c = 0; c < spec.nchannels; ++c) {
+      const std::string name = spec.channel_name(c);
+      const std::size_t dot = name.rfind('.');
+      channels[dot != name.npos ? name.substr(0, dot) : std::string(spec.get_string_attribute("oiio:subimagename"))]
+          .push_back(c);
+    }
+    for (const auto& [name, own] : channels) layers.insert_or_assign(name, choose_channels(whole, spec, own));
+  }
+  return layers;
 }
 
 }  // namespace shadowbench::images

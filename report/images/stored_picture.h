@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "report/images/image.h"
@@ -20,5 +21,9 @@ struct StoredPicture {
 /// Throws Error(kInput): no such file, unreadable, damaged, no such part (naming those there are), deep or volumetric.
 /// Cost: reads that part alone.
 StoredPicture read_stored_picture(const std::string& name);
+
+/// Reads all of a file's pictures by their layers' names: what stands before the last dot of its channels' names, or
+/// else the part's name, empty where it has none. Throws likewise. Cost: reads the whole file.
+std::map<std::string, StoredPicture> read_layers(const std::string& file);
 
 }  // namespace shadowbench::images

@@ -21,8 +21,7 @@ namespace {
 constexpr std::array kPicks = {analysis::kFast, analysis::kBalanced, analysis::kBest};
 
 bool can_advise(const std::vector<records::CellRecord>& cells) {
-  return std::ranges::any_of(
-      cells, [](const records::CellRecord& cell) { return !cell.teaching.value_or(false); });
+  return std::ranges::any_of(cells, records::is_advised);
 }
 
 std::string describe_pick(const analysis::Advice& advice, const analysis::Pick& pick, const records::GlRecord& gl,

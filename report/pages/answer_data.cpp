@@ -78,7 +78,7 @@ Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Co
       return !scope.scenes.empty() && std::ranges::count(scope.scenes, cell->scene) == 0;
     });
     for (const records::CellRecord* cell : each.cells)
-      if (!cell->teaching.value_or(false)) advised.push_back(cell);
+      if (records::is_advised(*cell)) advised.push_back(cell);
   }
   const std::vector<analysis::Place> idle = analysis::list_idle_places(advised);
   for (analysis::Configuration& each : scope.configurations)
@@ -139,7 +139,7 @@ std::vector<std::string> list_classes_of(const Scope& scope, const std::vector<s
   std::vector<std::string> own = {""};
   for (const std::string& name : classes)
     if (std::ranges::any_of(scope.configurations, [&](const analysis::Configuration& each) {
-          return !each.cells.empty() && !each.cells.front()->teaching.value_or(false) &&
+          return !each.cells.empty() && records::is_advised(*each.cells.front()) &&
                  each.cells.front()->kernel.width_class == name;
         }))
       own.push_back(name);
@@ -188,7 +188,7 @@ json describe_cost(const std::vector<const records::CellRecord*>& cells, const C
 std::vector<std::string> list_answered_scenes(const std::vector<records::CellRecord>& cells) {
   std::vector<std::string> scenes;
   for (const records::CellRecord& cell : cells)
-    if (!cell.teaching.value_or(false) && std::ranges::count(scenes, cell.scene) == 0) scenes.push_back(cell.scene);
+    if (records::is_advised(cell) && std::ranges::count(scenes, cell.scene) == 0) scenes.push_back(cell.scene);
   return scenes.size() < 2 || cells.size() > kMostCellsInDetail ? std::vector<std::string>() : scenes;
 }
 

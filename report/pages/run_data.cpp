@@ -16,6 +16,7 @@
 #include "report/document/chart.h"
 #include "report/files/file_name.h"
 #include "report/pages/answer_data.h"
+#include "report/pages/external_section.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
@@ -24,8 +25,6 @@ namespace shadowbench::pages {
 namespace {
 
 using nlohmann::json;
-
-bool is_advised(const records::CellRecord& cell) { return !cell.teaching.value_or(false); }
 
 json value_of(const std::optional<double>& value) { return value && std::isfinite(*value) ? json(*value) : json(); }
 
@@ -145,6 +144,7 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
 std::string describe_fully(records::CellRecord cell) {
   cell.map_scale = {};
   const std::string settings = records::describe_settings(cell), params = records::describe_params(cell.params);
+  if (cell.external) return fmt::format("{} · {}", cell.filter, describe_engine(*cell.external));
   return cell.filter + (params.empty() ? "" : " · " + params) + settings.substr(settings.find(" · "));
 }
 
@@ -213,7 +213,7 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   std::vector<std::string> classes;
   for (const auto& each : filters::width_classes())
     if (std::ranges::any_of(cells, [&](const records::CellRecord& cell) {
-          return is_advised(cell) && cell.kernel.width_class == each.name;
+          return records::is_advised(cell) && cell.kernel.width_class == each.name;
         }))
       classes.emplace_back(each.name);
   data["classes"] = classes;
@@ -235,8 +235,9 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
           make_cell(*cell, data["configurations"].size(), analysis::find_place(places, *cell), gpus, frame));
     data["configurations"].push_back(make_configuration(configuration, filters, choices));
   }
-  data["scopes"] = std::ranges::any_of(cells, is_advised) ? make_answer_data(cells, configurations, classes, choices)
-                                                          : json::array();
+  data["scopes"] = std::ranges::any_of(cells, records::is_advised)
+                       ? make_answer_data(cells, configurations, classes, choices)
+                       : json::array();
   return data;
 }
 

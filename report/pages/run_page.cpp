@@ -16,6 +16,7 @@
 #include "report/analysis/trade_measures.h"
 #include "report/images/attribution_bar.h"
 #include "report/pages/answer.h"
+#include "report/pages/external_section.h"
 #include "report/pages/run_data.h"
 #include "report/pages/text_tables.h"
 #include "report/pages/trade_charts.h"
@@ -310,6 +311,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
       page.data["times"].back()["file"] = records::gpu_times_path({}, times.renderer).generic_string();
     }
   }
+  if (auto external = make_external_section(cells)) add(std::move(*external));
   if (trade) add(make_trade_section(run, cells, *trade));
   if (auto gpus = make_gpu_section(cells)) add(std::move(*gpus));
   add(make_evidence_section(run, measured));

@@ -41,7 +41,11 @@ std::string cell_key(const json& settings) {
   return fmt::format("{:016x}", files::hash_text(dump_line(canonical(settings))));
 }
 
-std::string cell_key(const CellRecord& cell) { return cell_key(cell_settings(cell)); }
+std::string cell_key(const CellRecord& cell) {
+  json settings = cell_settings(cell);
+  if (cell.external) settings["external"] = true;
+  return cell_key(settings);
+}
 
 bool is_cell_key(std::string_view text) {
   const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };

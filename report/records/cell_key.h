@@ -17,7 +17,7 @@ nlohmann::json cell_settings(const CellRecord& cell);
 /// 4 and 4.0 alike). A caller with further settings adds them to what cell_settings() returns.
 std::string cell_key(const nlohmann::json& settings);
 
-/// Returns the key of cell_settings(cell).
+/// Returns the key of cell_settings(cell); that of a row of another renderer is no filter's of the same name.
 std::string cell_key(const CellRecord& cell);
 
 /// Tells whether a text is a key: 16 digits 0-9, a-f.

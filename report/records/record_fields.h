@@ -4,11 +4,10 @@
 
 #include "reference/metrics/metric_table.h"
 #include "report/records/description.h"
+#include "report/records/gpu_fields.h"
 #include "report/records/records.h"
 
 namespace shadowbench::records {
-
-inline constexpr About kPositive{.least = 0};
 
 void visit_fields(Is<Quartiles> auto& spread, auto&& visit) {
   visit("median", spread.median, kPositive);
@@ -46,61 +45,6 @@ void visit_fields(Is<LightCountRecord> auto& lights, auto&& visit) {
   visit("ratio_to_none.static", lights.static_ratio);
   visit("ratio_to_none.moving", lights.moving_ratio);
   visit("maps_bytes", lights.maps_bytes, {.text = "of the maps that the lookups read"});
-}
-
-void visit_fields(Is<ShaderFacts> auto& facts, auto&& visit) {
-  visit("instructions", facts.instructions);
-  visit("code_bytes", facts.code_bytes);
-  visit("vector_registers", facts.vector_registers);
-  visit("scalar_registers", facts.scalar_registers);
-  visit("spilled_registers", facts.spilled_registers);
-  visit("scratch_bytes", facts.scratch_bytes);
-  visit("waves_per_simd", facts.waves_per_simd);
-  visit("latency_cycles", facts.latency_cycles);
-  visit("busy_cycles", facts.busy_cycles);
-  visit("samples", facts.samples);
-  visit("compares", facts.compares);
-  visit("gathers", facts.gathers);
-  visit("loads", facts.loads);
-  visit("loops", facts.loops);
-}
-
-void visit_fields(Is<GpuPassRecord> auto& pass, auto&& visit) {
-  visit("pass", pass.pass, {.filled = true});
-  visit("draws", pass.draws, {.text = "for one map", .least = 1});
-  visit_fields(pass.facts, visit);
-}
-
-/// Visits the parts of an estimate alone: the rest stands beside them, in the record of the GPU.
-void visit_fields(Is<GpuEstimateRecord> auto& parts, auto&& visit) {
-  visit("lookup", parts.lookup_us, kPositive);
-  visit("prefilter", parts.prefilter_us, kPositive);
-  visit("arithmetic", parts.arithmetic_us, kPositive);
-  visit("sampling", parts.sampling_us, kPositive);
-  visit("memory", parts.memory_us, kPositive);
-}
-
-void visit_fields(Is<GpuRecord> auto& gpu, auto&& visit) {
-  const auto& estimate = gpu.estimate;
-  std::optional<double> total_us = estimate ? std::optional(estimate->total_us) : std::nullopt;
-  std::optional<std::string> bound_by = estimate ? std::optional(estimate->bound_by) : std::nullopt;
-  std::optional<std::string> refused = null_if_empty(gpu.refused);
-  visit("facts", gpu.facts);
-  visit("estimate_us", total_us,
-        {.text = "prefilter of one map, and the lookups of a million receivers, as dense as in a frame of 1920x1080",
-         .least = 0});
-  visit("parts_us", gpu.estimate,
-        {.text = "lookup is the largest of arithmetic, sampling and memory; memory is null where the filter's reads "
-                 "are not known"});
-  visit("bound_by", bound_by, {.one_of = "arithmetic,sampling,memory"});
-  visit("refused", refused);
-  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(gpu)>>) {
-    gpu.refused = refused.value_or("");
-    if (total_us && (!gpu.estimate || !bound_by)) throw std::invalid_argument("an estimate with all of its parts");
-    if (!total_us) return gpu.estimate.reset();
-    gpu.estimate->total_us = *total_us;
-    gpu.estimate->bound_by = *bound_by;
-  }
 }
 
 void visit_fields(Is<BiasRecord> auto& bias, auto&& visit) {
@@ -174,6 +118,30 @@ void visit_fields(Is<RatioRecord> auto& ratio, auto&& visit) {
   visit("static", ratio.static_light,
         {.column = "frame with a cached map against none", .column_name = "ratio_static"});
   visit("moving", ratio.moving, {.column = "frame with a new map against none", .column_name = "ratio_moving"});
+}
+
+void visit_fields(Is<ExternalRecord> auto& external, auto&& visit) {
+  visit("engine", external.engine, {.text = "as its user says, like version, driver, map, bias and fit"});
+  visit("version", external.version);
+  visit("driver", external.driver);
+  visit("map", external.map);
+  visit("bias", external.bias);
+  visit("fit", external.fit);
+  visit("ms", external.ms, {.text = "what it costs, as its user says", .least = 0});
+  visit("timed", external.timed, {.text = "how that was timed"});
+  visit("undefined", external.undefined, {.text = "receivers without a visibility, which are left out"});
+  visit("inside_rmse", external.inside_rmse, {.text = "over receivers that lie beside no silhouette", .least = 0});
+  visit("aligned_by", external.aligned_by,
+        {.text = "what the shift was found from", .one_of = "depth,coverage,nothing"});
+  visit("shift_x", external.shift_x, {.text = "pixels, of its picture to the right of ours"});
+  visit("shift_y", external.shift_y, {.text = "the same, down"});
+  visit("shift_p99", external.shift_p99,
+        {.text = "99th percentile over pixels of how far the two are apart, pixels", .least = 0});
+  visit("unaligned", external.unaligned, {.text = "the pictures do not show the same, and it was scored all the same"});
+  visit("nearest", external.nearest, {.text = "the filter of this run whose visibility is nearest"});
+  visit("nearest_rmse", external.nearest_rmse, {.text = "between the two", .least = 0});
+  visit("peers", external.peers,
+        {.text = "RMSE of the run's filters, of the first phase alone, over the same receivers"});
 }
 
 void visit_fields(Is<TileRecord> auto& tile, auto&& visit) {
@@ -324,6 +292,11 @@ void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
   visit("gpu", cell.gpu,
         {.text = "what the cell costs on GPUs that were not there, by name; null or missing where none was named",
          .later = true});
+  visit("external", cell.external,
+        {.text = "of a row that another renderer drew: what is said of it, and whether it shows the same view; null "
+                 "for the program's own filters",
+         .later = true,
+         .column = "of a row that another renderer drew: what is said of it, as JSON"});
   visit_group("images", cell.images, visit);
   visit("warnings", cell.warnings, {.text = "what makes this cell's numbers doubtful"});
   visit("absent", cell.absent, {.text = "dotted name of a null field or of a group of them: why it is null"});

@@ -220,6 +220,28 @@ struct MachineKind {
   bool operator==(const MachineKind&) const = default;
 };
 
+/// What is said of a row that another renderer drew, and whether it shows the same view. Its errors are those of the
+/// one picture that was given; everything else is absent.
+struct ExternalRecord {
+  std::optional<std::string> engine;  ///< its name and version, driver, map, bias and fit, as its user says
+  std::optional<std::string> version;
+  std::optional<std::string> driver;
+  std::optional<std::string> map;
+  std::optional<std::string> bias;
+  std::optional<std::string> fit;
+  std::optional<double> ms;                ///< what it cost, as its user says
+  std::optional<std::string> timed;        ///< how that was timed
+  std::int64_t undefined = 0;              ///< receivers that have no visibility: left out
+  std::optional<double> inside_rmse;       ///< over receivers that lie beside no silhouette
+  std::string aligned_by = "nothing";      ///< "depth", "coverage": what the shift was found from
+  std::optional<double> shift_x, shift_y;  ///< pixels, of its picture to the right and down
+  std::optional<double> shift_p99;         ///< 99th percentile over pixels of how far the two are apart
+  bool unaligned = false;                  ///< the pictures do not show the same, and it was scored all the same
+  std::optional<std::string> nearest;      ///< the filter of this run whose picture is nearest
+  std::optional<double> nearest_rmse;      ///< between the two pictures
+  std::map<std::string, double> peers;     ///< RMSE of the run's filters in the one picture of the first phase
+};
+
 /// Everything measured of one scene x view x filter x parameters x map settings.
 ///
 /// What does not exist stays empty, and `absent` says why: dotted field name, or the name of a whole group
@@ -260,6 +282,7 @@ struct CellRecord : metrics::MetricValues {
   RatioRecord ratio_to_none;
   std::optional<std::vector<LightCountRecord>> lights;  ///< by ascending count
   std::optional<GpuRecords> gpu;                        ///< what the cell costs on GPUs that were not there
+  std::optional<ExternalRecord> external;               ///< of a row that another renderer drew
   ImagesRecord images;
   std::vector<std::string> warnings;  ///< for people: what makes this cell's numbers doubtful
   std::map<std::string, std::string> absent;
@@ -269,6 +292,9 @@ struct CellRecord : metrics::MetricValues {
 inline bool is_drawn(const CellRecord& cell) {
   return cell.status == CellStatus::kOk || cell.status == CellStatus::kSuspect;
 }
+
+/// Whether advice and fronts are about the cell: not where its filter shows a mistake, or another renderer drew it.
+inline bool is_advised(const CellRecord& cell) { return !cell.teaching.value_or(false) && !cell.external; }
 
 /// The OpenGL that drew the pictures.
 struct GlRecord {

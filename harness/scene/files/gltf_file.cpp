@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "harness/scene/files/gltf_extras.h"
 #include "harness/scene/files/gltf_parse.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
@@ -60,12 +62,15 @@ glm::dmat4 local_transform(const tinygltf::Model& model, int index, const std::s
   return node.scale.empty() ? local : glm::scale(local, glm::make_vec3(node.scale.data()));
 }
 
+/// Requires a file that has scenes.
+const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
+  const auto wanted = static_cast<std::size_t>(std::max(0, model.defaultScene));
+  return model.scenes[std::min(wanted, model.scenes.size() - 1)];
+}
+
 /// The roots of the default scene, of the first one, or, where a file has no scenes, the nodes that are no child.
 std::vector<int> root_nodes(const tinygltf::Model& model) {
-  if (!model.scenes.empty()) {
-    const auto wanted = static_cast<std::size_t>(std::max(0, model.defaultScene));
-    return model.scenes[std::min(wanted, model.scenes.size() - 1)].nodes;
-  }
+  if (!model.scenes.empty()) return default_scene(model).nodes;
   std::vector<bool> is_child(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes) {
     for (const int child : node.children)
@@ -166,6 +171,7 @@ class GltfImporter {
 
   MeshFile import() {
     warn_of_extensions();
+    if (!source_.scenes.empty()) result_.extras = read_scene_extras(default_scene(source_).extras, where_);
     for (const tinygltf::Material& material : source_.materials) add_material(material);
     for (const PlacedNode& placed : place_nodes(source_, where_)) {
       const tinygltf::Node& node = find_element(source_.nodes, placed.node, "there is no node", where_);
@@ -235,6 +241,8 @@ class GltfImporter {
       count_corners(local.indices.size());
       Mesh mesh = transform_mesh(local, world_from_node);
       if (!node.name.empty()) mesh.name = node.name;
+      mesh.casts_shadow = read_extra_flag(node.extras, "casts_shadow");
+      mesh.may_cull_front = read_extra_flag(node.extras, "may_cull_front");
       result_.meshes.push_back(std::move(mesh));
     }
   }
@@ -366,7 +374,9 @@ class GltfImporter {
     light.kind = *kind;
     if (source.color.size() == 3)
       for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>(source.color[static_cast<std::size_t>(i)]);
-    result_.lights.push_back(std::move(light));
+    const toml::table extras = read_light_extras(source.extras);
+    result_.aimed.push_back(!extras.empty());
+    result_.lights.push_back(extras.empty() ? std::move(light) : with_gltf_extras(light, extras, where_));
   }
 
   const tinygltf::Model& source_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/input_file.h"
+#include "harness/scene/files/scene_extras.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
@@ -21,6 +22,8 @@ struct MeshFile {
   std::vector<Texture> textures;
   std::vector<Camera> cameras;
   std::vector<Light> lights;  ///< named where there are several
+  std::vector<bool> aimed;    ///< of each light, whether the file says where it is as strong as a sun
+  SceneExtras extras;
   std::vector<std::string> warnings;
 };
 

@@ -167,6 +167,35 @@ std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4
               .inner_cone_deg = std::min(full_deg(inner_cone_rad), kWidestCone_deg)};
 }
 
+GltfLight describe_gltf_light(const Light& light) {
+  GltfLight made;
+  made.type = list_readers()[light.kind.index()].first;
+  const auto half_rad = [](float full_deg) { return glm::radians(0.5 * static_cast<double>(full_deg)); };
+  if (const auto* sun = std::get_if<Sun>(&light.kind)) made.direction_ws = glm::dvec3(sun->direction_ws);
+  if (const auto beam = find_beam(light)) {
+    made.position_ws = beam->position_ws;
+    made.direction_ws = beam->axis_ws;
+  }
+  if (const auto* spot = std::get_if<Spot>(&light.kind)) {
+    made.outer_cone_rad = half_rad(spot->cone_deg);
+    made.inner_cone_rad = half_rad(std::min(spot->inner_cone_deg, spot->cone_deg));
+  }
+  return made;
+}
+
+toml::table list_gltf_extras(const Light& light) {
+  toml::table extras = write_light(light);
+  for (const char* key : {"type", "name", "color", "direction", "position"}) extras.erase(key);
+  return extras;
+}
+
+Light with_gltf_extras(const Light& light, const toml::table& extras, const std::string& where) {
+  toml::table table = write_light(light);
+  if (extras.contains("size")) table.erase("radius");
+  for (const auto& [key, value] : extras) table.insert_or_assign(key.str(), value);
+  return read_light(TomlTable(std::move(table), "the extras of a light", {.file = where}));
+}
+
 Light aim_light(Light light, const glm::vec3& center_ws) {
   std::visit([&](auto& kind) { aim_light(kind, center_ws); }, light.kind);
   return light;

@@ -89,6 +89,21 @@ toml::table write_light(Light light);
 std::optional<LightKind> make_gltf_light(std::string_view type, const glm::dmat4& world_from_node,
                                          double inner_cone_rad = 0.0, double outer_cone_rad = 0.0);
 
+/// A light as glTF has it. The place of a sun is the origin, and a point light looks down.
+struct GltfLight {
+  std::string type;  ///< of KHR_lights_punctual
+  glm::dvec3 position_ws{0.0};
+  glm::dvec3 direction_ws{0.0, -1.0, 0.0};  ///< the way the light travels, unit length
+  double inner_cone_rad = 0.0;              ///< half angles, of a spot
+  double outer_cone_rad = 0.0;
+};
+GltfLight describe_gltf_light(const Light& light);
+
+/// What glTF has no word for of a light, by the keys of a scene file; and a light of a glTF file with it.
+/// Throws kInput, with `where`, for a key or value that a scene file does not take.
+toml::table list_gltf_extras(const Light& light);
+Light with_gltf_extras(const Light& light, const toml::table& extras, const std::string& where);
+
 /// A light in the scene whose light is as strong as a sun's where `center_ws` is, or as far ahead; others stay as they
 /// are. A glTF file says where a spot looks, and not how far.
 Light aim_light(Light light, const glm::vec3& center_ws);

@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "harness/cli/commands.h"
+#include "harness/cli/progress_bar.h"
+#include "harness/cli/run_arguments.h"
+#include "harness/engines/exported_scene.h"
+
+namespace shadowbench::cli {
+namespace {
+
+int export_scenes(RunArguments& arguments, const std::vector<std::string>& words) {
+  options::find_told<std::string>(arguments.told, "--filters") = kReferenceFilter;
+  const options::RunOptions options = make_run_options(arguments, words);
+  const auto folders = work_with_progress(
+      options.out, [&](options::Progress& progress) { return engines::export_scenes(options, progress); });
+  for (const std::filesystem::path& folder : folders) fmt::print("{}\n", (folder / "scene.json").string());
+  return 0;
+}
+
+}  // namespace
+
+Command make_export_command() {
+  Command command{"export", "Write scenes for other renderers: a .glb of each, and where its light's map lies"};
+  command.about =
+      "Writes OUT/<scene>/<scene>.glb with camera and light, and scene.json with the picture's size and the window of "
+      "the "
+      "light's map. What another renderer draws of it becomes a row of a report with 'score'. 'run --scene "
+      "OUT/<scene>/<scene>.glb' measures the same scene.";
+  auto a = std::make_shared<RunArguments>();
+  command
+      .add("SCENE", &options::find_told<std::vector<std::string>>(a->told, "--scene"),
+           "scenes, as --scene of 'run' takes them")
+      .names(ValueKind::kScene)
+      .require();
+  add_told(command, *a, {"--ground", "--view", "--light-name", "--light", "--size", "--map-size", "--fit"});
+  add_drawing_options(command, *a);
+  a->out = "report/out/scenes";
+  command.action = [a](const CommandLine& line) { return export_scenes(*a, line.words()); };
+  return command;
+}
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "base/error.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/progress_bar.h"
+#include "harness/cli/run_arguments.h"
+#include "harness/engines/engine_command.h"
+#include "report/records/absence.h"
+#include "report/records/format.h"
+#include "report/records/json_values.h"
+#include "report/records/text_table.h"
+
+namespace shadowbench::cli {
+namespace {
+
+struct ScoreArguments : DrawingArguments {
+  std::string run, name, scene, view, command;
+  engines::ExternalFiles files;
+  std::string meta;
+  double timeout_s = 60.0;
+  bool unaligned = false;
+  bool json = false;
+};
+
+using Row = std::pair<records::CellRecord, std::vector<engines::Finding>>;
+
+std::string describe_shift(const records::ExternalRecord& external) {
+  if (!external.shift_x) return "not known: give --depth, or --unlit";
+  std::string text = fmt::format("{:.3f} right, {:.3f} down of ours, by {}", *external.shift_x, *external.shift_y,
+                                 external.aligned_by);
+  if (external.shift_p99) text += fmt::format("; {:.3f} at the 99th percentile", *external.shift_p99);
+  return text + (external.unaligned ? "; NOT our view, by what was found" : "");
+}
+
+/// The row among the run's filters, each of one phase, the best first.
+void print_peers(const records::CellRecord& cell) {
+  std::vector<std::pair<double, std::string>> rows;
+  for (const auto& [label, rmse] : cell.external->peers) rows.emplace_back(rmse, label);
+  if (cell.error.rmse) rows.emplace_back(*cell.error.rmse, cell.filter + "  <-");
+  std::ranges::sort(rows);
+  for (const auto& [rmse, label] : rows) fmt::print("  {:<8} {}\n", records::format_number(rmse), label);
+}
+
+void print_row(const Row& row) {
+  const auto& [cell, findings] = row;
+  const records::ExternalRecord& external = *cell.external;
+  const auto number = [&](const char* name, const std::optional<double>& value, const std::string& field) {
+    fmt::print("{:<20} {}\n", name,
+               value ? records::format_number(value) : "absent: " + records::explain_absence(cell, field));
+  };
+  fmt::print("{} on {}, view {}\n", cell.filter, cell.scene, cell.view);
+  fmt::print("{:<20} {}\n", "shift, pixels", describe_shift(external));
+  number("RMSE", cell.error.rmse, "error.rmse");
+  number("without silhouettes", external.inside_rmse, "error.rmse");
+  number("mean", cell.error.mean, "error.mean");
+  number("FLIP", cell.error.flip, "error.flip");
+  number("acne", cell.artefact.acne, "artefact.acne");
+  number("leak", cell.artefact.leak, "artefact.leak");
+  number("contact gap", cell.artefact.contact_gap, "artefact.contact_gap");
+  fmt::print("{:<20} {} of {} receivers\n", "undefined", external.undefined, cell.receivers.value_or(0));
+  if (external.nearest)
+    fmt::print("{:<20} {}, {} apart\n", "nearest filter", *external.nearest,
+               records::format_number(external.nearest_rmse));
+  print_peers(cell);
+}
+
+std::filesystem::path run_folder(const std::string& run) { return find_results(run).parent_path(); }
+
+/// The options of a run, from the command line that its report keeps. Throws Error(kInput) where that is none of 'run'.
+options::RunOptions reread_options(const std::filesystem::path& folder, const ScoreArguments& arguments) {
+  const records::Results results = records::read_results(folder / "results.json");
+  std::vector<std::string> words = results.run.command;
+  if (words.size() < 2 || words[1] != "run")
+    throw Error(ErrorKind::kInput, "this report was not made by 'shadowbench run', whose settings are read from it",
+                folder.string());
+  RunArguments told;
+  Command run{"run", ""};
+  add_run_options(run, told);
+  options::RunOptions options;
+  run.action = [&](const CommandLine& line) {
+    apply_experiment(line, told);
+    options = make_run_options(told, line.words());
+    return 0;
+  };
+  Command program{"shadowbench", ""};
+  program.commands = {run};
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  run_command_line(program, static_cast<int>(argv.size()), argv.data());
+  take_drawing_options(arguments, options);
+  options.out = folder;
+  return options;
+}
+
+/// Only the scene that is asked for is loaded, where its name tells which that is.
+void keep_scene(options::RunOptions& options, const std::string& scene) {
+  const auto is_it = [&](const std::string& argument) {
+    const std::string stem = std::filesystem::path(argument).stem().string();
+    return scene == stem || scene.starts_with(stem + ".");
+  };
+  if (std::ranges::count_if(options.scenes, is_it) == 1)
+    std::erase_if(options.scenes, [&](const std::string& each) { return !is_it(each); });
+}
+
+void check_arguments(const ScoreArguments& arguments) {
+  const engines::ExternalFiles& files = arguments.files;
+  const bool has_files = !(files.layers + files.lit + files.unlit + files.visibility + files.depth).empty();
+  if (arguments.command.empty() && !has_files)
+    fail(
+        "score: give what was drawn: --layers F, or --lit F --unlit F, or --visibility F; or --command C, which draws");
+  if (!arguments.command.empty() && (has_files || !arguments.meta.empty()))
+    fail("--command draws the pictures, and may leave a meta.json: leave out the files");
+  if (!(arguments.timeout_s > 0.0)) fail("--cell-timeout must be more than 0 seconds");
+}
+
+std::vector<Row> score_all(const ScoreArguments& arguments, const options::RunOptions& options,
+                           options::Progress& progress) {
+  engines::RunScorer scorer(options, progress);
+  engines::ScoreRequest request{arguments.name,     arguments.scene, arguments.view, arguments.files, {},
+                                arguments.unaligned};
+  if (!arguments.meta.empty()) request.meta = arguments.meta;
+  if (!arguments.command.empty())
+    return engines::run_engines(scorer, {{arguments.name, arguments.command, "."}}, request, arguments.timeout_s,
+                                progress);
+  std::vector<Row> rows = {scorer.score(request)};
+  scorer.finish();
+  return rows;
+}
+
+int score(const ScoreArguments& arguments) {
+  check_arguments(arguments);
+  const std::filesystem::path folder = run_folder(arguments.run);
+  options::RunOptions options = reread_options(folder, arguments);
+  keep_scene(options, arguments.scene);
+  const std::vector<Row> rows =
+      work_with_progress(folder, [&](options::Progress& progress) { return score_all(arguments, options, progress); });
+  nlohmann::json all = nlohmann::json::array();
+  for (const Row& row : rows) {
+    for (const engines::Finding& finding : row.second)
+      fmt::print(stderr, "warning: {}: {}\n", row.first.scene, finding.text);
+    all.push_back(records::to_json(row.first));
+    if (!arguments.json) print_row(row);
+  }
+  if (arguments.json)
+    fmt::print("{}\n", all.dump(2));
+  else
+    fmt::print("report: {}\n", (folder / "index.html").string());
+  return 0;
+}
+
+}  // namespace
+
+Command make_score_command() {
+  Command command{"score", "Score what another renderer drew of a run's scene, as a row of its report"};
+  command.about =
+      "'export' writes the scene for it. Its picture with the shadow over that without is its visibility at each "
+      "receiver, which is scored as a filter's is, against the same truth. First it is checked that the pictures show "
+      "the run's view: a shift above 0.05 pixels is a warning, above 0.25 an error, as are a flip, values for a "
+      "display, "
+      "exchanged files and the like.\n"
+      "Files are of any format that OpenImageIO reads, of linear values; FILE#PART is one part. With --command a "
+      "program draws each scene of the run: it is given a scene.json and the EXR file to write, whose layers are lit, "
+      "unlit, visibility and depth.";
+  auto a = std::make_shared<ScoreArguments>();
+  command.add("RUN", &a->run, "the report's folder, which gets the row").names(ValueKind::kFolder).require();
+  command.add("--name", &a->name, "what the row is called").never_empty("a name, such as 'three.js PCF'").require();
+  command.add("--scene", &a->scene, "a scene of the run (default: its only one; with --command all)")
+      .names(ValueKind::kScene);
+  command.add("--view", &a->view, "a view of that scene (default: its only one)");
+  command.add("--layers", &a->files.layers, "one EXR file with layers lit and unlit, or visibility, and perhaps depth")
+      .names(ValueKind::kFile);
+  command.add("--lit", &a->files.lit, "the light with its shadow, without ambient light").names(ValueKind::kFile);
+  command.add("--unlit", &a->files.unlit, "the same without the shadow").names(ValueKind::kFile);
+  command.add("--visibility", &a->files.visibility, "in place of both: 1 lit, 0 in shadow").names(ValueKind::kFile);
+  command.add("--depth", &a->files.depth, "metres along the camera's axis, by which a shift is found best")
+      .names(ValueKind::kFile);
+  command.add("--meta", &a->meta, "a JSON object of texts: engine, version, driver, map, bias, fit, ms, timed, truth")
+      .names(ValueKind::kFile);
+  command.add("--command", &a->command,
+              "draws the scene: a command of the shell, given a scene.json and the EXR to write");
+  command.add("--cell-timeout", &a->timeout_s, "seconds that the command may take on one scene");
+  command.add("--unaligned", &a->unaligned, "score pictures that do not show the run's view, and mark the row");
+  add_json_option(command, a->json);
+  add_backend_option(command, a->backend);
+  command.add("--cache", &a->cache, "folder of traced images (default: as 'run')").names(ValueKind::kFolder);
+  command.action = [a](const CommandLine&) { return score(*a); };
+  return command;
+}
+
+}  // namespace shadowbench::cli

@@ -1,0 +1,294 @@
+#include "harness/engines/alignment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "base/error.h"
+#include "harness/engines/light_checks.h"
+
+namespace shadowbench::engines {
+namespace {
+
+using images::Image;
+using Mask = std::vector<std::uint8_t>;
+
+constexpr double kLeastShareOfDepth = 1e-4;  // 1 / depth is exact but for its rounding
+constexpr double kLeastShareOfEdges = 0.03;  // pixels of an edge are off by up to half a pixel each
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+/// Sums of a least-squares fit of a shift s to e = -g.s, where e is what theirs has more than ours and g our gradient.
+class ShiftFit {
+ public:
+  void add(const glm::dvec2& gradient, double difference) {
+    products_ += glm::outerProduct(gradient, gradient);
+    right_ -= difference * gradient;
+  }
+
+  /// What gradients of one direction alone leave open along the other is taken to be 0: where their squares there sum
+  /// to less than `least_share` of those of the first. Nothing where there are none.
+  std::optional<glm::dvec2> solve(double least_share) const {
+    const double half_trace = 0.5 * (products_[0][0] + products_[1][1]);
+    const double radius = std::hypot(0.5 * (products_[0][0] - products_[1][1]), products_[0][1]);
+    const double largest = half_trace + radius, least = half_trace - radius;
+    if (!(largest > 0.0)) return std::nullopt;
+    if (least >= least_share * largest) return glm::inverse(products_) * right_;
+    const glm::dvec2 across(products_[0][1], largest - products_[0][0]),
+        other(largest - products_[1][1], products_[0][1]);
+    const glm::dvec2 axis = glm::normalize(glm::length(across) > glm::length(other) ? across : other);
+    return axis * (glm::dot(axis, right_) / largest);
+  }
+
+ private:
+  glm::dmat2 products_{0.0};
+  glm::dvec2 right_{0.0};
+};
+
+/// Two fields of one view, and the pixels in which they say where it lies.
+struct Fields {
+  const Image& ours;
+  const Image& theirs;
+  std::function<bool(std::size_t pixel, const glm::dvec2& gradient)> is_used;
+  double least_share;  ///< see ShiftFit::solve()
+};
+
+/// Fits the shift; `distances` takes how far apart the two are in each pixel, along the gradient.
+std::optional<glm::dvec2> find_shift(const Fields& fields, std::vector<double>& distances) {
+  const auto& [ours, theirs, is_used, least_share] = fields;
+  ShiftFit fit;
+  for (std::size_t i = 0; i < ours.texels.size(); ++i) {
+    const auto left = step(i, -1, 0, ours.width, ours.height), right = step(i, 1, 0, ours.width, ours.height),
+               up = step(i, 0, -1, ours.width, ours.height), down = step(i, 0, 1, ours.width, ours.height);
+    if (!left || !right || !up || !down) continue;
+    const auto at = [&](std::size_t pixel) { return static_cast<double>(ours.texels[pixel]); };
+    const glm::dvec2 gradient(0.5 * (at(*right) - at(*left)), 0.5 * (at(*down) - at(*up)));
+    const double length = glm::length(gradient);
+    if (!(length > 0.0) || !is_used(i, gradient)) continue;
+    const double difference = static_cast<double>(theirs.texels[i]) - at(i);
+    constexpr double kFarthest = 3.0;  // pixels; beyond, theirs is another surface
+    if (!(std::abs(difference) <= kFarthest * length)) continue;
+    fit.add(gradient, difference);
+    distances.push_back(std::abs(difference) / length);
+  }
+  return fit.solve(least_share);
+}
+
+/// 1 / depth is linear over a plane's picture; 0 where nothing is.
+Image invert_depth(const Image& depth) {
+  Image inverse = depth;
+  for (float& value : inverse.texels) value = std::isfinite(value) && value > 0.0f ? 1.0f / value : 0.0f;
+  return inverse;
+}
+
+Alignment align_by_depth(const Image& depth, const OwnView& own) {
+  const Image ours = invert_depth(own.depth), theirs = invert_depth(depth);
+  const auto is_plane = [&](std::size_t i, const glm::dvec2& gradient) {
+    constexpr double kMostBend = 0.05;  // second over first difference
+    const auto bend = [&](int dx, int dy) {
+      const std::size_t before = *step(i, -dx, -dy, ours.width, ours.height),
+                        after = *step(i, dx, dy, ours.width, ours.height);
+      if (ours.texels[before] == 0.0f || ours.texels[after] == 0.0f) return 1e9;
+      return std::abs(static_cast<double>(ours.texels[before]) + static_cast<double>(ours.texels[after]) -
+                      2.0 * static_cast<double>(ours.texels[i]));
+    };
+    // Single precision leaves depth uncertain by so much, which a surface across the view has as its whole gradient.
+    const double rounding = 1e-5 * static_cast<double>(ours.texels[i]);
+    const double length = glm::length(gradient);
+    return ours.texels[i] != 0.0f && length > rounding && bend(1, 0) <= kMostBend * length &&
+           bend(0, 1) <= kMostBend * length;
+  };
+  std::vector<double> distances;
+  Alignment found{"depth", find_shift({ours, theirs, is_plane, kLeastShareOfDepth}, distances), std::nullopt};
+  if (distances.empty()) return {};
+  const auto place = distances.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(distances.size() - 1));
+  std::nth_element(distances.begin(), place, distances.end());
+  found.p99 = *place;
+  return found;
+}
+
+/// Weights 1 2 1 along both axes: the edge of a mask becomes a ramp, whose shift shows in every pixel.
+Image blur(const Mask& mask, int width, int height) {
+  Image blurred(width, height, 1);
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    float sum = 0.0f;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx)
+        if (const auto n = step(i, dx, dy, width, height))
+          sum += static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy)) * mask[*n]);
+    blurred.texels[i] = sum / 16.0f;
+  }
+  return blurred;
+}
+
+/// Which pixels theirs covers, and which ours: receivers by unlit, or else surfaces by depth; empty without either.
+std::array<Mask, 2> find_coverage(const ExternalImages& images, const OwnView& own) {
+  Mask theirs;
+  if (images.unlit)
+    for (const float value : images.unlit->texels) theirs.push_back(value > 0.0f ? 1 : 0);
+  else if (images.depth)
+    for (const float value : images.depth->texels) theirs.push_back(std::isfinite(value) && value > 0.0f ? 1 : 0);
+  else
+    return {};
+  return {images.unlit ? own.counts : own.is_surface, theirs};
+}
+
+/// A mistake in how a picture was drawn: where the pixel that ours shows at a place lies in theirs, both from the
+/// middle of the picture in units of half its width and height.
+struct Mistake {
+  const char* text;
+  std::function<glm::dvec2(const glm::dvec2&)> place;
+};
+
+std::vector<Mistake> list_mistakes(double aspect) {
+  return {{"it is upside down: rows are to run from top to bottom, and OpenGL reads them from the bottom",
+           [](const glm::dvec2& p) { return glm::dvec2(p.x, -p.y); }},
+          {"it is mirrored from left to right: a left-handed engine, or the x axis of a position, was flipped",
+           [](const glm::dvec2& p) { return glm::dvec2(-p.x, p.y); }},
+          {"it is turned by 180 degrees: rows and columns run the wrong way", [](const glm::dvec2& p) { return -p; }},
+          {"rows and columns are exchanged", [](const glm::dvec2& p) { return glm::dvec2(p.y, p.x); }},
+          {"it is too wide: the camera's aspect is 1, and not width / height",
+           [=](const glm::dvec2& p) { return glm::dvec2(p.x * aspect, p.y); }},
+          {"it is too narrow: the camera's aspect is height / width, or was applied twice",
+           [=](const glm::dvec2& p) { return glm::dvec2(p.x / aspect, p.y); }},
+          {"it is magnified: the vertical field of view was taken as the horizontal one",
+           [=](const glm::dvec2& p) { return p * aspect; }}};
+}
+
+/// The share of pixels that one covers and the other does not, where theirs was drawn with that mistake.
+double measure_disagreement(const std::array<Mask, 2>& coverage, int width, int height, const Mistake& mistake) {
+  const auto& [ours, theirs] = coverage;
+  const glm::dvec2 half(0.5 * width, 0.5 * height);
+  double compared = 0.0, apart = 0.0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    const glm::dvec2 middle(static_cast<double>(i % static_cast<std::size_t>(width)) + 0.5,
+                            static_cast<double>(i / static_cast<std::size_t>(width)) + 0.5);
+    const glm::dvec2 place = mistake.place((middle - half) / half) * half + half;
+    if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < width && place.y < height)) continue;
+    compared += 1.0;
+    apart +=
+        ours[i] !=
+        theirs[static_cast<std::size_t>(place.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(place.x)];
+  }
+  return compared > 0.0 ? apart / compared : 1.0;
+}
+
+void check_orientation(const std::array<Mask, 2>& coverage, int width, int height, std::vector<Finding>& findings) {
+  constexpr double kAlike = 0.02, kMuchLess = 0.35, kMost = 0.1;
+  const Mistake none{"", [](const glm::dvec2& p) { return p; }};
+  const double apart = measure_disagreement(coverage, width, height, none);
+  if (apart <= kAlike) return;
+  double least = apart;
+  std::string cause;
+  for (const Mistake& mistake : list_mistakes(static_cast<double>(width) / height)) {
+    const double own = measure_disagreement(coverage, width, height, mistake);
+    if (own < least) least = own, cause = mistake.text;
+  }
+  if (least < kMuchLess * apart)
+    findings.push_back({true, fmt::format("{} of the pixels show something else than ours: {} (then {})",
+                                          percent(apart), cause, percent(least))});
+  else if (apart > kMost)
+    findings.push_back({true, fmt::format("{} of the pixels show something else than ours: the camera, the model or "
+                                          "the light's direction is another one",
+                                          percent(apart))});
+}
+
+void check_shift(const Alignment& found, std::vector<Finding>& findings) {
+  if (!found.shift) {
+    findings.push_back({false, "whether it lies on our pixels is not known: give --depth, or --unlit"});
+    return;
+  }
+  const double length = glm::length(*found.shift);
+  if (length <= kWarnedShift) return;
+  const bool is_half = std::abs(length - 0.5) < 0.15 || std::abs(length - std::sqrt(0.5)) < 0.15;
+  findings.push_back(
+      {length > kMostShift,
+       fmt::format("it lies {:.2f} pixels right and {:.2f} down of ours, found from {}: {}", found.shift->x,
+                   found.shift->y, found.by,
+                   is_half ? "half a pixel, as where a picture is resampled, or pixels' corners are taken for their "
+                             "middles"
+                           : "a jittered or another camera, another field of view, or a picture that was resampled")});
+}
+
+/// Turns lit and unlit into visibility, and says what is wrong with the pair.
+Image make_visibility(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings) {
+  if (!images.lit || !images.unlit) return *images.visibility;
+  const Image &lit = *images.lit, &unlit = *images.unlit;
+  Image visibility(lit.width, lit.height, 1);
+  double receivers = 0.0, brighter = 0.0, darker = 0.0, lights = 0.0;
+  for (std::size_t i = 0; i < visibility.texels.size(); ++i) {
+    const float a = lit.texels[i], b = unlit.texels[i];
+    visibility.texels[i] = b > 0.0f && std::isfinite(a) && std::isfinite(b) ? a / b : kNaN;
+    if (!own.counts[i]) continue;
+    receivers += 1.0;
+    lights += a != 0.0f || b != 0.0f;
+    const float allowed = 1e-3f * std::max(std::abs(a), std::abs(b));
+    brighter += a > b + allowed;
+    darker += a < b - allowed;
+  }
+  if (lights == 0.0)
+    fail_input("lit and unlit are black at every receiver: the light is off, or nothing was drawn", images.names);
+  constexpr double kFew = 1e-3;
+  if (brighter == 0.0 && darker == 0.0)
+    findings.push_back({true,
+                        "lit equals unlit at every receiver: there are no shadows; casters, receivers or the "
+                        "light's map are switched off"});
+  else if (brighter > kFew * receivers && darker <= kFew * receivers)
+    findings.push_back({true, "lit is brighter than unlit, and nowhere darker: the two files are exchanged"});
+  else if (brighter > kFew * receivers)
+    findings.push_back({false, fmt::format("lit is brighter than unlit at {} of the receivers: tone mapping, other "
+                                           "light or noise is in the pictures",
+                                           percent(brighter / receivers))});
+  return visibility;
+}
+
+}  // namespace
+
+CheckedImages check_images(const ExternalImages& images, const OwnView& own) {
+  const Image& any = images.visibility ? *images.visibility : *images.lit;
+  if (any.width != own.depth.width || any.height != own.depth.height) {
+    const bool is_turned = any.width == own.depth.height && any.height == own.depth.width;
+    fail_input(fmt::format("it has {} x {} pixels, and the run's picture has {} x {}: {}", any.width, any.height,
+                           own.depth.width, own.depth.height,
+                           is_turned ? "width and height are exchanged"
+                                     : "draw it in the size that scene.json says, without scaling for the display"),
+               images.names);
+  }
+  CheckedImages checked;
+  checked.visibility = make_visibility(images, own, checked.findings);
+  std::int64_t receivers = 0;
+  for (std::size_t i = 0; i < own.counts.size(); ++i) {
+    if (!own.counts[i]) continue;
+    ++receivers;
+    if (std::isfinite(checked.visibility.texels[i])) continue;
+    checked.visibility.texels[i] = kNaN;
+    ++checked.undefined;
+  }
+  if (checked.undefined == receivers) fail_input("no receiver has a visibility: all are NaN, or not lit", images.names);
+  constexpr double kMany = 0.01;
+  const double share = static_cast<double>(checked.undefined) / static_cast<double>(receivers);
+  if (share > kMany)
+    checked.findings.push_back({false, fmt::format("{} of the receivers have no visibility (NaN, or unlit is 0): they "
+                                                   "are left out",
+                                                   percent(share))});
+  const std::array<Mask, 2> coverage = find_coverage(images, own);
+  if (!coverage[0].empty()) {
+    check_orientation(coverage, any.width, any.height, checked.findings);
+    std::vector<double> unused;
+    const Image ours = blur(coverage[0], any.width, any.height), theirs = blur(coverage[1], any.width, any.height);
+    if (images.depth) checked.alignment = align_by_depth(*images.depth, own);
+    if (!checked.alignment.shift)
+      checked.alignment = {
+          "coverage",
+          find_shift({ours, theirs, [](auto, const auto&) { return true; }, kLeastShareOfEdges}, unused),
+          {}};
+  }
+  check_shift(checked.alignment, checked.findings);
+  check_light(images, own, checked.findings);
+  return checked;
+}
+
+}  // namespace shadowbench::engines

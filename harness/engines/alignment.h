@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/engines/external_images.h"
+
+namespace shadowbench::engines {
+
+/// What we know of a view that another renderer drew; rows top to bottom.
+struct OwnView {
+  std::vector<std::uint8_t> counts;      ///< 1: a receiver, a surface that faces the light
+  std::vector<std::uint8_t> is_surface;  ///< 0: background
+  images::Image depth;                   ///< metres along the camera's axis; 0: background
+  images::Image direct;                  ///< what the light adds to our picture where nothing is in its way: grey
+  std::vector<glm::vec3> normals_ws;     ///< of surfaces
+  std::optional<glm::vec3> to_light_ws;  ///< of a light at infinity, unit length
+};
+
+/// What is wrong with another renderer's pictures, or may be.
+struct Finding {
+  bool refuses = false;  ///< what is scored would mean nothing
+  std::string text;      ///< a sentence: what, and its likely cause
+};
+
+/// Where another renderer's picture lies on ours, pixels.
+struct Alignment {
+  std::string by = "nothing";       ///< "depth", "coverage" or "nothing": what it was found from
+  std::optional<glm::dvec2> shift;  ///< of theirs, to the right and down
+  std::optional<double> p99;        ///< 99th percentile over pixels of how far apart the two are; by depth alone
+};
+
+/// The visibility that pictures of another renderer hold, and what was found out about them.
+struct CheckedImages {
+  images::Image visibility;  ///< NaN at receivers where it is not defined: unlit is not above 0, or something is NaN
+  std::int64_t undefined = 0;
+  Alignment alignment;
+  std::vector<Finding> findings;
+};
+
+inline constexpr double kWarnedShift = 0.05;  ///< pixels
+inline constexpr double kMostShift = 0.25;
+
+/// Forms the visibility, lit over unlit, and checks that the pictures show our view: size, orientation, shift, light,
+/// encoding. Throws Error(kInput) where nothing could be compared: another size, a picture that is black all over, no
+/// receiver with a finite value.
+CheckedImages check_images(const ExternalImages& images, const OwnView& own);
+
+/// 1 for receivers all of whose neighbours are on the same smooth surface: where antialiasing and half a pixel do not
+/// show.
+std::vector<std::uint8_t> find_inside(const OwnView& own);
+
+}  // namespace shadowbench::engines

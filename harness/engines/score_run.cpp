@@ -1,0 +1,317 @@
+#include "harness/engines/score_run.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/content_hash.h"
+#include "base/error.h"
+#include "harness/engines/exported_scene.h"
+#include "harness/measure/cell_analysis.h"
+#include "harness/render/shade_pass.h"
+#include "harness/run/task_images.h"
+#include "reference/metrics/error_stats.h"
+#include "report/analysis/configuration.h"
+#include "report/files/file_name.h"
+#include "report/files/folder_lock.h"
+#include "report/images/picture_io.h"
+#include "report/pages/write_report.h"
+#include "report/records/cell_key.h"
+
+namespace shadowbench::engines {
+namespace {
+
+constexpr const char* kAnother = "another renderer drew it";
+constexpr std::size_t kLongestName = 60;
+
+void check_name(const std::string& name, const std::vector<records::CellRecord>& cells) {
+  if (name.empty() || name.size() > kLongestName ||
+      std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
+    throw Error(ErrorKind::kUsage, fmt::format("--name: '{}' is no name of a row: give 1 to {} characters on one line",
+                                               name, kLongestName));
+  for (const records::CellRecord& cell : cells)
+    if (!cell.external && cell.filter == name)
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--name: '{}' is a filter of this run: give the row a name of its own", name));
+}
+
+/// A row of no filter: what it does not have is said.
+records::CellRecord make_external_record(const options::RunOptions& options, const measure::SceneTask& task,
+                                         const std::string& name, records::ExternalRecord external) {
+  filters::FilterRequest request;
+  request.spec.id = name;
+  records::CellRecord record = measure::make_record(options, task, request);
+  record.external = std::move(external);
+  record.key = records::cell_key(record);
+  for (const char* field :
+       {"time_ms", "ratio_to_none", "cost", "kernel", "kernel_radius_texels", "lights", "gpu", "coverage", "stability",
+        "map_scale", "excused", "attribution", "artefact.noise", "error.kernel_rmse"})
+    record.absent[field] = kAnother;
+  return record;
+}
+
+void note_alignment(records::ExternalRecord& external, const CheckedImages& checked) {
+  external.undefined = checked.undefined;
+  external.aligned_by = checked.alignment.by;
+  if (const auto& shift = checked.alignment.shift) {
+    external.shift_x = shift->x;
+    external.shift_y = shift->y;
+  }
+  external.shift_p99 = checked.alignment.p99;
+}
+
+/// What pictures show where nothing is known: the truth, unless that would be much of them.
+images::Image fill_few(const images::Image& visibility, const measure::SceneTruth& truth, std::int64_t undefined) {
+  constexpr double kFew = 0.01;
+  const auto receivers = static_cast<double>(std::ranges::count(truth.mask, 1));
+  images::Image filled = truth.receivers.to_image(visibility.texels);
+  if (static_cast<double>(undefined) > kFew * receivers) return filled;
+  for (std::size_t i = 0; i < filled.texels.size(); ++i)
+    if (truth.mask[i] && !std::isfinite(filled.texels[i])) filled.texels[i] = truth.ratio.texels[i];
+  return filled;
+}
+
+void copy_shared_paths(records::ImagesRecord& to, const records::ImagesRecord& from) {
+  to.depth_map = from.depth_map;
+  to.texel_density = from.texel_density;
+  to.texel_grid = from.texel_grid;
+  to.truth_picture = from.truth_picture;
+  to.truth_values = from.truth_values;
+}
+
+}  // namespace
+
+RunScorer::RunScorer(const options::RunOptions& options, options::Progress& progress)
+    : options_(options),
+      progress_(progress),
+      results_(records::read_results(options.out / "results.json")),
+      renderer_(measure::make_renderer(options.backend, options.resources)),
+      cache_(options.cache, [this](const std::string& message) { progress_.note("warning: " + message); }),
+      plan_(run::make_plan(options_, renderer_.context->info().renderer)) {
+  options_.attribution = false;
+}
+
+std::vector<RunScorer::Place> RunScorer::list_places() const {
+  std::vector<Place> places;
+  for (const run::PlannedTask& task : plan_.tasks) {
+    const Place place{task.task.scene->name, task.task.camera->name};
+    if (std::ranges::none_of(places, [&](const Place& p) { return p.scene == place.scene && p.view == place.view; }))
+      places.push_back(place);
+  }
+  return places;
+}
+
+const run::PlannedTask& RunScorer::find_task(const std::string& scene, const std::string& view) const {
+  const std::vector<Place> places = list_places();
+  std::vector<Place> chosen;
+  std::vector<std::string> names;
+  for (const Place& place : places) {
+    names.push_back(fmt::format("{} (view {})", place.scene, place.view));
+    if ((scene.empty() || place.scene == scene) && (view.empty() || place.view == view)) chosen.push_back(place);
+  }
+  if (chosen.size() != 1) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("--scene and --view: the run has {} '{}'{}; name one of {}",
+                            chosen.empty() ? "no scene" : "several views of", scene,
+                            view.empty() ? "" : fmt::format(" with a view '{}'", view), fmt::join(names, ", ")));
+  }
+  return *std::ranges::find_if(plan_.tasks, [&](const run::PlannedTask& task) {
+    return task.task.scene->name == chosen.front().scene && task.task.camera->name == chosen.front().view;
+  });
+}
+
+measure::SceneAssets& RunScorer::assets_of(const run::PlannedTask& task) {
+  const run::PlannedScene& planned = plan_.scenes[task.scene];
+  return assets_
+      .try_emplace(task.scene, renderer_, planned.options, planned.scene, cache_, measure::padding_texels(options_))
+      .first->second;
+}
+
+images::Image RunScorer::shade(const run::PlannedTask& task, const images::Image& visibility) {
+  return render::shade(renderer_.shaders, assets_of(task).gbuffer(*task.task.camera), render::upload_image(visibility),
+                       *task.task.scene, *task.task.camera, options_.range);
+}
+
+OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
+  const measure::ViewSurfaces surfaces = measure::read_view_surfaces(assets_of(task).gbuffer(*task.task.camera));
+  const measure::ViewReceivers receivers = measure::make_view_receivers(surfaces, task.task.scene->light);
+  const int width = receivers.image.width, height = receivers.image.height;
+  OwnView own{
+      receivers.mask(), receivers.is_surface, images::Image(width, height, 1), images::Image(width, height, 1), {}, {}};
+  images::Image one(width, height, 1);
+  const images::Image dark = shade(task, one);
+  std::ranges::fill(one.texels, 1.0f);
+  const images::Image lit = shade(task, one);
+  for (std::size_t i = 0; i < own.counts.size(); ++i) {
+    own.depth.texels[i] = surfaces.positions.texels[4 * i + 3];
+    own.normals_ws.push_back(receivers.image.points[i].normal_ws);
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) own.direct.texels[i] += (lit.texels[c] - dark.texels[c]) / 3.0f;
+  }
+  if (!scene::find_beam(task.task.scene->light)) own.to_light_ws = scene::to_light(task.task.scene->light, {});
+  return own;
+}
+
+std::vector<const records::CellRecord*> RunScorer::list_peers(const records::CellRecord& cell) const {
+  auto settings = [](const records::CellRecord& each) {
+    nlohmann::json all = records::cell_settings(each);
+    all.erase("filter");
+    all.erase("params");
+    return all;
+  };
+  std::vector<const records::CellRecord*> peers;
+  for (const records::CellRecord& each : results_.cells)
+    if (each.key != cell.key && settings(each) == settings(cell)) peers.push_back(&each);
+  return peers;
+}
+
+images::Image RunScorer::read_visibility(const records::CellRecord& cell) const {
+  if (!cell.images.exr || !cell.images.parts) return {};
+  const std::string wanted = *cell.images.parts + ".visibility";
+  try {
+    images::ExrFile file =
+        images::read_exr(options_.out / *cell.images.exr, [&](const std::string& name) { return name == wanted; });
+    return file.parts.empty() ? images::Image() : std::move(file.parts.front().image);
+  } catch (const Error&) {
+    return {};  // the row says less
+  }
+}
+
+void RunScorer::compare_with_peers(records::CellRecord& cell, const images::Image& visibility,
+                                   const std::vector<std::uint8_t>& counts, const images::Image& truth) const {
+  records::ExternalRecord& external = *cell.external;
+  for (const records::CellRecord* peer : list_peers(cell)) {
+    const images::Image own = read_visibility(*peer);
+    if (own.texels.size() != visibility.texels.size() || peer->external) continue;
+    const auto apart = metrics::measure_error(visibility.texels, own.texels, counts);
+    const auto error = metrics::measure_error(own.texels, truth.texels, counts);
+    if (error) external.peers[*peer->images.parts] = error->rmse;
+    if (!apart || (external.nearest_rmse && *external.nearest_rmse <= apart->rmse)) continue;
+    external.nearest = *peer->images.parts;
+    external.nearest_rmse = apart->rmse;
+  }
+}
+
+std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const ScoreRequest& request) {
+  check_name(request.name, results_.cells);
+  const run::PlannedTask& task = find_task(request.scene, request.view);
+  const run::PlannedScene& planned = plan_.scenes[task.scene];
+  const Meta meta = request.meta ? read_meta(*request.meta) : Meta();
+  if (!meta.truth.empty() && meta.truth != run::name_view(planned, *task.task.camera)) {
+    fail_input(fmt::format("its 'truth' is not that of {}, view {}: it was drawn from the scene.json of another scene, "
+                           "size or light; export this run's scene again",
+                           task.task.scene->name, task.task.camera->name),
+               request.meta->string());
+  }
+  const ExternalImages drawn = read_external_images(request.files);
+  const measure::SceneTruth& truth = assets_of(task).truth(*task.task.camera);
+  if (!truth.absent.empty()) fail_input("there is nothing to score against: " + truth.absent, options_.out.string());
+  const OwnView own = describe_own_view(task);
+  const CheckedImages checked = check_images(drawn, own);
+  const auto refusal = std::ranges::find_if(checked.findings, &Finding::refuses);
+  if (refusal != checked.findings.end() && !request.unaligned)
+    fail_input(refusal->text + ". --unaligned scores it all the same, and marks the row", drawn.names);
+
+  measure::MeasuredCell cell;
+  cell.label = request.name;
+  cell.record = make_external_record(planned.options, task.task, request.name, meta.external);
+  note_alignment(*cell.record.external, checked);
+  cell.record.external->unaligned = refusal != checked.findings.end();
+  for (const Finding& each : checked.findings)
+    cell.record.warnings.push_back(fmt::format("{}, {}: {}", request.name, task.task.scene->name, each.text));
+  cell.record.receivers = std::ranges::count(truth.mask, 1);
+  cell.record.nan = checked.undefined;
+  cell.visibility = truth.receivers.to_image(checked.visibility.texels);
+  cell.picture = shade(task, fill_few(checked.visibility, truth, checked.undefined));
+  cell.flip = measure::score(cell.record, cell.visibility, {}, cell.picture, truth);
+  // Without bias all that touches what blocks it is dark: another renderer's picture without one is not there.
+  cell.unbiased = images::Image(cell.visibility.width, cell.visibility.height, 1);
+  options::RunOptions traced = planned.options;
+  traced.attribution = false;
+  measure::CellAnalyser(renderer_, traced, task.task, assets_of(task), truth).analyse(cell);
+  for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
+    cell.record.absent[field] = kAnother;
+  const auto inside = metrics::measure_error(cell.visibility.texels, truth.area.texels, find_inside(own));
+  if (inside) cell.record.external->inside_rmse = inside->rmse;
+  std::vector<std::uint8_t> counts = truth.mask;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (!std::isfinite(cell.visibility.texels[i])) counts[i] = 0;
+  compare_with_peers(cell.record, cell.visibility, counts, truth.area);
+
+  ContentHash content;
+  content.add_values(std::span<const float>(cell.visibility.texels));
+  cell.record.content = content.name();
+  const files::FolderLock lock(options_.out);
+  run::write_cell_pictures(planned.options, task.task, cell);
+  cell.record.images.exr =
+      fmt::format("{}.{}.exr", run::task_stem(planned.options, task.task), files::make_file_stem(request.name));
+  cell.record.images.parts = cell.label;
+  images::write_exr(options_.out / *cell.record.images.exr,
+                    {{cell.label + ".visibility", {"Y"}, cell.visibility, false}},
+                    {{"shadowbench:scene", task.task.scene->name}, {"shadowbench:view", task.task.camera->name}});
+  if (const auto peers = list_peers(cell.record); !peers.empty()) {
+    copy_shared_paths(cell.record.images, peers.front()->images);
+    cell.record.machine = peers.front()->machine;  // nothing of the row was timed: it is of no kind of its own
+  }
+  keep(cell.record);
+  if (std::ranges::count(scored_, &task) == 0) scored_.push_back(&task);
+  return {cell.record, checked.findings};
+}
+
+/// Puts a row behind the others of its place, or in the place of the one of its name.
+void RunScorer::keep(const records::CellRecord& cell) {
+  records::write_cell(options_.out, cell);
+  std::vector<records::CellRecord>& cells = results_.cells;
+  if (const auto known = std::ranges::find(cells, cell.key, &records::CellRecord::key); known != cells.end()) {
+    *known = cell;
+    return;
+  }
+  const auto last = std::find_if(cells.rbegin(), cells.rend(), [&](const records::CellRecord& each) {
+    return analysis::place_of(each) == analysis::place_of(cell) && each.map_size == cell.map_size;
+  });
+  cells.insert(last.base(), cell);
+}
+
+/// With the pictures as they were: from the visibility that the run keeps.
+void RunScorer::draw_grid(const run::PlannedTask& task) {
+  const run::PlannedScene& planned = plan_.scenes[task.scene];
+  measure::SceneMeasurement measured;
+  for (const records::CellRecord& record : results_.cells) {
+    const bool is_of_task = std::ranges::count(task.keys, record.key) > 0;
+    const bool is_beside = record.external && analysis::place_of(record).scene == task.task.scene->name &&
+                           analysis::place_of(record).view == task.task.camera->name &&
+                           record.map_size == task.task.map_size;
+    if (!is_of_task && !is_beside) continue;
+    measure::MeasuredCell& cell = measured.cells.emplace_back();
+    cell.record = record;
+    cell.label = record.images.parts.value_or(record.filter);
+    cell.visibility = read_visibility(record);
+    if (cell.visibility.empty()) return;  // a run without grids
+    cell.picture = shade(task, cell.visibility);
+  }
+  run::write_grid(planned.options, task.task, measured, assets_of(task).truth(*task.task.camera), results_.run.gl);
+  for (const measure::MeasuredCell& cell : measured.cells)
+    if (cell.record.external) keep(cell.record);
+}
+
+void RunScorer::export_place(const Place& place, const std::filesystem::path& folder) {
+  const run::PlannedTask& task = find_task(place.scene, place.view);
+  const run::PlannedScene& planned = plan_.scenes[task.scene];
+  nlohmann::ordered_json description = describe_view(planned, *task.task.camera);
+  description["maps"].push_back(describe_map(planned, task.task.map_size,
+                                             assets_of(task).light_map(*task.task.camera, task.task.map_size).layers));
+  write_exported_scene(folder, planned, *task.task.camera, description);
+}
+
+void RunScorer::finish() {
+  const files::FolderLock lock(options_.out);
+  if (options_.grids && options_.pictures)
+    for (const run::PlannedTask* task : scored_) draw_grid(*task);
+  std::vector<std::string> keys;
+  for (const records::CellRecord& cell : results_.cells) keys.push_back(cell.key);
+  pages::write_report(options_.out, results_.run, keys);
+}
+
+}  // namespace shadowbench::engines

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/engines/alignment.h"
+#include "harness/engines/external_images.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/options/progress.h"
+#include "harness/run/run_plan.h"
+#include "report/records/json_io.h"
+
+namespace shadowbench::engines {
+
+/// One picture of another renderer, to become a row.
+struct ScoreRequest {
+  std::string name;   ///< of the row
+  std::string scene;  ///< of the run; empty: its only one
+  std::string view;   ///< of the scene; empty: its only one
+  ExternalFiles files;
+  std::optional<std::filesystem::path> meta;  ///< a meta.json
+  bool unaligned = false;                     ///< score what does not show our view all the same, and say so
+};
+
+/// What a meta.json says of a row; `truth` is that of the scene.json that was drawn, empty where it is not said.
+struct Meta {
+  records::ExternalRecord external;
+  std::string truth;
+};
+
+/// Throws Error(kInput) for what is no object of texts and numbers, or has another key than README.md lists.
+Meta read_meta(const std::filesystem::path& file);
+
+/// Scores pictures of other renderers against the truth of a run, and makes them rows of its report.
+class RunScorer {
+ public:
+  /// `options`: those of the run, whose folder is `options.out`. Throws Error(kInput) where that holds no run, and as
+  /// run::make_plan().
+  RunScorer(const options::RunOptions& options, options::Progress& progress);
+
+  /// Scores one, and writes its cell and pictures. Returns its record, and what was found out about it.
+  /// Throws Error(kUsage) for a name that a filter of the run has, or a scene or view that the run does not have;
+  /// Error(kInput) for pictures that cannot be compared, or are found not to show our view.
+  std::pair<records::CellRecord, std::vector<Finding>> score(const ScoreRequest& request);
+
+  /// A scene and view of the run, to be drawn by others: writes <scene>.glb and scene.json.
+  struct Place {
+    std::string scene;
+    std::string view;
+  };
+  const std::filesystem::path& folder() const { return options_.out; }
+  std::vector<Place> list_places() const;
+  void export_place(const Place& place, const std::filesystem::path& folder);
+
+  /// Draws the grids again that have new rows, and writes the report.
+  void finish();
+
+ private:
+  options::RunOptions options_;
+  options::Progress& progress_;
+  records::Results results_;
+  measure::Renderer renderer_;
+  truth::TruthCache cache_;
+  run::RunPlan plan_;
+  std::map<std::size_t, measure::SceneAssets> assets_;  ///< by planned scene
+  std::vector<const run::PlannedTask*> scored_;         ///< tasks with new rows
+
+  const run::PlannedTask& find_task(const std::string& scene, const std::string& view) const;
+  measure::SceneAssets& assets_of(const run::PlannedTask& task);
+  OwnView describe_own_view(const run::PlannedTask& task);
+  images::Image shade(const run::PlannedTask& task, const images::Image& visibility);
+  std::vector<const records::CellRecord*> list_peers(const records::CellRecord& cell) const;
+  images::Image read_visibility(const records::CellRecord& cell) const;
+  void compare_with_peers(records::CellRecord& cell, const images::Image& visibility,
+                          const std::vector<std::uint8_t>& counts, const images::Image& truth) const;
+  void keep(const records::CellRecord& cell);
+  void draw_grid(const run::PlannedTask& task);
+};
+
+}  // namespace shadowbench::engines

@@ -1,0 +1,169 @@
+// Another renderer's pictures as rows of a report.
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "report/images/picture_io.h"
+#include "tests/harness/cli/program.h"
+
+namespace shadowbench::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Score : public ProgramTest {
+ protected:
+  void make_run(const std::string& more = "") {
+    const Outcome outcome =
+        run("run --grids --all-parts --out out --size 96x54 --map-size 128 --rounds 1 --phases 1 "
+            "--scene cubes --filters none,pcf2x2,vsm " +
+            more);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+
+  json read_results(const std::string& name = "out") const {
+    return json::parse(read_text(folder() / name / "results.json"));
+  }
+
+  json find_row(const std::string& filter) const {
+    const json results = read_results();
+    for (const json& cell : results["cells"])
+      if (cell["filter"] == filter) return cell;
+    return {};
+  }
+};
+
+TEST_F(Score, OurOwnPicture_HasOurOwnErrors) {
+  make_run();
+  const Outcome outcome = run("score out --name 'a <b>copy</b>' --visibility 'out/cubes.exr#none.visibility'");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("nearest filter       none, 0 apart"));
+  const json row = find_row("a <b>copy</b>"), none = find_row("none");
+  for (const char* name : {"rmse", "mae", "p95", "max", "mean", "flip"})
+    EXPECT_EQ(row["error"][name], none["error"][name]) << name;
+  for (const char* name : {"acne", "leak"}) EXPECT_EQ(row["artefact"][name], none["artefact"][name]) << name;
+  EXPECT_EQ(row["external"]["nearest"], "none");
+  EXPECT_EQ(row["external"]["peers"]["pcf2x2"], find_row("pcf2x2")["error"]["rmse"]);
+  EXPECT_EQ(row["absent"]["time_ms"], "another renderer drew it");
+  EXPECT_THAT(read_text(folder() / "out/accuracy.csv"), HasSubstr("a <b>copy</b>"));
+  EXPECT_EQ(read_text(folder() / "out/index.html").find("<b>copy</b>"), std::string::npos);
+  // It is measured against the same truth, and no fit for advice.
+  EXPECT_EQ(run("advise out").out.find("copy"), std::string::npos);
+}
+
+TEST_F(Score, TheTruth_HasNoError) {
+  make_run();
+  ASSERT_EQ(run("score out --name truth --visibility 'out/cubes.exr#truth.area'").exit_code, 0);
+  EXPECT_EQ(find_row("truth")["error"]["rmse"], 0.0);
+}
+
+TEST_F(Score, ARowStays_WhenTheRunIsRepeated_AndIsReplacedByItsName) {
+  make_run();
+  ASSERT_EQ(run("score out --name other --visibility 'out/cubes.exr#vsm.visibility'").exit_code, 0);
+  make_run("--fresh");
+  EXPECT_EQ(find_row("other")["external"]["nearest"], "vsm");
+  ASSERT_EQ(run("score out --name other --visibility 'out/cubes.exr#pcf2x2.visibility'").exit_code, 0);
+  EXPECT_EQ(find_row("other")["external"]["nearest"], "pcf2x2");
+  EXPECT_EQ(read_results()["cells"].size(), 4u);
+}
+
+TEST_F(Score, RegressTellsThatItMoved) {
+  make_run();
+  const std::string score = "score out --name 'my engine' --visibility ";
+  ASSERT_EQ(run(score + "'out/cubes.exr#pcf2x2.visibility'").exit_code, 0);
+  ASSERT_EQ(run("regress out --baseline base --accept").exit_code, 0);
+  EXPECT_EQ(run("regress out --baseline base").exit_code, 0);
+  ASSERT_EQ(run(score + "'out/cubes.exr#vsm.visibility'").exit_code, 0);
+  const Outcome moved = run("regress out --baseline base");
+  EXPECT_EQ(moved.exit_code, 1);
+  EXPECT_THAT(moved.out, HasSubstr("my engine"));
+}
+
+TEST_F(Score, AnExportedScene_HasTheSameTruth) {
+  make_run();
+  ASSERT_EQ(run("export cubes --size 96x54 --map-size 128 --out scenes").exit_code, 0);
+  const json scene = json::parse(read_text(folder() / "scenes/cubes/scene.json"));
+  EXPECT_EQ(scene["maps"][0]["layers"][0]["kind"], "orthographic");
+  ASSERT_EQ(run("run --grids --all-parts --out again --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene "
+                "scenes/cubes/cubes.glb --filters none,pcf2x2,vsm")
+                .exit_code,
+            0);
+  const Outcome diff = run("diff --json out/cubes.exr#truth.area again/cubes.exr#truth.area");
+  EXPECT_LT(json::parse(diff.out)["rmse"].get<double>(), 1e-5);
+}
+
+TEST_F(Score, ACommandDrawsTheScene) {
+  make_run();
+  write("draw.sh",
+        "test -f \"$1\" && cp out/own.exr \"$2\"\nprintf '{\"engine\": \"sh\", \"ms\": 1.5, \"truth\": \"%s\"}' "
+        "$(sed -n 's/.*\"truth\": \"\\([0-9a-f]*\\)\".*/\\1/p' \"$1\") > \"$(dirname \"$2\")/meta.json\"\n");
+  const images::ExrFile file = images::read_exr(folder() / "out/cubes.exr");
+  for (const images::Part& part : file.parts)
+    if (part.name == "vsm.visibility")
+      images::write_exr(folder() / "out/own.exr", {{"visibility", {"Y"}, part.image, false}}, {});
+  const Outcome outcome = run("score out --name mine --command 'sh draw.sh'");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(find_row("mine")["external"]["engine"], "sh");
+  EXPECT_EQ(find_row("mine")["external"]["ms"], 1.5);
+  EXPECT_EQ(find_row("mine")["external"]["nearest"], "vsm");
+}
+
+TEST_F(Score, AnExperimentNamesRenderers) {
+  write("copy.sh", "cp own.exr \"$2\"\n");
+  images::Image lit(96, 54, 1);
+  std::ranges::fill(lit.texels, 1.0f);
+  images::write_exr(folder() / "own.exr", {{"visibility", {"Y"}, lit, false}}, {});
+  write("engines.toml", R"(
+scene = "cubes"
+filters = "none"
+size = "96x54"
+map_size = 128
+rounds = 1
+phases = 1
+[[engine]]
+name = "all lit"
+command = "sh copy.sh"
+)");
+  const Outcome outcome = run("run engines.toml --out out");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_GT(find_row("all lit")["error"]["mean"].get<double>(), 0.0);
+  EXPECT_THAT(run("run engines.toml --out out").err, HasSubstr("all lit"));
+  write("typo.toml", "[[engine]]\nname = 'x'\ncomand = 'y'\n");
+  EXPECT_THAT(run("run typo.toml --out typo").err, HasSubstr("comand"));
+}
+
+TEST_F(Score, BadInput_IsOneSentence_AndLosesNothing) {
+  make_run();
+  const std::string before = read_text(folder() / "out/results.json");
+  write("typo.json", R"({"engin": "x"})");
+  write("foreign.json", R"({"truth": "0123"})");
+  write("list.json", "[1]");
+  const std::string none = "--visibility 'out/cubes.exr#none.visibility' ";
+  const std::tuple<std::string, int, std::string> cases[] = {
+      {"score out --name x", 2, "give what was drawn"},
+      {"score out --name none " + none, 2, "is a filter of this run"},
+      {"score out --name x --scene cube " + none, 2, "cubes (view main)"},
+      {"score out --name x --lit 'out/cubes.exr#none.picture'", 3, "give lit and unlit"},
+      {"score out --name x --layers out/cubes.exr", 3, "give lit and unlit"},
+      {"score out --name x --visibility no.exr", 3, "there is no such file"},
+      {"score out --name x --meta typo.json " + none, 3, "did you mean 'engine'"},
+      {"score out --name x --meta foreign.json " + none, 3, "export this run's scene again"},
+      {"score out --name x --meta list.json " + none, 3, "one object"},
+      {"score out --name x --command false", 3, "exit code 1"},
+      {"score out --name x --command true", 3, "wrote no picture.exr"},
+      {"score out --name x --command 'sleep 9 #' --cell-timeout 0.3", 3, "was killed (--cell-timeout)"},
+      {"score out --name x --command true " + none, 2, "leave out the files"},
+      {"score nowhere --name x " + none, 3, "nowhere"},
+  };
+  for (const auto& [words, code, text] : cases) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit_code, code) << words << "\n" << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(text)) << words;
+    EXPECT_EQ(read_text(folder() / "out/results.json"), before) << words;
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::test

@@ -1,0 +1,249 @@
+#include "harness/engines/alignment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "base/error.h"
+#include "report/images/picture_io.h"
+
+namespace shadowbench::engines {
+namespace {
+
+using images::Image;
+using testing::HasSubstr;
+
+constexpr int kWidth = 96, kHeight = 54;
+const glm::dvec3 kToLight = glm::normalize(glm::dvec3(0.5, 0.7, 0.6));
+
+/// A view of a floor, a wall, a slope at the left and a leaning chimney, with sky above; sampled anywhere, as by
+/// another camera.
+struct Surface {
+  double depth = 0.0;  ///< 0: sky
+  glm::dvec3 normal{0.0};
+};
+
+Surface look(double x, double y) {
+  const double u = (x - 40.0) / kWidth, v = (y - 20.0) / kHeight;  // nothing is symmetrical
+  if (std::abs(u - 0.05 + 0.3 * v) < 0.05 && v > -0.6 && v < 0.0) return {3.0, {0.0, 0.6, 0.8}};
+  if (v < -0.15 - 0.2 * u) return {};
+  if (u > 0.25 && v < 0.3) return {1.0 / (0.3 - 0.1 * u), {-0.6, 0.0, 0.8}};
+  if (u < -0.2 && v < 0.45) return {1.0 / (0.25 + 0.15 * u + 0.1 * v), {0.8, 0.6, 0.0}};
+  return {1.0 / (0.1 + 0.4 * (v + 0.4)), {0.0, 1.0, 0.0}};
+}
+
+double shadow(double x, double y) { return 0.5 + 0.5 * std::sin(0.3 * x + 0.2 * y) * std::sin(0.11 * y); }
+
+OwnView make_own() {
+  OwnView own{{}, {}, Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1), {}, glm::vec3(kToLight)};
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const Surface seen = look(x + 0.5, y + 0.5);
+      own.is_surface.push_back(seen.depth > 0.0);
+      own.counts.push_back(seen.depth > 0.0);
+      own.normals_ws.emplace_back(seen.normal);
+      *own.depth.at(x, y) = static_cast<float>(seen.depth);
+      *own.direct.at(x, y) = static_cast<float>(0.7 * glm::dot(seen.normal, kToLight));
+    }
+  }
+  return own;
+}
+
+/// How another renderer may draw it.
+struct Drawing {
+  std::function<glm::dvec2(const glm::dvec2&)> place = [](const glm::dvec2& p) { return p; };  ///< of a pixel's middle
+  std::function<double(double)> encode = [](double value) { return value; };
+  glm::dvec3 to_light = kToLight;
+  bool has_depth = true;
+};
+
+ExternalImages draw(const Drawing& drawing = {}) {
+  ExternalImages made{Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1), {}, Image(kWidth, kHeight, 1), "test"};
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const glm::dvec2 p = drawing.place({x + 0.5, y + 0.5});
+      const Surface seen = look(p.x, p.y);
+      const double light = seen.depth > 0.0 ? 0.35 * std::max(glm::dot(seen.normal, drawing.to_light), 0.0) : 0.0;
+      *made.unlit->at(x, y) = static_cast<float>(drawing.encode(light));
+      *made.lit->at(x, y) = static_cast<float>(drawing.encode(light * shadow(p.x, p.y)));
+      *made.depth->at(x, y) = static_cast<float>(seen.depth);
+    }
+  }
+  if (!drawing.has_depth) made.depth.reset();
+  return made;
+}
+
+std::string all_texts(const CheckedImages& checked) {
+  std::string texts;
+  for (const Finding& each : checked.findings) texts += each.text + (each.refuses ? " REFUSED\n" : "\n");
+  return texts;
+}
+
+TEST(Alignment, TheSameView_HasItsVisibilityAndNoFinding) {
+  const CheckedImages checked = check_images(draw(), make_own());
+  EXPECT_EQ(all_texts(checked), "");
+  EXPECT_EQ(checked.undefined, 0);
+  ASSERT_TRUE(checked.alignment.shift);
+  EXPECT_NEAR(glm::length(*checked.alignment.shift), 0.0, 1e-6);
+  EXPECT_NEAR(*checked.visibility.at(50, 40), shadow(50.5, 40.5), 1e-5);
+}
+
+TEST(Alignment, DepthFindsAQuarterOfAPixel) {
+  const CheckedImages checked =
+      check_images(draw({.place = [](const glm::dvec2& p) { return p - glm::dvec2(0.25, -0.125); }}), make_own());
+  ASSERT_TRUE(checked.alignment.shift);
+  EXPECT_EQ(checked.alignment.by, "depth");
+  EXPECT_NEAR(checked.alignment.shift->x, 0.25, 2e-3);
+  EXPECT_NEAR(checked.alignment.shift->y, -0.125, 2e-3);
+  EXPECT_NEAR(*checked.alignment.p99, 0.25, 0.02);
+  EXPECT_THAT(all_texts(checked), HasSubstr("0.25 pixels right and -0.1"));
+}
+
+TEST(Alignment, CoverageFindsHalfAPixel_AndItIsRefused) {
+  const CheckedImages checked =
+      check_images(draw({.place = [](const glm::dvec2& p) { return p - 0.5; }, .has_depth = false}), make_own());
+  EXPECT_EQ(checked.alignment.by, "coverage");
+  ASSERT_TRUE(checked.alignment.shift);
+  EXPECT_NEAR(checked.alignment.shift->x, 0.5, 0.1);
+  EXPECT_NEAR(checked.alignment.shift->y, 0.5, 0.1);
+  EXPECT_THAT(all_texts(checked), HasSubstr("half a pixel"));
+  EXPECT_THAT(all_texts(checked), HasSubstr("REFUSED"));
+}
+
+struct NamedDrawing {
+  const char* name;
+  Drawing drawing;
+  const char* text;
+};
+
+void PrintTo(const NamedDrawing& each, std::ostream* out) { *out << each.name; }
+
+class AlignmentMistakes : public testing::TestWithParam<NamedDrawing> {};
+
+TEST_P(AlignmentMistakes, AreRefusedByName) {
+  const std::string texts = all_texts(check_images(draw(GetParam().drawing), make_own()));
+  EXPECT_THAT(texts, HasSubstr(GetParam().text));
+  EXPECT_THAT(texts, HasSubstr("REFUSED"));
+}
+
+constexpr double kAspect = static_cast<double>(kWidth) / kHeight;
+glm::dvec2 about_middle(const glm::dvec2& p, const glm::dvec2& scale) {
+  const glm::dvec2 half(0.5 * kWidth, 0.5 * kHeight);
+  return half + (p - half) * scale;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, AlignmentMistakes,
+    testing::Values(
+        NamedDrawing{"UpsideDown",
+                     {.place =
+                          [](const auto& p) {
+                            return about_middle(p, {1.0, -1.0});
+                          }},
+                     "upside down"},
+        NamedDrawing{"Mirrored",
+                     {.place =
+                          [](const auto& p) {
+                            return about_middle(p, {-1.0, 1.0});
+                          }},
+                     "mirrored"},
+        NamedDrawing{"Turned",
+                     {.place =
+                          [](const auto& p) {
+                            return about_middle(p, {-1.0, -1.0});
+                          }},
+                     "180 degrees"},
+        NamedDrawing{"AspectOne",
+                     {.place =
+                          [](const auto& p) {
+                            return about_middle(p, {1.0 / kAspect, 1.0});
+                          }},
+                     "aspect is 1"},
+        NamedDrawing{"Magnified",
+                     {.place = [](const auto& p) { return about_middle(p, glm::dvec2(1.0 / kAspect)); }},
+                     "field of view"},
+        NamedDrawing{"Elsewhere", {.place = [](const auto& p) { return p + glm::dvec2(30.0, -12.0); }}, "another one"},
+        NamedDrawing{
+            "Display",
+            {.encode = [](double v) { return static_cast<double>(images::encode_srgb(static_cast<float>(v))); }},
+            "sRGB"}),
+    [](const auto& each) { return std::string(each.param.name); });
+
+TEST(Alignment, ALightThatIsOffByOneDegree_IsNamed) {
+  const glm::dvec3 axis = glm::normalize(glm::cross(kToLight, glm::dvec3(0.0, 1.0, 0.0)));
+  const double angle = glm::radians(1.0);
+  const glm::dvec3 turned = std::cos(angle) * kToLight + std::sin(angle) * glm::cross(axis, kToLight);
+  EXPECT_THAT(all_texts(check_images(draw({.to_light = turned}), make_own())), HasSubstr("lit from 1 degrees beside"));
+}
+
+TEST(Alignment, SwappedFilesAndMissingShadows_AreRefused) {
+  ExternalImages swapped = draw();
+  std::swap(swapped.lit, swapped.unlit);
+  EXPECT_THAT(all_texts(check_images(swapped, make_own())), HasSubstr("exchanged REFUSED"));
+  ExternalImages same = draw();
+  same.lit = same.unlit;
+  EXPECT_THAT(all_texts(check_images(same, make_own())), HasSubstr("there are no shadows"));
+  ExternalImages bright = draw();
+  for (int i = 0; i < 40; ++i) *bright.lit->at(40 + i, 45) = 9.0f;
+  EXPECT_THAT(all_texts(check_images(bright, make_own())), HasSubstr("brighter than unlit at"));
+}
+
+TEST(Alignment, FewBits_AreNamed) {
+  EXPECT_THAT(
+      all_texts(check_images(draw({.encode = [](double v) { return std::round(255.0 * v) / 255.0; }}), make_own())),
+      HasSubstr("eight bits"));
+  ExternalImages half = draw();
+  half.lit = images::round_to_half(*half.lit);
+  half.unlit = images::round_to_half(*half.unlit);
+  EXPECT_THAT(all_texts(check_images(half, make_own())), HasSubstr("half floats"));
+}
+
+TEST(Alignment, Multisampling_IsNamed) {
+  ExternalImages mixed = draw();
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      double sum = 0.0;
+      for (int i = 0; i < 16; ++i) {
+        const Surface seen = look(x + (i % 4 + 0.5) / 4.0, y + (i / 4 + 0.5) / 4.0);
+        if (seen.depth > 0.0) sum += 0.35 * std::max(glm::dot(seen.normal, kToLight), 0.0) / 16.0;
+      }
+      *mixed.unlit->at(x, y) = static_cast<float>(sum);
+      *mixed.lit->at(x, y) = 0.5f * static_cast<float>(sum);
+    }
+  }
+  EXPECT_THAT(all_texts(check_images(mixed, make_own())), HasSubstr("antialiased"));
+}
+
+TEST(Alignment, NaN_IsCountedAndLeftOut) {
+  ExternalImages holes = draw();
+  for (int i = 0; i < 60; ++i) *holes.lit->at(30 + i, 50) = std::numeric_limits<float>::quiet_NaN();
+  const CheckedImages checked = check_images(holes, make_own());
+  EXPECT_EQ(checked.undefined, 60);
+  EXPECT_TRUE(std::isnan(*checked.visibility.at(35, 50)));
+  EXPECT_THAT(all_texts(checked), HasSubstr("have no visibility"));
+}
+
+std::string refusal_of(const ExternalImages& images) {
+  try {
+    check_images(images, make_own());
+  } catch (const Error& error) {
+    return error.message();
+  }
+  return "none";
+}
+
+TEST(Alignment, WhatCannotBeCompared_IsAnError) {
+  const Image small(48, 27, 1), turned(kHeight, kWidth, 1), black(kWidth, kHeight, 1);
+  EXPECT_THAT(refusal_of({{}, {}, small, {}, "test"}), HasSubstr("48 x 27 pixels, and the run's picture has 96 x 54"));
+  EXPECT_THAT(refusal_of({{}, {}, turned, {}, "test"}), HasSubstr("exchanged"));
+  EXPECT_THAT(refusal_of({black, black, {}, {}, "test"}), HasSubstr("black at every receiver"));
+  Image nothing = black;
+  std::ranges::fill(nothing.texels, std::numeric_limits<float>::infinity());
+  EXPECT_THAT(refusal_of({{}, {}, nothing, {}, "test"}), HasSubstr("no receiver has a visibility"));
+}
+
+}  // namespace
+}  // namespace shadowbench::engines

@@ -1,0 +1,91 @@
+#include "harness/scene/files/gltf_writer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/scene/load.h"
+#include "harness/scene/validate.h"
+#include "tests/harness/scene/gltf_parts.h"
+
+namespace shadowbench::scene {
+namespace {
+
+const std::string kScenes = std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes";
+
+Scene write_and_read(const Scene& scene) {
+  const TestFolder folder;
+  return load(folder.write("scene.glb", write_glb(scene, 16.0 / 9.0)).string(), {kScenes});
+}
+
+/// Every light of every built-in scene, by itself.
+std::vector<Scene> list_all_scenes() {
+  std::vector<Scene> all;
+  for (const SceneInfo& info : list_scenes(kScenes))
+    for (Scene& lit : separate_lights(load(info.name, {kScenes}))) all.push_back(std::move(lit));
+  return all;
+}
+
+TEST(GltfWriter, ASceneIsReadAsItWasWritten) {
+  for (const Scene& scene : list_all_scenes()) {
+    const Scene read = write_and_read(scene);
+    SCOPED_TRACE(scene.name);
+    EXPECT_EQ(read.title, scene.title);
+    EXPECT_EQ(read.background, scene.background);
+    EXPECT_THAT(read.warnings, testing::IsEmpty());
+    ASSERT_EQ(read.meshes.size(), scene.meshes.size());
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+      const Mesh &mesh = read.meshes[m], &was = scene.meshes[m];
+      EXPECT_EQ(mesh.casts_shadow, was.casts_shadow);
+      EXPECT_EQ(mesh.may_cull_front, was.may_cull_front);
+      EXPECT_EQ(mesh.indices, was.indices);
+      EXPECT_EQ(read.materials[static_cast<std::size_t>(mesh.material)].base_color,
+                scene.materials[static_cast<std::size_t>(was.material)].base_color);
+      ASSERT_EQ(mesh.vertices.size(), was.vertices.size());
+      for (std::size_t v = 0; v < was.vertices.size(); ++v) {
+        EXPECT_EQ(mesh.vertices[v].position_ws, was.vertices[v].position_ws);
+        EXPECT_NEAR(glm::distance(mesh.vertices[v].normal_ws, was.vertices[v].normal_ws), 0.0f, 1e-6f);
+      }
+    }
+    ASSERT_EQ(read.cameras.size(), scene.cameras.size());
+    for (std::size_t c = 0; c < scene.cameras.size(); ++c) {
+      EXPECT_EQ(read.cameras[c].position_ws, scene.cameras[c].position_ws);
+      EXPECT_NEAR(glm::distance(read.cameras[c].forward_ws, scene.cameras[c].forward_ws), 0.0f, 1e-7f);
+      EXPECT_EQ(read.cameras[c].vertical_fov_rad, scene.cameras[c].vertical_fov_rad);
+      EXPECT_EQ(read.cameras[c].orthographic_height_m, scene.cameras[c].orthographic_height_m);
+    }
+    Light light = scene.light;
+    if (auto* spot = std::get_if<Spot>(&light.kind)) spot->cookie.reset();  // it is left out
+    EXPECT_EQ(list_light_content(read.light).front(), list_light_content(light).front());
+  }
+}
+
+TEST(GltfWriter, TexturesAndHolesStay) {
+  Scene scene = load("cubes", {kScenes});
+  scene.textures.push_back({"checker", 2, 1, {255, 0, 0, 255, 0, 255, 0, 7}});
+  scene.materials[0].base_color_texture = 0;
+  scene.materials[0].alpha_mode = AlphaMode::kMask;
+  scene.materials[0].alpha_cutoff = 0.25f;
+  const Scene read = write_and_read(scene);
+  ASSERT_EQ(read.textures.size(), 1u);
+  EXPECT_EQ(read.textures[0].rgba, scene.textures[0].rgba);
+  EXPECT_EQ(read.materials[0].alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(read.materials[0].alpha_cutoff, 0.25f);
+  EXPECT_EQ(read.materials[0].base_color_texture, 0);
+}
+
+TEST(GltfWriter, ExtrasThatASceneFileDoesNotTake_AreRefused) {
+  const TestFolder folder;
+  std::string text = write_glb(load("cubes", {kScenes}), 1.5);
+  const std::string key = "angular_diameter_deg";
+  ASSERT_NE(text.find(key), std::string::npos);
+  text.replace(text.find(key), key.size(), "angular_diameter_rad");
+  try {
+    load(folder.write("scene.glb", text).string(), {kScenes});
+    FAIL() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("angular_diameter_rad"));
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::scene
