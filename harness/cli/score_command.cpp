@@ -107,7 +107,8 @@ void keep_scene(options::RunOptions& options, const std::string& scene) {
 
 void check_arguments(const ScoreArguments& arguments) {
   const engines::ExternalFiles& files = arguments.files;
-  const bool has_files = !(files.layers + files.lit + files.unlit + files.visibility + files.depth).empty();
+  const bool has_files =
+      !(files.layers + files.lit + files.unlit + files.visibility + files.depth + files.shadow_map).empty();
   if (arguments.command.empty() && !has_files)
     fail(
         "score: give what was drawn: --layers F, or --lit F --unlit F, or --visibility F; or --command C, which draws");
@@ -177,7 +178,13 @@ Command make_score_command() {
   command.add("--visibility", &a->files.visibility, "in place of both: 1 lit, 0 in shadow").names(ValueKind::kFile);
   command.add("--depth", &a->files.depth, "metres along the camera's axis, by which a shift is found best")
       .names(ValueKind::kFile);
-  command.add("--meta", &a->meta, "a JSON object of texts: engine, version, driver, map, bias, fit, ms, timed, truth")
+  command
+      .add("--shadow-map", &a->files.shadow_map,
+           "its own shadow map as it is stored, by which its error is taken apart; needs map_from_world in --meta")
+      .names(ValueKind::kFile);
+  command
+      .add("--meta", &a->meta,
+           "a JSON object of texts: engine, version, driver, map, bias, fit, ms, timed, truth; map_from_world")
       .names(ValueKind::kFile);
   command.add("--command", &a->command,
               "draws the scene: a command of the shell, given a scene.json and the EXR to write");

@@ -57,8 +57,8 @@ std::vector<std::pair<records::CellRecord, std::vector<Finding>>> run_engines(
     for (const options::Engine& engine : engines) {
       progress.note(fmt::format("{}: {}", place.scene, engine.name));
       try {
-        std::filesystem::remove(folder.path() / "picture.exr");
-        std::filesystem::remove(folder.path() / "meta.json");
+        for (const char* old : {"picture.exr", "meta.json", "shadow_map.exr"})
+          std::filesystem::remove(folder.path() / old);
         draw(engine, folder.path(), timeout_s);
         ScoreRequest own = request;
         own.name = engine.name;
@@ -66,6 +66,8 @@ std::vector<std::pair<records::CellRecord, std::vector<Finding>>> run_engines(
         own.view = place.view;
         own.files = {.layers = (folder.path() / "picture.exr").string()};
         if (std::filesystem::exists(folder.path() / "meta.json")) own.meta = folder.path() / "meta.json";
+        if (const auto map = folder.path() / "shadow_map.exr"; std::filesystem::exists(map))
+          own.files.shadow_map = map.string();
         rows.push_back(scorer.score(own));
       } catch (const Error& error) {
         if (error.kind() != ErrorKind::kInput) throw;

@@ -10,7 +10,7 @@
 namespace shadowbench::engines {
 
 /// Has renderers draw scenes of a run, and scores what they write. Each is a command of the shell that is given two
-/// more words, a scene.json and the EXR file to write, and may leave a meta.json beside that.
+/// more words, a scene.json and the EXR file to write, and may leave a meta.json and a shadow_map.exr beside that.
 ///
 /// `scene` and `view`: as in ScoreRequest, but that empty ones are all. A row that fails costs no other. Gives the
 /// rows' records with what was found out. Throws Error(kInput) for the first failure, once the others are in the

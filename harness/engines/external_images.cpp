@@ -89,6 +89,8 @@ ExternalImages read_external_images(const ExternalFiles& files) {
     found.emplace_back(name);
     names.push_back(*file);
   }
+  if (!files.shadow_map.empty())
+    read.shadow_map = to_grey(images::read_stored_picture(files.shadow_map), files.shadow_map);
   read.names = fmt::format("{}", fmt::join(names, ", "));
   require_whole(read, found);
   require_one_size(read);

@@ -15,6 +15,7 @@ struct ExternalFiles {
   std::string unlit = {};
   std::string visibility = {};
   std::string depth = {};
+  std::string shadow_map = {};  ///< its own, of any size
 };
 
 /// What another renderer drew of a view; rows top to bottom, linear values, one channel each.
@@ -24,6 +25,7 @@ struct ExternalImages {
   std::optional<images::Image> visibility;  ///< 1 lit .. 0 blocked
   std::optional<images::Image> depth;       ///< metres along the camera's axis; 0 or not finite where nothing is
   std::string names;                        ///< of the files, for messages
+  std::optional<images::Image> shadow_map;  ///< as it is stored; rows from v = 1 down
 };
 
 /// Reads them. Throws Error(kInput): a file that cannot be read, a layer that is missing (lit comes with unlit, or

@@ -27,6 +27,19 @@ double read_milliseconds(const json& value, const std::string& where) {
   fail_input("'ms' must be a number of milliseconds, 0 or more", where);
 }
 
+glm::dmat4 read_matrix(const json& value, const std::string& where) {
+  glm::dmat4 matrix(0.0);
+  const bool is_list = value.is_array() && value.size() == 16;
+  for (int i = 0; i < 16; ++i) {
+    const bool is_number = is_list && value[static_cast<std::size_t>(i)].is_number();
+    if (is_number) matrix[i / 4][i % 4] = value[static_cast<std::size_t>(i)].get<double>();
+    if (!is_number || !std::isfinite(matrix[i / 4][i % 4]))
+      fail_input("'map_from_world' must be 16 numbers, columns first", where);
+  }
+  if (glm::determinant(matrix) == 0.0) fail_input("'map_from_world' leads all points to one plane of the map", where);
+  return matrix;
+}
+
 }  // namespace
 
 Meta read_meta(const std::filesystem::path& file) {
@@ -49,7 +62,7 @@ Meta read_meta(const std::filesystem::path& file) {
       {"engine", &external.engine}, {"version", &external.version}, {"driver", &external.driver},
       {"map", &external.map},       {"bias", &external.bias},       {"fit", &external.fit},
       {"timed", &external.timed}};
-  std::vector<std::string> known = {"ms", "truth"};
+  std::vector<std::string> known = {"ms", "truth", "map_from_world"};
   for (const auto& [key, member] : texts) known.push_back(key);
   for (const auto& [key, value] : read.items()) {
     const auto text = std::ranges::find(texts, key, &std::pair<std::string, std::optional<std::string>*>::first);
@@ -57,6 +70,8 @@ Meta read_meta(const std::filesystem::path& file) {
       *text->second = read_text(key, value, where);
     else if (key == "ms")
       external.ms = read_milliseconds(value, where);
+    else if (key == "map_from_world")
+      meta.map_from_world = read_matrix(value, where);
     else if (key == "truth")
       meta.truth = read_text(key, value, where);
     else

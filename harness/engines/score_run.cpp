@@ -10,6 +10,7 @@
 #include "base/content_hash.h"
 #include "base/error.h"
 #include "harness/engines/exported_scene.h"
+#include "harness/engines/own_map.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/render/shade_pass.h"
 #include "harness/run/task_images.h"
@@ -194,6 +195,28 @@ void RunScorer::compare_with_peers(records::CellRecord& cell, const images::Imag
   }
 }
 
+/// The error as the sum of what its filter does beside one lookup, what its map does, and what a light without size
+/// does.
+void RunScorer::attribute(measure::MeasuredCell& cell, const images::Image& map, const Meta& meta,
+                          const run::PlannedTask& task, const measure::SceneTruth& truth) const {
+  if (!meta.map_from_world)
+    fail_input(
+        "--shadow-map needs to be known where it lies: give 'map_from_world' in the meta.json, 16 numbers, columns "
+        "first, that lead from the world to u, v and depth in the map");
+  std::vector<glm::vec3> to_light;
+  for (const truth::ReceiverPoint& receiver : truth.receivers.image.points)
+    to_light.push_back(scene::to_light(task.task.scene->light, receiver.position_ws));
+  const std::vector<double> looked_up = look_up({map, *meta.map_from_world}, truth.receivers.image, to_light);
+  measure::note_attribution(cell, metrics::attribute_error({.image = cell.visibility.texels,
+                                                            .model = {},
+                                                            .closer = looked_up,
+                                                            .kernel = truth.rays.hard,
+                                                            .area = truth.area.texels,
+                                                            .mask = truth.mask}));
+  cell.record.absent.erase("attribution");
+  cell.record.absent["attribution.numeric"] = kAnother;
+}
+
 std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const ScoreRequest& request) {
   check_name(request.name, results_.cells);
   const run::PlannedTask& task = find_task(request.scene, request.view);
@@ -233,6 +256,7 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   measure::CellAnalyser(renderer_, traced, task.task, assets_of(task), truth).analyse(cell);
   for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
     cell.record.absent[field] = kAnother;
+  if (drawn.shadow_map) attribute(cell, *drawn.shadow_map, meta, task, truth);
   const auto inside = metrics::measure_error(cell.visibility.texels, truth.area.texels, find_inside(own));
   if (inside) cell.record.external->inside_rmse = inside->rmse;
   std::vector<std::uint8_t> counts = truth.mask;

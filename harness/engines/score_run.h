@@ -26,10 +26,11 @@ struct ScoreRequest {
   bool unaligned = false;                     ///< score what does not show our view all the same, and say so
 };
 
-/// What a meta.json says of a row; `truth` is that of the scene.json that was drawn, empty where it is not said.
+/// What a meta.json says of a row.
 struct Meta {
   records::ExternalRecord external;
-  std::string truth;
+  std::string truth;                         ///< of the scene.json that was drawn; empty where it is not said
+  std::optional<glm::dmat4> map_from_world;  ///< of the shadow map; see OwnMap
 };
 
 /// Throws Error(kInput) for what is no object of texts and numbers, or has another key than README.md lists.
@@ -75,6 +76,8 @@ class RunScorer {
   images::Image shade(const run::PlannedTask& task, const images::Image& visibility);
   std::vector<const records::CellRecord*> list_peers(const records::CellRecord& cell) const;
   images::Image read_visibility(const records::CellRecord& cell) const;
+  void attribute(measure::MeasuredCell& cell, const images::Image& map, const Meta& meta, const run::PlannedTask& task,
+                 const measure::SceneTruth& truth) const;
   void compare_with_peers(records::CellRecord& cell, const images::Image& visibility,
                           const std::vector<std::uint8_t>& counts, const images::Image& truth) const;
   void keep(const records::CellRecord& cell);

@@ -30,17 +30,6 @@ std::string too_few(const char* which) {
   return records::explain_nothing_to_see(fmt::format("fewer than {} receivers {}", metrics::kFewestReceivers, which));
 }
 
-void note_parts(records::CellRecord& record, const metrics::Attribution& attribution) {
-  for (std::size_t p = 0; p < metrics::kErrorParts; ++p) {
-    if (!attribution.stats[p]) continue;
-    record.attribution.*
-        records::list_error_parts()[p].record = {attribution.stats[p]->rms, attribution.stats[p]->share};
-  }
-  if (attribution.stats.back()) return;
-  record.absent["attribution"] =
-      attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
-}
-
 metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<TracedLayer>& layers,
                                   const SceneTruth& truth) {
   return metrics::make_artefact_masks(
@@ -64,6 +53,24 @@ Surroundings trace_surroundings(truth::CachedTracer& tracer, const std::vector<T
       });
   std::vector<std::uint8_t> settled = find_settled(traced);
   return {half_width, std::move(traced.visibility), std::move(settled)};
+}
+
+void note_attribution(MeasuredCell& cell, metrics::Attribution attribution) {
+  records::CellRecord& record = cell.record;
+  for (std::size_t p = 0; p < metrics::kErrorParts; ++p) {
+    if (!attribution.stats[p]) continue;
+    record.attribution.*
+        records::list_error_parts()[p].record = {attribution.stats[p]->rms, attribution.stats[p]->share};
+  }
+  if (!attribution.stats.back())
+    record.absent["attribution"] =
+        attribution.not_finite > 0 ? "no pixel of the image is finite" : "there is no error to take apart";
+  for (std::vector<float>& part : attribution.parts) {
+    images::Image& to = cell.error_parts.emplace_back();
+    if (part.empty()) continue;
+    to = {cell.visibility.width, cell.visibility.height, 1};
+    to.texels = std::move(part);
+  }
 }
 
 metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
@@ -199,7 +206,6 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
     record.excused = images.excused;
     record.absent.erase("excused");
   }
-  note_parts(record, attribution);
   const auto to_kernel = metrics::measure_error(image, kernel, truth_.mask);
   note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
        "no pixel of the image is finite");
@@ -207,12 +213,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   note(record, "artefact.noise", record.artefact.noise,
        random ? metrics::rate_noise(image, images.closer, kernel, truth_.mask, options_.width) : std::nullopt,
        random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
-  for (std::vector<float>& part : attribution.parts) {
-    images::Image& to = cell.error_parts.emplace_back();
-    if (part.empty()) continue;
-    to = {options_.width, options_.height, 1};
-    to.texels = std::move(part);
-  }
+  note_attribution(cell, std::move(attribution));
 }
 
 }  // namespace shadowbench::measure

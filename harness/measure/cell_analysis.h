@@ -11,6 +11,7 @@
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"
 #include "reference/metrics/artefacts.h"
+#include "reference/metrics/error_stats.h"
 
 namespace shadowbench::measure {
 
@@ -25,6 +26,9 @@ struct Surroundings {
 /// cache. Requires a truth.
 Surroundings trace_surroundings(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
                                 const SceneTruth& truth, double widest_kernel_texels);
+
+/// Notes the parts of a cell's error in its record, or why there are none, and leaves them as images.
+void note_attribution(MeasuredCell& cell, metrics::Attribution attribution);
 
 /// Finds where artefacts can occur in a view: the guard around a receiver is `widest_kernel_texels` and a little more.
 /// Requires a truth. Cost: that of the surroundings.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "report/images/picture_io.h"
 #include "tests/harness/cli/program.h"
@@ -132,6 +133,29 @@ command = "sh copy.sh"
   EXPECT_THAT(run("run engines.toml --out out").err, HasSubstr("all lit"));
   write("typo.toml", "[[engine]]\nname = 'x'\ncomand = 'y'\n");
   EXPECT_THAT(run("run typo.toml --out typo").err, HasSubstr("comand"));
+}
+
+TEST_F(Score, WithItsOwnMap_ItsErrorIsTakenApart) {
+  make_run();
+  const images::ExrFile file = images::read_exr(folder() / "out/cubes.exr");
+  std::istringstream rows(std::get<std::string>(file.metadata.at("shadowbench:map.layer0.uv_depth_from_world")));
+  std::vector<double> columns(16);
+  for (std::size_t i = 0; i < 16; ++i) rows >> columns[4 * (i % 4) + i / 4];
+  write("meta.json", json{{"map_from_world", columns}}.dump());
+  ASSERT_EQ(run("score out --name mine --visibility 'out/cubes.exr#none.visibility' --meta meta.json --shadow-map "
+                "'out/cubes.exr#depth_map'")
+                .exit_code,
+            0);
+  const json own = find_row("mine")["attribution"], none = find_row("none")["attribution"];
+  // One lookup in the map is what `none` is: nothing is left to its filter, and the map has its share.
+  EXPECT_NEAR(own["estimator"]["rms"].get<double>(), 0.0, 0.01);
+  EXPECT_NEAR(own["discretisation"]["share"].get<double>(), none["discretisation"]["share"].get<double>(), 0.02);
+  EXPECT_NEAR(own["model"]["share"].get<double>(), none["model"]["share"].get<double>(), 0.02);
+  const Outcome nowhere =
+      run("score out --name mine --visibility 'out/cubes.exr#none.visibility' --shadow-map "
+          "'out/cubes.exr#depth_map'");
+  EXPECT_EQ(nowhere.exit_code, 3);
+  EXPECT_THAT(nowhere.err, HasSubstr("map_from_world"));
 }
 
 TEST_F(Score, BadInput_IsOneSentence_AndLosesNothing) {
