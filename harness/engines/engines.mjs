@@ -13,7 +13,7 @@ export const kEngines = {
     },
     settings: {
       type: ["pcf", "basic", "vsm"],
-      side: ["back", "front", "both"], // the faces that cast; "back" is what materials of one side do
+      side: ["auto", "back", "front", "both"], // the faces that cast; "auto" is what materials of one side do
       bias: 0,
       normal: 0, // bias along the normal, metres
       radius: 1,

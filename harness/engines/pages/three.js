@@ -34,10 +34,12 @@ export const open = async ({ view, canvas, settings }) => {
   const scene = new THREE.Scene(); // model.scene is a Group, on which overrideMaterial does nothing
   const light = makeLight(view, settings);
   const lights = [];
+  // Where a material says nothing, its back faces cast; but for VSM the faces that it shows (WebGLShadowMap.js).
+  const side = settings.side !== "auto" ? settings.side : settings.type === "vsm" ? "front" : "back";
   model.scene.traverse((node) => {
     if (node.isLight) lights.push(node);
     if (!node.isMesh) return;
-    node.material = toMatt(node.material, kSides[settings.side]);
+    node.material = toMatt(node.material, kSides[side]);
     node.castShadow = node.userData.shadowbench?.casts_shadow ?? true;
     node.receiveShadow = true;
   });
@@ -54,7 +56,7 @@ export const open = async ({ view, canvas, settings }) => {
     renderer.readRenderTargetPixels(target, 0, 0, view.width, view.height, values);
     return values;
   };
-  const { bias, normal, side, radius, type } = settings;
+  const { bias, normal, radius, type } = settings;
   const map = `${view.maps[0].size}, ${type === "vsm" ? "half floats" : "depth texture"}`;
   const says = { map, bias: `${bias}, normal ${normal} m, casts ${side}`, fit: `window of ${view.maps[0].fit}` };
   if (type !== "basic") says.map += `, radius ${radius}`;
