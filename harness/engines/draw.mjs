@@ -55,6 +55,8 @@ const readView = (file) => {
     fail(
       `${file}: these pages draw a directional light through one map with a window, and this is another light or fit`,
     );
+  const model = join(dirname(resolve(file)), view.model);
+  if (!existsSync(model)) fail(`there is no model ${model}, which ${file} names`);
   return view;
 };
 
@@ -80,20 +82,21 @@ const answer = (route, { engine, scene, view }) => {
   return route.fulfill({ contentType: kTypes[extname(file)] ?? "text/javascript", body: readFileSync(file) });
 };
 
-// A message of a shader's compiler has dozens of lines, and says in the first two what is wrong.
-const shorten = (message) =>
-  message
-    .split("\n")
-    .map((line) => line.trim())
-    .filter(Boolean)
-    .slice(0, 2)
-    .join(" ");
+// What playwright and the engines say, without where: the first two lines, since a shader's compiler has dozens.
+const shorten = (message) => {
+  const lines = message.split("\n").map((line) => line.trim());
+  const said = lines.filter((line) => line && !line.startsWith("at ")).slice(0, 2);
+  return said.join(" ").replace(/^(page\.evaluate|browserType\.launch): (Error: )?/, "");
+};
 
 // Gives what pages/page.js gives. Throws an Error with one sentence for whatever the page says is wrong.
 const drawInBrowser = async (task) => {
   readPackage("playwright-core");
   const { chromium } = await import("playwright-core");
-  const browser = await chromium.launch({ executablePath: findChromium(), args: kDrivers[task.settings.driver] });
+  const executablePath = findChromium();
+  const browser = await chromium
+    .launch({ executablePath, args: kDrivers[task.settings.driver] })
+    .catch((error) => fail(`${executablePath} does not start: ${shorten(error.message.split("\n")[0])}`));
   try {
     const page = await browser.newPage();
     const errors = [];

@@ -49,7 +49,7 @@ export const drawView = async (engine, settings) => {
   for (const what of ["unlit", "lit", "depth"])
     layers[what] = await toBase64(flipRows(await draw(what), view.width, view.height));
   if (settings.frames > 0) {
-    says.ms = await measure(draw, settings.frames);
+    says.ms = Number((await measure(draw, settings.frames)).toFixed(3));
     says.timed = `frame with shadows less one without, median of ${settings.frames}, wall clock, read back`;
   }
   return { layers, says: { driver, ...says } };
