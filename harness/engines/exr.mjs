@@ -2,7 +2,7 @@
 // The layout is that of "OpenEXR File Layout" (openexr.com/en/latest/OpenEXRFileLayout.html).
 import { writeFileSync } from "node:fs";
 
-const int = (...values) => Buffer.from(new Int32Array(values).buffer); // EXR and all machines that run Node: least first
+const int = (...values) => Buffer.from(new Int32Array(values).buffer); // least byte first, as EXR has it
 const float = (...values) => Buffer.from(new Float32Array(values).buffer);
 const text = (word) => Buffer.from(word + "\0", "latin1");
 const attribute = (name, type, value) => Buffer.concat([text(name), text(type), int(value.length), value]);

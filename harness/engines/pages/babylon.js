@@ -26,7 +26,7 @@ const kFilters = {
 };
 const kQualities = ["high", "medium", "low"]; // ShadowGenerator.QUALITY_HIGH is 0
 
-// The glTF materials are PBRMaterial, which shines, and writes sRGB. A StandardMaterial's colours are taken as they are.
+// The glTF materials are PBRMaterial, which shines, and writes sRGB. A StandardMaterial's colours stay as they are.
 const toMatt = (scene, { name, albedoColor, albedoTexture }, side) => {
   const material = new StandardMaterial(name, scene);
   Object.assign(material, { diffuseColor: albedoColor, diffuseTexture: albedoTexture, specularColor: Color3.Black() });
