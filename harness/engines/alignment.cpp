@@ -56,10 +56,17 @@ struct Fields {
   double least_share;  ///< see ShiftFit::solve()
 };
 
-/// Fits the shift; `distances` takes how far apart the two are in each pixel, along the gradient.
-std::optional<glm::dvec2> find_shift(const Fields& fields, std::vector<double>& distances) {
+/// How far apart two fields are.
+struct ShiftFound {
+  std::optional<glm::dvec2> shift;
+  std::vector<double> distances;  ///< of each pixel, along the gradient
+  std::size_t far = 0;            ///< pixels in which they have nothing to do with each other
+};
+
+ShiftFound find_shift(const Fields& fields) {
   const auto& [ours, theirs, is_used, least_share] = fields;
   ShiftFit fit;
+  ShiftFound found;
   for (std::size_t i = 0; i < ours.texels.size(); ++i) {
     const auto left = step(i, -1, 0, ours.width, ours.height), right = step(i, 1, 0, ours.width, ours.height),
                up = step(i, 0, -1, ours.width, ours.height), down = step(i, 0, 1, ours.width, ours.height);
@@ -70,11 +77,15 @@ std::optional<glm::dvec2> find_shift(const Fields& fields, std::vector<double>& 
     if (!(length > 0.0) || !is_used(i, gradient)) continue;
     const double difference = static_cast<double>(theirs.texels[i]) - at(i);
     constexpr double kFarthest = 3.0;  // pixels; beyond, theirs is another surface
-    if (!(std::abs(difference) <= kFarthest * length)) continue;
+    if (!(std::abs(difference) <= kFarthest * length)) {
+      ++found.far;
+      continue;
+    }
     fit.add(gradient, difference);
-    distances.push_back(std::abs(difference) / length);
+    found.distances.push_back(std::abs(difference) / length);
   }
-  return fit.solve(least_share);
+  found.shift = fit.solve(least_share);
+  return found;
 }
 
 /// 1 / depth is linear over a plane's picture; 0 where nothing is.
@@ -84,7 +95,8 @@ Image invert_depth(const Image& depth) {
   return inverse;
 }
 
-Alignment align_by_depth(const Image& depth, const OwnView& own) {
+/// Nothing is found from what is no depth of this view, and that is said.
+Alignment align_by_depth(const Image& depth, const OwnView& own, std::vector<Finding>& findings) {
   const Image ours = invert_depth(own.depth), theirs = invert_depth(depth);
   const auto is_plane = [&](std::size_t i, const glm::dvec2& gradient) {
     constexpr double kMostBend = 0.05;  // second over first difference
@@ -101,13 +113,20 @@ Alignment align_by_depth(const Image& depth, const OwnView& own) {
     return ours.texels[i] != 0.0f && length > rounding && bend(1, 0) <= kMostBend * length &&
            bend(0, 1) <= kMostBend * length;
   };
-  std::vector<double> distances;
-  Alignment found{"depth", find_shift({ours, theirs, is_plane, kLeastShareOfDepth}, distances), std::nullopt};
-  if (distances.empty()) return {};
-  const auto place = distances.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(distances.size() - 1));
-  std::nth_element(distances.begin(), place, distances.end());
-  found.p99 = *place;
-  return found;
+  ShiftFound fit = find_shift({ours, theirs, is_plane, kLeastShareOfDepth});
+  if (fit.far > fit.distances.size()) {
+    findings.push_back(
+        {false,
+         fmt::format("its depth is not that of our surfaces at {} of the pixels: metres along the "
+                     "camera's axis are wanted, positive, and no depth of a projection",
+                     percent(static_cast<double>(fit.far) / static_cast<double>(fit.far + fit.distances.size())))});
+    return {};
+  }
+  if (fit.distances.empty()) return {};
+  const auto place =
+      fit.distances.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(fit.distances.size() - 1));
+  std::nth_element(fit.distances.begin(), place, fit.distances.end());
+  return {"depth", fit.shift, *place};
 }
 
 /// Weights 1 2 1 along both axes: the edge of a mask becomes a ramp, whose shift shows in every pixel.
@@ -277,14 +296,11 @@ CheckedImages check_images(const ExternalImages& images, const OwnView& own) {
   const std::array<Mask, 2> coverage = find_coverage(images, own);
   if (!coverage[0].empty()) {
     check_orientation(coverage, any.width, any.height, checked.findings);
-    std::vector<double> unused;
     const Image ours = blur(coverage[0], any.width, any.height), theirs = blur(coverage[1], any.width, any.height);
-    if (images.depth) checked.alignment = align_by_depth(*images.depth, own);
+    if (images.depth) checked.alignment = align_by_depth(*images.depth, own, checked.findings);
     if (!checked.alignment.shift)
       checked.alignment = {
-          "coverage",
-          find_shift({ours, theirs, [](auto, const auto&) { return true; }, kLeastShareOfEdges}, unused),
-          {}};
+          "coverage", find_shift({ours, theirs, [](auto, const auto&) { return true; }, kLeastShareOfEdges}).shift, {}};
   }
   check_shift(checked.alignment, checked.findings);
   check_light(images, own, checked.findings);

@@ -49,8 +49,8 @@ inline constexpr double kMostShift = 0.25;
 /// receiver with a finite value.
 CheckedImages check_images(const ExternalImages& images, const OwnView& own);
 
-/// 1 for receivers all of whose neighbours are on the same smooth surface: where antialiasing and half a pixel do not
-/// show.
-std::vector<std::uint8_t> find_inside(const OwnView& own);
+/// 1 for those of `which` all of whose neighbours are on the same smooth surface: where antialiasing and half a pixel
+/// do not show.
+std::vector<std::uint8_t> find_inside(const OwnView& own, const std::vector<std::uint8_t>& which);
 
 }  // namespace shadowbench::engines

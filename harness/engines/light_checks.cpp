@@ -55,6 +55,42 @@ void check_encoding(const LightPairs& pairs, std::vector<Finding>& findings) {
                                         *exponent)});
 }
 
+/// Says where their light falls on our surfaces in other proportions than ours.
+void check_proportions(const LightPairs& pairs, std::vector<Finding>& findings) {
+  double products = 0.0, squares = 0.0, all = 0.0, rest = 0.0;
+  for (std::size_t i = 0; i < pairs.ours.size(); ++i) {
+    products += pairs.ours[i] * pairs.theirs[i];
+    squares += pairs.ours[i] * pairs.ours[i];
+  }
+  for (std::size_t i = 0; i < pairs.ours.size(); ++i) {
+    const double gap = pairs.theirs[i] - products / squares * pairs.ours[i];
+    rest += gap * gap;
+    all += pairs.theirs[i] * pairs.theirs[i];
+  }
+  constexpr double kMostResidual = 0.05;
+  if (!(rest > kMostResidual * kMostResidual * all)) return;
+  findings.push_back({false, fmt::format("its light falls on our surfaces in other proportions, by {}: the light's "
+                                         "direction is another one (mirrored, or as the way to the light), or the "
+                                         "materials are not matt in the colours of the model",
+                                         percent(std::sqrt(rest / all)))});
+}
+
+/// Says where the light reaches other surfaces than ours.
+void check_faces(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings) {
+  double surfaces = 0.0, apart = 0.0;
+  const std::vector<std::uint8_t> inside = find_inside(own, own.is_surface);
+  for (std::size_t i = 0; i < own.counts.size(); ++i) {
+    if (!inside[i]) continue;
+    surfaces += 1.0;
+    apart += (images.unlit->texels[i] > 0.0f) != (own.counts[i] != 0);
+  }
+  constexpr double kMost = 0.005;
+  if (!(apart > kMost * surfaces)) return;
+  findings.push_back({false, fmt::format("{} of the surfaces are lit in one of the two pictures alone: the light's "
+                                         "direction is another one (mirrored, or as the way to the light)",
+                                         percent(apart / surfaces))});
+}
+
 /// Finds the direction from which a matt surface of our colours would have their light.
 void check_direction(const LightPairs& pairs, const OwnView& own, std::vector<Finding>& findings) {
   if (!own.to_light_ws) return;
@@ -70,7 +106,10 @@ void check_direction(const LightPairs& pairs, const OwnView& own, std::vector<Fi
     right += pairs.theirs[i] * scaled;
   }
   const double size = products[0][0] + products[1][1] + products[2][2];
-  if (!(glm::determinant(products) > 1e-6 * size * size * size)) return;  // normals of few directions
+  if (!(glm::determinant(products) > 1e-6 * size * size * size)) {  // normals of few directions
+    check_proportions(pairs, findings);
+    return;
+  }
   const glm::dvec3 fitted = glm::inverse(products) * right;
   double squares = 0.0, all = 0.0;
   for (std::size_t i = 0; i < pairs.pixels.size(); ++i) {
@@ -82,7 +121,8 @@ void check_direction(const LightPairs& pairs, const OwnView& own, std::vector<Fi
   constexpr double kMostResidual = 0.03, kMostDegrees = 0.25;
   const double cosine = glm::dot(glm::normalize(fitted), to_light);
   const double degrees = glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
-  if (std::sqrt(squares / all) > kMostResidual || degrees < kMostDegrees) return;
+  if (std::sqrt(squares / all) > kMostResidual) return check_proportions(pairs, findings);
+  if (degrees < kMostDegrees) return;
   findings.push_back({false, fmt::format("its surfaces are lit from {:.2g} degrees beside our light: the light's "
                                          "direction is another one, or its target is not where it shines",
                                          degrees)});
@@ -118,7 +158,7 @@ bool check_steps(const ExternalImages& images, std::vector<Finding>& findings) {
 
 void check_samples(const LightPairs& pairs, const OwnView& own, std::vector<Finding>& findings) {
   if (pairs.pixels.empty()) return;
-  const std::vector<std::uint8_t> inside = find_inside(own);
+  const std::vector<std::uint8_t> inside = find_inside(own, own.counts);
   std::vector<double> ratios;
   for (std::size_t i = 0; i < pairs.pixels.size(); ++i) ratios.push_back(pairs.theirs[i] / pairs.ours[i]);
   std::vector<double> sorted = ratios;
@@ -148,8 +188,8 @@ std::optional<std::size_t> step(std::size_t pixel, int dx, int dy, int width, in
   return static_cast<std::size_t>(y * width + x);
 }
 
-std::vector<std::uint8_t> find_inside(const OwnView& own) {
-  std::vector<std::uint8_t> inside = own.counts;
+std::vector<std::uint8_t> find_inside(const OwnView& own, const std::vector<std::uint8_t>& which) {
+  std::vector<std::uint8_t> inside = which;
   const int width = own.depth.width, height = own.depth.height;
   for (std::size_t i = 0; i < inside.size(); ++i) {
     for (int dy = -1; dy <= 1; ++dy) {
@@ -170,6 +210,7 @@ void check_light(const ExternalImages& images, const OwnView& own, std::vector<F
   if (!images.unlit) return;
   const LightPairs pairs = pair_lights(*images.unlit, own);
   check_encoding(pairs, findings);
+  check_faces(images, own, findings);
   if (!is_coded) check_direction(pairs, own, findings);  // steps look like another direction
   check_samples(pairs, own, findings);
 }

@@ -257,7 +257,7 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
     cell.record.absent[field] = kAnother;
   if (drawn.shadow_map) attribute(cell, *drawn.shadow_map, meta, task, truth);
-  const auto inside = metrics::measure_error(cell.visibility.texels, truth.area.texels, find_inside(own));
+  const auto inside = metrics::measure_error(cell.visibility.texels, truth.area.texels, find_inside(own, own.counts));
   if (inside) cell.record.external->inside_rmse = inside->rmse;
   std::vector<std::uint8_t> counts = truth.mask;
   for (std::size_t i = 0; i < counts.size(); ++i)

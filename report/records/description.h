@@ -19,9 +19,10 @@ struct About {
   std::optional<double> most = std::nullopt;   ///< of a number
   std::string_view pattern = {};               ///< that a text matches
   std::string_view one_of = {};                ///< texts that it may be, with commas
-  bool filled = false;   ///< a text, or each of a list, is not empty; what may be null is filled where it is not
-  bool is_path = false;  ///< in the report's folder, and does not leave it
-  bool later = false;    ///< files of before lack it, or the group: it is read as null or empty there
+  bool filled = false;    ///< a text, or each of a list, is not empty; what may be null is filled where it is not
+  bool is_path = false;   ///< in the report's folder, and does not leave it
+  bool may_lack = false;  ///< what is not there is not written, and is no gap that needs a reason
+  bool later = false;     ///< files of before lack it, or the group: it is read as null or empty there
   std::string_view column = {};       ///< what its column in CSV holds; empty: it has none
   std::string_view column_name = {};  ///< empty: it follows from the path
   std::string_view unit = {};         ///< of a metric; empty: it is none

@@ -40,7 +40,8 @@ struct FieldWriter {
   }
 
   template <class T>
-  void operator()(const std::string& path, const std::optional<T>& value, const About& = {}) const {
+  void operator()(const std::string& path, const std::optional<T>& value, const About& about = {}) const {
+    if (!value && about.may_lack) return;
     json& written = root[make_pointer(path)] = value_json(value);
     if (value && is_finite(written)) return;
     written = nullptr;

@@ -293,8 +293,9 @@ void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
         {.text = "what the cell costs on GPUs that were not there, by name; null or missing where none was named",
          .later = true});
   visit("external", cell.external,
-        {.text = "of a row that another renderer drew: what is said of it, and whether it shows the same view; null "
-                 "for the program's own filters",
+        {.text = "of a row that another renderer drew: what is said of it, and whether it shows the same view; "
+                 "missing for the program's own filters",
+         .may_lack = true,
          .later = true,
          .column = "of a row that another renderer drew: what is said of it, as JSON"});
   visit_group("images", cell.images, visit);

@@ -56,12 +56,12 @@ FIXTURES = {"model.gltf": "tests/fuzz/corpus/gltf/tree.gltf"}
 COPIES = ["data/scenes", "data/experiments", "filters", "tests/golden"]
 
 # Programs of others, and what this test cannot have: packages, a network, a screen, other build folders.
-NOT_RUN = {"apt-get", "cd", "clang-format", "curl", "dpkg", "gh", "git", "man", "sudo", "source", "xdg-open"}
+NOT_RUN = {"apt-get", "cd", "clang-format", "curl", "dpkg", "gh", "git", "man", "npm", "sudo", "source", "xdg-open"}
 # Harmless programs that are really run, in the scratch folder.
 RUN_AS_THEY_ARE = {"cp", "mkdir"}
 
 # Options of other programs that texts name.
-OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix", "--exclusive", "--sshlogin", "--account", "--env"}
+OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix", "--exclusive", "--sshlogin", "--account", "--env", "--use-angle"}
 # Paths that appear only when something is built or run.
 GENERATED = ("build/", "report/out")
 
@@ -135,7 +135,7 @@ def find_pages():
     pages = [ROOT / "CONTRIBUTING.md"]
     for folder, folders, files in os.walk(ROOT):
         relative = Path(folder).relative_to(ROOT).as_posix()
-        folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in ("build", "out"))
+        folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in ("build", "out", "node_modules"))
         pages += [Path(folder) / "README.md"] if "README.md" in files else []
         if relative.count("/") > 8:
             folders.clear()

@@ -107,7 +107,7 @@ def main():
     faults = []
     for top in ("base", "filters", "shaders", "reference", "report", "harness"):
         for path in sorted(root.joinpath(top).rglob("*")):
-            if "out" in path.relative_to(root).parts:
+            if {"out", "node_modules"} & set(path.relative_to(root).parts):
                 continue
             check_folder(root, path, faults) if path.is_dir() else check_source(root, path, faults) if path.suffix in COUNTED_LINES else None
         check_folder(root, root.joinpath(top), faults)

@@ -40,6 +40,13 @@ std::vector<double> place_node(const glm::dvec3& position, const glm::dvec3& for
   return {glm::value_ptr(matrix), glm::value_ptr(matrix) + 16};
 }
 
+/// tinygltf 2.9 writes a member of its own in place of the extension, which 2.5 does not have.
+template <class Node>
+void set_light(Node& node, int light) {
+  node.extensions["KHR_lights_punctual"] = tinygltf::Value(Extras{{"light", tinygltf::Value(light)}});
+  if constexpr (requires { node.light; }) node.light = light;
+}
+
 /// Puts a file together.
 class GlbBuilder {
  public:
@@ -229,8 +236,7 @@ class GlbBuilder {
     node.name = scene_.light.name.empty() ? "light" : scene_.light.name;
     const glm::dvec3 up = std::abs(light.direction_ws.y) > 0.99 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
     node.matrix = place_node(light.position_ws, light.direction_ws, up);
-    node.extensions["KHR_lights_punctual"] =
-        tinygltf::Value(Extras{{"light", tinygltf::Value(static_cast<int>(model_.lights.size()) - 1)}});
+    set_light(node, static_cast<int>(model_.lights.size()) - 1);
     add_node(std::move(node));
   }
 

@@ -179,6 +179,27 @@ TEST(Alignment, ALightThatIsOffByOneDegree_IsNamed) {
   EXPECT_THAT(all_texts(check_images(draw({.to_light = turned}), make_own())), HasSubstr("lit from 1 degrees beside"));
 }
 
+TEST(Alignment, ALightFromTheOtherSide_IsNamed) {
+  const glm::dvec3 mirrored(-kToLight.x, kToLight.y, kToLight.z), behind(kToLight.x, kToLight.y, -kToLight.z);
+  EXPECT_THAT(all_texts(check_images(draw({.to_light = mirrored}), make_own())), HasSubstr("degrees beside our light"));
+  EXPECT_THAT(all_texts(check_images(draw({.to_light = behind}), make_own())), HasSubstr("lit in one of the two"));
+}
+
+TEST(Alignment, MaterialsThatAreNotMatt_AreNamed) {
+  ExternalImages shiny = draw();
+  for (int y = 20; y < 40; ++y)
+    for (int x = 0; x < kWidth; ++x) *shiny.unlit->at(x, y) *= 2.0f;
+  EXPECT_THAT(all_texts(check_images(shiny, make_own())), HasSubstr("in other proportions"));
+}
+
+TEST(Alignment, ADepthThatIsNone_IsNamed) {
+  ExternalImages colors = draw();
+  for (float& value : colors.depth->texels) value = 0.3f;
+  const CheckedImages checked = check_images(colors, make_own());
+  EXPECT_THAT(all_texts(checked), HasSubstr("metres along the camera's axis"));
+  EXPECT_EQ(checked.alignment.by, "coverage");
+}
+
 TEST(Alignment, SwappedFilesAndMissingShadows_AreRefused) {
   ExternalImages swapped = draw();
   std::swap(swapped.lit, swapped.unlit);
