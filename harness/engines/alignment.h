@@ -15,7 +15,7 @@ struct OwnView {
   std::vector<std::uint8_t> counts;      ///< 1: a receiver, a surface that faces the light
   std::vector<std::uint8_t> is_surface;  ///< 0: background
   images::Image depth;                   ///< metres along the camera's axis; 0: background
-  images::Image direct;                  ///< what the light adds to our picture where nothing is in its way: grey
+  images::Image direct;  ///< what the light adds to matt surfaces where nothing is in its way: grey, in any unit
   std::vector<glm::vec3> normals_ws;     ///< of surfaces
   std::optional<glm::vec3> to_light_ws;  ///< of a light at infinity, unit length
 };

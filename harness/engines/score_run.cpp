@@ -49,7 +49,7 @@ records::CellRecord make_external_record(const options::RunOptions& options, con
   record.key = records::cell_key(record);
   for (const char* field :
        {"time_ms", "ratio_to_none", "cost", "kernel", "kernel_radius_texels", "lights", "gpu", "coverage", "stability",
-        "map_scale", "excused", "attribution", "artefact.noise", "error.kernel_rmse"})
+        "map_scale", "nan", "excused", "attribution", "artefact.noise", "error.kernel_rmse"})
     record.absent[field] = kAnother;
   return record;
 }
@@ -146,12 +146,21 @@ OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
   const images::Image dark = shade(task, one);
   std::ranges::fill(one.texels, 1.0f);
   const images::Image lit = shade(task, one);
-  for (std::size_t i = 0; i < own.counts.size(); ++i) {
-    own.depth.texels[i] = surfaces.positions.texels[4 * i + 3];
-    own.normals_ws.push_back(receivers.image.points[i].normal_ws);
-    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) own.direct.texels[i] += (lit.texels[c] - dark.texels[c]) / 3.0f;
-  }
   if (!scene::find_beam(task.task.scene->light)) own.to_light_ws = scene::to_light(task.task.scene->light, {});
+  for (std::size_t i = 0; i < own.counts.size(); ++i) {
+    const glm::vec3& normal = own.normals_ws.emplace_back(receivers.image.points[i].normal_ws);
+    own.depth.texels[i] = surfaces.positions.texels[4 * i + 3];
+    float ambient = 0.0f, direct = 0.0f;
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
+      ambient += dark.texels[c];
+      direct += lit.texels[c] - dark.texels[c];
+    }
+    // Under a sun without the highlights of our pictures, which others do not draw: by the colour that the ambient
+    // light has (shade.frag).
+    if (own.to_light_ws)
+      direct = ambient / (0.75f + 0.25f * normal.y) * std::max(glm::dot(normal, *own.to_light_ws), 0.0f);
+    own.direct.texels[i] = direct;
+  }
   return own;
 }
 
@@ -245,7 +254,6 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   for (const Finding& each : checked.findings)
     cell.record.warnings.push_back(fmt::format("{}, {}: {}", request.name, task.task.scene->name, each.text));
   cell.record.receivers = std::ranges::count(truth.mask, 1);
-  cell.record.nan = checked.undefined;
   cell.visibility = truth.receivers.to_image(checked.visibility.texels);
   cell.picture = shade(task, fill_few(checked.visibility, truth, checked.undefined));
   cell.flip = measure::score(cell.record, cell.visibility, {}, cell.picture, truth);

@@ -43,6 +43,11 @@ std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells
   return groups;
 }
 
+std::vector<records::CellRecord> list_own_cells(std::vector<records::CellRecord> cells) {
+  std::erase_if(cells, [](const records::CellRecord& cell) { return cell.external.has_value(); });
+  return cells;
+}
+
 std::optional<std::size_t> find_class(const records::CellRecord& cell) {
   const auto& classes = filters::width_classes();
   const auto found = std::ranges::find_if(

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <cmath>
 
 #include "report/records/format.h"
 
@@ -17,7 +17,7 @@ constexpr const char* kNote =
 
 std::string format_shift(const records::ExternalRecord& external) {
   if (!external.shift_x) return "not known";
-  return fmt::format("{:.3f}, {:.3f} by {}{}", *external.shift_x, *external.shift_y, external.aligned_by,
+  return fmt::format("{:.3f} by {}{}", std::hypot(*external.shift_x, *external.shift_y), external.aligned_by,
                      external.unaligned ? ": NOT our view" : "");
 }
 
@@ -48,27 +48,32 @@ std::string describe_engine(const records::ExternalRecord& external) {
 }
 
 std::optional<document::Section> make_external_section(const std::vector<records::CellRecord>& cells) {
-  records::TextTable table{{"row", "scene", "RMSE", "without silhouettes", "our filters beside it", "nearest filter",
-                            "apart from it", "acne", "leak", "shift, pixels", "undefined", "cost, as said", "drawn by"},
+  records::TextTable table{{"row", "scene", "RMSE", "without silhouettes", "our filters beside it",
+                            "nearest, and how far", "acne", "leak", "shift, pixels"},
                            {}};
+  records::TextTable origins{{"row", "scene", "drawn by", "undefined receivers", "cost, as its user says"}, {}};
   for (const records::CellRecord& cell : cells) {
     if (!cell.external) continue;
     const records::ExternalRecord& external = *cell.external;
-    table.rows.push_back(
-        {cell.filter, cell.scene, records::format_number(cell.error.rmse), records::format_number(external.inside_rmse),
-         describe_peers(cell), external.nearest.value_or("–"), records::format_number(external.nearest_rmse),
-         records::format_number(cell.artefact.acne), records::format_number(cell.artefact.leak), format_shift(external),
-         fmt::format("{}", external.undefined),
-         external.ms
-             ? fmt::format("{} ms{}", records::format_number(external.ms), external.timed ? ", " + *external.timed : "")
-             : "–",
-         describe_engine(external)});
+    table.rows.push_back({cell.filter, cell.scene, records::format_number(cell.error.rmse),
+                          records::format_number(external.inside_rmse), describe_peers(cell),
+                          external.nearest
+                              ? fmt::format("{}, {}", *external.nearest, records::format_number(external.nearest_rmse))
+                              : "–",
+                          records::format_number(cell.artefact.acne), records::format_number(cell.artefact.leak),
+                          format_shift(external)});
+    origins.rows.push_back({cell.filter, cell.scene, describe_engine(external), fmt::format("{}", external.undefined),
+                            external.ms ? fmt::format("{} ms{}", records::format_number(external.ms),
+                                                      external.timed ? ", " + *external.timed : "")
+                                        : "–"});
   }
   if (table.rows.empty()) return std::nullopt;
-  return document::Section{"external",
-                           "Other renderers",
-                           {document::Table{"What other renderers drew, against the same truth", std::move(table)},
-                            document::Paragraph{kNote, true}}};
+  return document::Section{
+      "external",
+      "Other renderers",
+      {document::Table{"What other renderers drew, against the same truth", std::move(table)},
+       document::Details{"What drew them", {document::Table{"As their users say", std::move(origins)}}},
+       document::Paragraph{kNote, true}}};
 }
 
 }  // namespace shadowbench::pages

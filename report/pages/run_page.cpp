@@ -296,7 +296,8 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   const analysis::AdviceRequest request = choose_request(cells);
   document::Page page{"Shadow filters compared", {make_answer_section(run, cells, request)}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
-  if (const auto surprises = analysis::list_surprises(cells); !surprises.empty())
+  const std::vector<records::CellRecord> own = analysis::list_own_cells(cells);
+  if (const auto surprises = analysis::list_surprises(own); !surprises.empty())
     add({"surprises", "What surprises", {document::Sentences{{}, surprises}}});
   if (!run.warnings.empty()) add({"warnings", "Warnings", {document::Sentences{{}, run.warnings}}, true});
   if (!cells.empty()) {
@@ -312,8 +313,8 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
     }
   }
   if (auto external = make_external_section(cells)) add(std::move(*external));
-  if (trade) add(make_trade_section(run, cells, *trade));
-  if (auto gpus = make_gpu_section(cells)) add(std::move(*gpus));
+  if (trade) add(make_trade_section(run, own, *trade));
+  if (auto gpus = make_gpu_section(own)) add(std::move(*gpus));
   add(make_evidence_section(run, measured));
   return page;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/atomic_file.h"
+#include "report/analysis/cell_group.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"
@@ -36,10 +37,11 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));
-  const std::optional<Trade> trade = make_trade(cells);
+  const std::vector<records::CellRecord> own = analysis::list_own_cells(cells);
+  const std::optional<Trade> trade = make_trade(own);
   if (trade && trade->has_fronts) {
     AtomicFile file(dir / "fronts.csv");
-    write_fronts_csv(cells, trade->scopes, machines, [&](std::string_view rows) { file.write(rows); });
+    write_fronts_csv(own, trade->scopes, machines, [&](std::string_view rows) { file.write(rows); });
     file.commit();
   }
   write_page(dir, "run", make_run_page(run, cells, trade, machines));

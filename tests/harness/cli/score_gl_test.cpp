@@ -50,6 +50,7 @@ TEST_F(Score, OurOwnPicture_HasOurOwnErrors) {
   EXPECT_EQ(row["absent"]["time_ms"], "another renderer drew it");
   EXPECT_THAT(read_text(folder() / "out/accuracy.csv"), HasSubstr("a <b>copy</b>"));
   EXPECT_EQ(read_text(folder() / "out/index.html").find("<b>copy</b>"), std::string::npos);
+  EXPECT_EQ(read_text(folder() / "out/fronts.csv").find("copy"), std::string::npos);
   // It is measured against the same truth, and no fit for advice.
   EXPECT_EQ(run("advise out").out.find("copy"), std::string::npos);
 }
