@@ -14,7 +14,12 @@ const kDrivers = {
   gl: ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
   swiftshader: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 };
-const kTypes = { ".html": "text/html", ".json": "application/json", ".glb": "model/gltf-binary" };
+const kTypes = {
+  ".html": "text/html",
+  ".json": "application/json",
+  ".glb": "model/gltf-binary",
+  ".wasm": "application/wasm",
+};
 
 const fail = (sentence) => {
   throw new Error(sentence);

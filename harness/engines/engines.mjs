@@ -51,6 +51,22 @@ export const kEngines = {
       ...kCommon,
     },
   },
+  filament: {
+    title: "Filament",
+    package: "filament",
+    imports: {},
+    settings: {
+      type: ["pcf"], // the package has no way to set another
+      side: ["front", "both"],
+      bias: 0.001, // metres
+      normal: 1, // texels
+      offset: 0.5, // polygon offset while the map is drawn
+      slope: 2, // and its part that grows with the slope
+      lispsm: ["on", "off"], // the map is finer near the camera
+      precision: ["high", "medium"], // of the shaders; medium is what the engine asks for
+      ...kCommon,
+    },
+  },
 };
 
 const list = (names) => names.join(", ");
