@@ -81,6 +81,10 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
   const std::string title = apply_experiment(line, arguments);
   options::RunOptions options = make_run_options(arguments, line.words());
   options.title = title;
+  if (!arguments.engines.empty() && options.part.shards() > 1)
+    fail(
+        "--shard: the experiment's [[engine]] tables would be drawn by each shard; leave them out, and score the "
+        "whole");
   if (!arguments.task.empty()) return run_as_task(options, arguments.task);
   if (options.part.is_worker()) {
     run_with_notes(options, *make_progress());

@@ -20,6 +20,7 @@ struct ScoreArguments : DrawingArguments {
   std::string run, name, scene, view, command;
   engines::ExternalFiles files;
   std::string meta;
+  std::string map_size;
   double timeout_s = 60.0;
   bool unaligned = false;
   bool json = false;
@@ -108,7 +109,8 @@ void keep_scene(options::RunOptions& options, const std::string& scene) {
 void check_arguments(const ScoreArguments& arguments) {
   const engines::ExternalFiles& files = arguments.files;
   const bool has_files =
-      !(files.layers + files.lit + files.unlit + files.visibility + files.depth + files.shadow_map).empty();
+      !(files.layers + files.lit + files.unlit + files.visibility + files.depth + files.shadow_map + files.unbiased)
+           .empty();
   if (arguments.command.empty() && !has_files)
     fail(
         "score: give what was drawn: --layers F, or --lit F --unlit F, or --visibility F; or --command C, which draws");
@@ -120,8 +122,13 @@ void check_arguments(const ScoreArguments& arguments) {
 std::vector<Row> score_all(const ScoreArguments& arguments, const options::RunOptions& options,
                            options::Progress& progress) {
   engines::RunScorer scorer(options, progress);
-  engines::ScoreRequest request{arguments.name,     arguments.scene, arguments.view, arguments.files, {},
-                                arguments.unaligned};
+  engines::ScoreRequest request{.name = arguments.name,
+                                .scene = arguments.scene,
+                                .view = arguments.view,
+                                .files = arguments.files,
+                                .meta = {},
+                                .unaligned = arguments.unaligned};
+  if (!arguments.map_size.empty()) request.map_size = parse_count(arguments.map_size, "--map-size");
   if (!arguments.meta.empty()) request.meta = arguments.meta;
   if (!arguments.command.empty())
     return engines::run_engines(scorer, {{arguments.name, arguments.command, "."}}, request, arguments.timeout_s,
@@ -134,7 +141,14 @@ std::vector<Row> score_all(const ScoreArguments& arguments, const options::RunOp
 int score(const ScoreArguments& arguments) {
   check_arguments(arguments);
   const std::filesystem::path folder = run_folder(arguments.run);
-  options::RunOptions options = reread_options(folder, arguments);
+  options::RunOptions options;
+  try {
+    options = reread_options(folder, arguments);
+  } catch (const Error& error) {
+    throw Error(error.kind(),
+                error.message() + "; the run's command is read again: score in the folder in which it was started",
+                error.where());
+  }
   keep_scene(options, arguments.scene);
   const std::vector<Row> rows =
       work_with_progress(folder, [&](options::Progress& progress) { return score_all(arguments, options, progress); });
@@ -176,6 +190,12 @@ Command make_score_command() {
   command.add("--lit", &a->files.lit, "the light with its shadow, without ambient light").names(ValueKind::kFile);
   command.add("--unlit", &a->files.unlit, "the same without the shadow").names(ValueKind::kFile);
   command.add("--visibility", &a->files.visibility, "in place of both: 1 lit, 0 in shadow").names(ValueKind::kFile);
+  command
+      .add("--unbiased", &a->files.unbiased,
+           "visibility as it draws it without any bias, by which a contact gap is told from its blur")
+      .names(ValueKind::kFile);
+  command.add("--map-size", &a->map_size,
+              "of a run of several the map beside whose filters the row stands (default: first)");
   command.add("--depth", &a->files.depth, "metres along the camera's axis, by which a shift is found best")
       .names(ValueKind::kFile);
   command

@@ -90,6 +90,10 @@ submit::JobPlan make_job_plan(const options::RunOptions& options, const SubmitAr
 int submit(const CommandLine& line, SubmitArguments& a) {
   if (a.grids() > 0) fail("--grids shows all filters of a view, and a task has some of them; leave it out");
   const std::string title = apply_experiment(line, a);
+  if (!a.engines.empty())
+    fail(
+        "the experiment's [[engine]] tables are for 'run': leave them out, and score the finished sweep's renderers "
+        "there");
   a.grids() = -1;  // whatever the experiment says
   if (a.out.empty()) fail("--out: name a folder that all machines share");
   a.out = fs::absolute(a.out).lexically_normal().string();

@@ -220,11 +220,18 @@ void check_shift(const Alignment& found, std::vector<Finding>& findings) {
     findings.push_back({false, "whether it lies on our pixels is not known: give --depth, or --unlit"});
     return;
   }
-  const double length = glm::length(*found.shift);
-  if (length <= kWarnedShift) return;
+  const double length = glm::length(*found.shift), farthest = std::max(length, found.p99.value_or(0.0));
+  if (farthest <= kWarnedShift) return;
+  if (length < 0.5 * farthest) {
+    findings.push_back({farthest > kMostShift,
+                        fmt::format("it is scaled, turned or bent against ours: {:.2f} pixels apart at the 99th "
+                                    "percentile, and {:.2f} as a whole: another field of view, aspect or tilt",
+                                    farthest, length)});
+    return;
+  }
   const bool is_half = std::abs(length - 0.5) < 0.15 || std::abs(length - std::sqrt(0.5)) < 0.15;
   findings.push_back(
-      {length > kMostShift,
+      {farthest > kMostShift,
        fmt::format("it lies {:.2f} pixels right and {:.2f} down of ours, found from {}: {}", found.shift->x,
                    found.shift->y, found.by,
                    is_half ? "half a pixel, as where a picture is resampled, or pixels' corners are taken for their "

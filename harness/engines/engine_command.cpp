@@ -21,7 +21,7 @@ std::string last_line(std::string text) {
 /// Runs a command in its folder. Throws Error(kInput) where it does not do what it is to do.
 void draw(const options::Engine& engine, const std::filesystem::path& folder, double timeout_s) {
   const std::filesystem::path picture = folder / "picture.exr";
-  run::WorkerProcess process({"-c", fmt::format("cd \"$1\" && exec {} \"$2\" \"$3\"", engine.command), "sh",
+  run::WorkerProcess process({"-c", fmt::format("cd \"$1\" && {} \"$2\" \"$3\"", engine.command), "sh",
                               std::filesystem::absolute(engine.folder.empty() ? "." : engine.folder).string(),
                               (folder / "scene.json").string(), picture.string()},
                              {.program = "/bin/sh"});
@@ -48,6 +48,7 @@ std::vector<std::pair<records::CellRecord, std::vector<Finding>>> run_engines(
     options::Progress& progress) {
   std::vector<std::pair<records::CellRecord, std::vector<Finding>>> rows;
   std::vector<std::string> failures;
+  for (const options::Engine& engine : engines) scorer.check_name(engine.name);
   for (const RunScorer::Place& place : scorer.list_places()) {
     if ((!request.scene.empty() && place.scene != request.scene) ||
         (!request.view.empty() && place.view != request.view))
@@ -70,7 +71,10 @@ std::vector<std::pair<records::CellRecord, std::vector<Finding>>> run_engines(
           own.files.shadow_map = map.string();
         rows.push_back(scorer.score(own));
       } catch (const Error& error) {
-        if (error.kind() != ErrorKind::kInput) throw;
+        if (error.kind() != ErrorKind::kInput) {
+          if (!rows.empty()) scorer.finish();
+          throw;
+        }
         failures.push_back(fmt::format("{}, {}: {}", engine.name, place.scene, error.what()));
         progress.note("failed: " + failures.back());
       }

@@ -86,7 +86,7 @@ Json describe_layer(const scene::LightFrustum& layer) {
   for (const auto& [name, row, value] : {std::tuple("left", 0, -1.0), std::tuple("right_side", 0, 1.0),
                                          std::tuple("bottom", 1, -1.0), std::tuple("top", 1, 1.0)})
     json[name] = (value - clip[3][row]) / clip[row][row];
-  json["near"] = clip[3][2] / -clip[2][2];
+  json["near"] = clip[3][2] / clip[2][2];
   json["far"] = (1.0 - clip[3][2]) / -clip[2][2];
   return json;
 }

@@ -15,6 +15,7 @@ struct ExternalFiles {
   std::string unlit = {};
   std::string visibility = {};
   std::string depth = {};
+  std::string unbiased = {};
   std::string shadow_map = {};  ///< its own, of any size
 };
 
@@ -25,6 +26,7 @@ struct ExternalImages {
   std::optional<images::Image> visibility;  ///< 1 lit .. 0 blocked
   std::optional<images::Image> depth;       ///< metres along the camera's axis; 0 or not finite where nothing is
   std::string names;                        ///< of the files, for messages
+  std::optional<images::Image> unbiased;    ///< visibility as it is without any bias: what of a gap its filter makes
   std::optional<images::Image> shadow_map;  ///< as it is stored; rows from v = 1 down
 };
 

@@ -51,7 +51,7 @@ std::vector<double> look_up(const OwnMap& map, const truth::ReceiverImage& recei
     const double sign = change_along(map.map_from_world, at, -glm::dvec3(to_light_ws[i])).z >= 0.0 ? 1.0 : -1.0;
     constexpr double kRounding = 1e-6;  // of 24 bits, and of single precision on the way
     const double bias = plane_bias(map, at, glm::dvec3(receiver.normal_ws)) + kRounding;
-    lit[i] = sign * (p.z - stored) <= bias ? 1.0 : 0.0;
+    lit[i] = sign * (p.z - stored) > bias ? 0.0 : 1.0;  // what holds nothing blocks nothing
   }
   return lit;
 }

@@ -13,6 +13,7 @@
 #include "harness/engines/own_map.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/float_images.h"
 #include "harness/run/task_images.h"
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/configuration.h"
@@ -27,17 +28,6 @@ namespace {
 
 constexpr const char* kAnother = "another renderer drew it";
 constexpr std::size_t kLongestName = 60;
-
-void check_name(const std::string& name, const std::vector<records::CellRecord>& cells) {
-  if (name.empty() || name.size() > kLongestName ||
-      std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
-    throw Error(ErrorKind::kUsage, fmt::format("--name: '{}' is no name of a row: give 1 to {} characters on one line",
-                                               name, kLongestName));
-  for (const records::CellRecord& cell : cells)
-    if (!cell.external && cell.filter == name)
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("--name: '{}' is a filter of this run: give the row a name of its own", name));
-}
 
 /// A row of no filter: what it does not have is said.
 records::CellRecord make_external_record(const options::RunOptions& options, const measure::SceneTask& task,
@@ -95,6 +85,17 @@ RunScorer::RunScorer(const options::RunOptions& options, options::Progress& prog
   options_.attribution = false;
 }
 
+void RunScorer::check_name(const std::string& name) const {
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (name.empty() || name.size() > kLongestName || std::ranges::any_of(name, is_control))
+    throw Error(ErrorKind::kUsage, fmt::format("--name: '{}' is no name of a row: give 1 to {} characters on one line",
+                                               name, kLongestName));
+  for (const records::CellRecord& cell : results_.cells)
+    if (!cell.external && (cell.filter == name || cell.images.parts == name))
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("--name: '{}' is a filter of this run: give the row a name of its own", name));
+}
+
 std::vector<RunScorer::Place> RunScorer::list_places() const {
   std::vector<Place> places;
   for (const run::PlannedTask& task : plan_.tasks) {
@@ -105,7 +106,8 @@ std::vector<RunScorer::Place> RunScorer::list_places() const {
   return places;
 }
 
-const run::PlannedTask& RunScorer::find_task(const std::string& scene, const std::string& view) const {
+const run::PlannedTask& RunScorer::find_task(const std::string& scene, const std::string& view,
+                                             const options::PictureSize& size, int map_size) const {
   const std::vector<Place> places = list_places();
   std::vector<Place> chosen;
   std::vector<std::string> names;
@@ -119,9 +121,17 @@ const run::PlannedTask& RunScorer::find_task(const std::string& scene, const std
                             chosen.empty() ? "no scene" : "several views of", scene,
                             view.empty() ? "" : fmt::format(" with a view '{}'", view), fmt::join(names, ", ")));
   }
-  return *std::ranges::find_if(plan_.tasks, [&](const run::PlannedTask& task) {
-    return task.task.scene->name == chosen.front().scene && task.task.camera->name == chosen.front().view;
-  });
+  const auto is_of_place = [&](const run::PlannedTask& task) {
+    return task.task.scene->name == chosen.front().scene && task.task.camera->name == chosen.front().view &&
+           (map_size == 0 || task.task.map_size == map_size);
+  };
+  const auto is_of_size = [&](const run::PlannedTask& task) {
+    const options::RunOptions& framed = plan_.scenes[task.scene].options;
+    return is_of_place(task) && framed.width == size.width && framed.height == size.height;
+  };
+  if (const auto found = std::ranges::find_if(plan_.tasks, is_of_size); found != plan_.tasks.end()) return *found;
+  if (const auto found = std::ranges::find_if(plan_.tasks, is_of_place); found != plan_.tasks.end()) return *found;
+  throw Error(ErrorKind::kUsage, fmt::format("--map-size: the run has no map of {} texels a side", map_size));
 }
 
 measure::SceneAssets& RunScorer::assets_of(const run::PlannedTask& task) {
@@ -189,6 +199,24 @@ images::Image RunScorer::read_visibility(const records::CellRecord& cell) const 
   }
 }
 
+/// The scene, the settings or the program may have changed since the run.
+void RunScorer::require_same_truth(const run::PlannedTask& task, const images::Image& area) const {
+  const std::filesystem::path file = options_.out / run::exr_name(plan_.scenes[task.scene].options, task.task);
+  if (!std::filesystem::exists(file)) return;  // a run without grids does not keep it
+  const images::ExrFile kept = images::read_exr(file, [](const std::string& name) { return name == run::kTruthPart; });
+  if (kept.parts.empty()) return;
+  const images::Image& was = kept.parts.front().image;
+  const std::vector<std::uint8_t> all(area.texels.size(), 1);
+  constexpr double kRounding = 1e-4;  // another OpenGL's rounding moves a few receivers
+  if (was.texels.size() == area.texels.size() &&
+      metrics::measure_error(was.texels, area.texels, all).value_or(metrics::ErrorStats()).rmse < kRounding)
+    return;
+  fail_input(
+      "the truth of this scene is no longer the report's: the scene, the settings or the program have changed "
+      "since the run; run it again",
+      file.string());
+}
+
 void RunScorer::compare_with_peers(records::CellRecord& cell, const images::Image& visibility,
                                    const std::vector<std::uint8_t>& counts, const images::Image& truth) const {
   records::ExternalRecord& external = *cell.external;
@@ -227,8 +255,10 @@ void RunScorer::attribute(measure::MeasuredCell& cell, const images::Image& map,
 }
 
 std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const ScoreRequest& request) {
-  check_name(request.name, results_.cells);
-  const run::PlannedTask& task = find_task(request.scene, request.view);
+  check_name(request.name);
+  const ExternalImages drawn = read_external_images(request.files);
+  const images::Image& any = drawn.visibility ? *drawn.visibility : *drawn.lit;
+  const run::PlannedTask& task = find_task(request.scene, request.view, {any.width, any.height}, request.map_size);
   const run::PlannedScene& planned = plan_.scenes[task.scene];
   const Meta meta = request.meta ? read_meta(*request.meta) : Meta();
   if (!meta.truth.empty() && meta.truth != run::name_view(planned, *task.task.camera)) {
@@ -237,9 +267,9 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
                            task.task.scene->name, task.task.camera->name),
                request.meta->string());
   }
-  const ExternalImages drawn = read_external_images(request.files);
   const measure::SceneTruth& truth = assets_of(task).truth(*task.task.camera);
   if (!truth.absent.empty()) fail_input("there is nothing to score against: " + truth.absent, options_.out.string());
+  require_same_truth(task, truth.area);
   const OwnView own = describe_own_view(task);
   const CheckedImages checked = check_images(drawn, own);
   const auto refusal = std::ranges::find_if(checked.findings, &Finding::refuses);
@@ -250,6 +280,7 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   cell.label = request.name;
   cell.record = make_external_record(planned.options, task.task, request.name, meta.external);
   note_alignment(*cell.record.external, checked);
+  cell.record.external->truth = run::name_view(planned, *task.task.camera);
   cell.record.external->unaligned = refusal != checked.findings.end();
   for (const Finding& each : checked.findings)
     cell.record.warnings.push_back(fmt::format("{}, {}: {}", request.name, task.task.scene->name, each.text));
@@ -257,13 +288,17 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   cell.visibility = truth.receivers.to_image(checked.visibility.texels);
   cell.picture = shade(task, fill_few(checked.visibility, truth, checked.undefined));
   cell.flip = measure::score(cell.record, cell.visibility, {}, cell.picture, truth);
-  // Without bias all that touches what blocks it is dark: another renderer's picture without one is not there.
-  cell.unbiased = images::Image(cell.visibility.width, cell.visibility.height, 1);
+  cell.unbiased = drawn.unbiased ? truth.receivers.to_image(drawn.unbiased->texels)
+                                 : images::Image(cell.visibility.width, cell.visibility.height, 1);
   options::RunOptions traced = planned.options;
   traced.attribution = false;
   measure::CellAnalyser(renderer_, traced, task.task, assets_of(task), truth).analyse(cell);
   for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
     cell.record.absent[field] = kAnother;
+  if (!drawn.unbiased) {
+    cell.record.artefact.contact_gap.reset();
+    cell.record.absent["artefact.contact_gap"] = "its picture without bias is not known: give --unbiased";
+  }
   if (drawn.shadow_map) attribute(cell, *drawn.shadow_map, meta, task, truth);
   const auto inside = metrics::measure_error(cell.visibility.texels, truth.area.texels, find_inside(own, own.counts));
   if (inside) cell.record.external->inside_rmse = inside->rmse;
@@ -295,6 +330,12 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
 /// Puts a row behind the others of its place, or in the place of the one of its name.
 void RunScorer::keep(const records::CellRecord& cell) {
   records::write_cell(options_.out, cell);
+  std::erase_if(rows_, [&](const records::CellRecord& row) { return row.key == cell.key; });
+  rows_.push_back(cell);
+  insert(cell);
+}
+
+void RunScorer::insert(const records::CellRecord& cell) {
   std::vector<records::CellRecord>& cells = results_.cells;
   if (const auto known = std::ranges::find(cells, cell.key, &records::CellRecord::key); known != cells.end()) {
     *known = cell;
@@ -320,16 +361,16 @@ void RunScorer::draw_grid(const run::PlannedTask& task) {
     cell.record = record;
     cell.label = record.images.parts.value_or(record.filter);
     cell.visibility = read_visibility(record);
-    if (cell.visibility.empty()) return;  // a run without grids
-    cell.picture = shade(task, cell.visibility);
+    if (!cell.visibility.empty()) cell.picture = shade(task, cell.visibility);
   }
+  if (std::ranges::all_of(measured.cells, [](const auto& cell) { return cell.visibility.empty(); })) return;
   run::write_grid(planned.options, task.task, measured, assets_of(task).truth(*task.task.camera), results_.run.gl);
   for (const measure::MeasuredCell& cell : measured.cells)
     if (cell.record.external) keep(cell.record);
 }
 
 void RunScorer::export_place(const Place& place, const std::filesystem::path& folder) {
-  const run::PlannedTask& task = find_task(place.scene, place.view);
+  const run::PlannedTask& task = find_task(place.scene, place.view, {}, 0);
   const run::PlannedScene& planned = plan_.scenes[task.scene];
   nlohmann::ordered_json description = describe_view(planned, *task.task.camera);
   description["maps"].push_back(describe_map(planned, task.task.map_size,
@@ -339,6 +380,8 @@ void RunScorer::export_place(const Place& place, const std::filesystem::path& fo
 
 void RunScorer::finish() {
   const files::FolderLock lock(options_.out);
+  results_ = records::read_results(options_.out / "results.json");  // others may have scored meanwhile
+  for (const records::CellRecord& row : rows_) insert(row);
   if (options_.grids && options_.pictures)
     for (const run::PlannedTask* task : scored_) draw_grid(*task);
   std::vector<std::string> keys;

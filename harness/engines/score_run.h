@@ -21,6 +21,7 @@ struct ScoreRequest {
   std::string name;   ///< of the row
   std::string scene;  ///< of the run; empty: its only one
   std::string view;   ///< of the scene; empty: its only one
+  int map_size = 0;   ///< of the run's maps the one that it is filed under, texels; 0: the first
   ExternalFiles files;
   std::optional<std::filesystem::path> meta;  ///< a meta.json
   bool unaligned = false;                     ///< score what does not show our view all the same, and say so
@@ -48,6 +49,9 @@ class RunScorer {
   /// Error(kInput) for pictures that cannot be compared, or are found not to show our view.
   std::pair<records::CellRecord, std::vector<Finding>> score(const ScoreRequest& request);
 
+  /// Throws Error(kUsage) for what score() does not take as a name.
+  void check_name(const std::string& name) const;
+
   /// A scene and view of the run, to be drawn by others: writes <scene>.glb and scene.json.
   struct Place {
     std::string scene;
@@ -69,8 +73,11 @@ class RunScorer {
   run::RunPlan plan_;
   std::map<std::size_t, measure::SceneAssets> assets_;  ///< by planned scene
   std::vector<const run::PlannedTask*> scored_;         ///< tasks with new rows
+  std::vector<records::CellRecord> rows_;               ///< the new rows
 
-  const run::PlannedTask& find_task(const std::string& scene, const std::string& view) const;
+  const run::PlannedTask& find_task(const std::string& scene, const std::string& view, const options::PictureSize& size,
+                                    int map_size) const;
+  void require_same_truth(const run::PlannedTask& task, const images::Image& area) const;
   measure::SceneAssets& assets_of(const run::PlannedTask& task);
   OwnView describe_own_view(const run::PlannedTask& task);
   images::Image shade(const run::PlannedTask& task, const images::Image& visibility);
@@ -81,6 +88,7 @@ class RunScorer {
   void compare_with_peers(records::CellRecord& cell, const images::Image& visibility,
                           const std::vector<std::uint8_t>& counts, const images::Image& truth) const;
   void keep(const records::CellRecord& cell);
+  void insert(const records::CellRecord& cell);
   void draw_grid(const run::PlannedTask& task);
 };
 

@@ -41,7 +41,10 @@ class ExperimentReader {
     for (const TomlTable& table : root_.tables("filter")) experiment.filters.push_back(read_filter(table));
     for (const TomlTable& table : root_.tables("engine")) {
       table.require_known_keys({"name", "command"});
-      experiment.engines.push_back({table.string("name"), table.string("command"), folder_});
+      const std::string name = table.string("name");
+      if (std::ranges::count(experiment.engines, name, &Engine::name) > 0)
+        throw table.error("name", fmt::format("two [[engine]] are called '{}': their rows would be one", name));
+      experiment.engines.push_back({name, table.string("command"), folder_});
     }
     if (root_.has("filters") && !experiment.filters.empty())
       throw root_.error("filters", "'filters' and [[filter]] both name filters: keep one of them");

@@ -140,7 +140,9 @@ class Experiment {
     steps_.begin_report();
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
-    if (!options_.part.is_worker()) pages::write_report(options_.out, run_, list_report_keys(plan));
+    if (options_.part.is_worker()) return;
+    keep_rows(plan);
+    pages::write_report(options_.out, run_, list_report_keys(plan));
   }
 
   void count(const measure::SceneMeasurement& measured) {
@@ -216,13 +218,13 @@ class Experiment {
       return false;
     try {
       const records::Results results = records::read_results(file);
-      const auto is_current = [&](const std::string& key, const records::CellRecord& cell) {
+      const auto is_whole = [&](const std::string& key, const records::CellRecord& cell) {
         return records::to_json(records::read_cell(options_.out, key)) == records::to_json(cell);
       };
       const std::vector<std::string> keys = list_report_keys(plan);
       return is_same(results.run.experiment) && keys.size() == results.cells.size() &&
              std::ranges::all_of(results.cells, [&](const records::CellRecord& cell) {
-               return std::ranges::count(keys, cell.key) > 0 && is_current(cell.key, cell);
+               return std::ranges::count(keys, cell.key) > 0 && is_whole(cell.key, cell);
              });
     } catch (const Error&) {
       return false;
@@ -235,21 +237,57 @@ class Experiment {
     return keys;
   }
 
-  /// With the rows that other renderers have in the report, where their scene is still measured.
+  /// The rows that other renderers have in the report; none where it cannot be read.
+  std::vector<records::CellRecord> list_rows() const {
+    const std::filesystem::path file = options_.out / "results.json";
+    if (options_.part.is_worker() || !std::filesystem::exists(file)) return {};
+    try {
+      std::vector<records::CellRecord> rows = records::read_results(file).cells;
+      std::erase_if(rows, [&](const records::CellRecord& cell) {
+        return !cell.external || !std::filesystem::exists(records::cell_path(options_.out, cell.key));
+      });
+      return rows;
+    } catch (const Error&) {
+      return {};
+    }
+  }
+
+  /// Whether a row was scored against what is measured now.
+  static bool is_current(const RunPlan& plan, const records::CellRecord& row) {
+    return std::ranges::any_of(
+        plan.tasks,
+        [&](const PlannedTask& task) {
+          const PlannedScene& planned = plan.scenes[task.scene];
+          return task.task.scene->name == row.scene && task.task.camera->name == row.view &&
+                 task.task.map_size == row.map_size &&
+                 row.fit == scene::describe_fit(planned.options.fit) + (planned.options.snap ? " snapped" : "") &&
+                 name_view(planned, *task.task.camera) == row.external->truth;
+        });
+  }
+
+  /// With the rows of other renderers that are still scored against the same.
   std::vector<std::string> list_report_keys(const RunPlan& plan) const {
     std::vector<std::string> keys = list_keys(plan);
-    const std::filesystem::path file = options_.out / "results.json";
-    if (options_.part.is_worker() || !std::filesystem::exists(file)) return keys;
-    try {
-      for (const records::CellRecord& cell : records::read_results(file).cells)
-        if (cell.external && std::ranges::any_of(plan.tasks, [&](const PlannedTask& task) {
-              return task.task.scene->name == cell.scene && task.task.camera->name == cell.view;
-            }))
-          keys.push_back(cell.key);
-    } catch (const Error&) {
-      // A report that cannot be read has no rows to keep.
-    }
+    for (const records::CellRecord& row : list_rows())
+      if (is_current(plan, row)) keys.push_back(row.key);
     return keys;
+  }
+
+  /// The grids were drawn without them.
+  void keep_rows(const RunPlan& plan) {
+    for (records::CellRecord& row : list_rows()) {
+      if (!is_current(plan, row)) {
+        progress_.note(
+            fmt::format("{}, {}: this row of another renderer is dropped, for what it was scored against has "
+                        "changed; score it again",
+                        row.filter, row.scene));
+        continue;
+      }
+      if (!row.images.grid) continue;
+      row.images.grid.reset();
+      row.absent["images.grid"] = "the run drew the grid again; score the row again to have it there";
+      records::write_cell(options_.out, row);
+    }
   }
 
   void warn(const std::string& message) {

@@ -152,28 +152,38 @@ WorkerProcess::~WorkerProcess() {
   if (process_ > 0) end();
 }
 
+bool WorkerProcess::has_ended() const {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == process_;
+}
+
+/// The end of the pipe is no end of the process, which may have closed it; nor is it needed, where a child of it goes
+/// on.
 bool WorkerProcess::listen(Clock::time_point deadline) {
+  constexpr std::int64_t kLongestWait_ms = 50;
   std::array<char, 4096> buffer;
-  while (pipe_ >= 0) {
+  while (true) {
+    const bool ended = has_ended();
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    pollfd waiting{pipe_, POLLIN, 0};
-    if (poll(&waiting, 1, static_cast<int>(std::max<std::int64_t>(left, 0))) <= 0) {
-      if (left <= 0) return false;
-      continue;
+    const auto wait = std::clamp<std::int64_t>(ended ? 0 : left, 0, pipe_ >= 0 ? kLongestWait_ms : 1);
+    pollfd waiting{pipe_, POLLIN, 0};  // a pipe of -1 is left out
+    const int ready = poll(&waiting, 1, static_cast<int>(wait));
+    if (ready > 0) {
+      const ssize_t got = read(pipe_, buffer.data(), buffer.size());
+      if (got > 0) text_.append(buffer.data(), static_cast<std::size_t>(got));
+      if (got == 0 || (got < 0 && errno != EINTR)) close(std::exchange(pipe_, -1));
+    } else if (ended) {
+      return true;
+    } else if (left <= 0) {
+      return false;
     }
-    const ssize_t got = read(pipe_, buffer.data(), buffer.size());
-    if (got > 0) text_.append(buffer.data(), static_cast<std::size_t>(got));
-    if (got == 0 || (got < 0 && errno != EINTR)) close(std::exchange(pipe_, -1));
   }
-  return true;
 }
 
 WorkerOutcome WorkerProcess::end() {
-  const bool had_ended = pipe_ < 0;
-  if (!had_ended) {
-    kill(-process_, SIGKILL);
-    close(std::exchange(pipe_, -1));
-  }
+  const bool had_ended = has_ended();
+  kill(-process_, SIGKILL);  // what it started goes, too
+  if (pipe_ >= 0) close(std::exchange(pipe_, -1));
   int status = 0;
   while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }

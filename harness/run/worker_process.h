@@ -47,6 +47,8 @@ class WorkerProcess {
   WorkerOutcome end();
 
  private:
+  bool has_ended() const;
+
   pid_t process_ = -1;  ///< -1: none that could still be killed
   int pipe_ = -1;       ///< its standard error; -1: closed
   std::string text_;

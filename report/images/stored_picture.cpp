@@ -105,7 +105,11 @@ bool is_srgb(const OIIO::ImageSpec& spec) {
 StoredPicture read_part(OIIO::ImageInput& input, int part, const std::string& where) {
   const OIIO::ImageSpec spec = input.spec(part);
   check(spec, where);
-  StoredPicture picture{Image(spec.width, spec.height, spec.nchannels), find_alpha(spec), is_srgb(spec), spec.x,
+  StoredPicture picture{Image(spec.width, spec.height, spec.nchannels),
+                        find_alpha(spec),
+                        spec.channelnames,
+                        is_srgb(spec),
+                        spec.x,
                         spec.y};
   if (!input.read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.image.texels.data()))
     fail(where, fmt::format("the picture is damaged ({})", make_line(input.geterror())));
@@ -120,6 +124,8 @@ StoredPicture choose_channels(const StoredPicture& whole, const OIIO::ImageSpec&
   chosen.image = Image(whole.image.width, whole.image.height, static_cast<int>(count));
   for (std::size_t i = 0; i < chosen.image.texels.size(); ++i)
     chosen.image.texels[i] = whole.image.texels[i / count * all + static_cast<std::size_t>(channels[i % count])];
+  chosen.channel_names.clear();
+  for (const int c : channels) chosen.channel_names.push_back(spec.channel_name(c));
   const auto alpha = std::ranges::find_if(channels, [&](int c) { return is_alpha(spec.channel_name(c)); });
   chosen.alpha_channel = alpha == channels.end() ? -1 : static_cast<int>(alpha - channels.begin());
   return chosen;

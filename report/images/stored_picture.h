@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "report/images/image.h"
 
@@ -11,8 +12,9 @@ namespace shadowbench::images {
 struct StoredPicture {
   Image image;             ///< integer codes as code / largest code; colours are not multiplied by alpha on the way
   int alpha_channel = -1;  ///< -1: there is none
-  bool srgb = false;       ///< integer codes that OpenImageIO calls sRGB; anything else is taken for linear
-  int origin_x = 0;        ///< where the data window begins
+  std::vector<std::string> channel_names = {};  ///< "R", "lit.R"
+  bool srgb = false;  ///< integer codes that OpenImageIO calls sRGB; anything else is taken for linear
+  int origin_x = 0;   ///< where the data window begins
   int origin_y = 0;
 };
 

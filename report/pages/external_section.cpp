@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "report/analysis/configuration.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -52,17 +54,27 @@ std::optional<document::Section> make_external_section(const std::vector<records
                             "nearest, and how far", "acne", "leak", "shift, pixels"},
                            {}};
   records::TextTable origins{{"row", "scene", "drawn by", "undefined receivers", "cost, as its user says"}, {}};
-  for (const records::CellRecord& cell : cells) {
-    if (!cell.external) continue;
+  std::vector<const records::CellRecord*> rows;
+  for (const records::CellRecord& cell : cells)
+    if (cell.external) rows.push_back(&cell);
+  const std::vector<analysis::Place> places = analysis::list_places(rows);
+  const auto varies = [&](auto member) {
+    return std::ranges::any_of(rows, [&](const auto* row) { return row->*member != rows.front()->*member; });
+  };
+  for (const records::CellRecord* row : rows) {
+    const records::CellRecord& cell = *row;
     const records::ExternalRecord& external = *cell.external;
-    table.rows.push_back({cell.filter, cell.scene, records::format_number(cell.error.rmse),
+    std::string place = analysis::describe_place(analysis::place_of(cell), places);
+    if (varies(&records::CellRecord::map_size)) place += fmt::format(", beside map {}", cell.map_size);
+    if (varies(&records::CellRecord::width)) place += fmt::format(", {} x {}", cell.width, cell.height);
+    table.rows.push_back({cell.filter, place, records::format_number(cell.error.rmse),
                           records::format_number(external.inside_rmse), describe_peers(cell),
                           external.nearest
                               ? fmt::format("{}, {}", *external.nearest, records::format_number(external.nearest_rmse))
                               : "–",
                           records::format_number(cell.artefact.acne), records::format_number(cell.artefact.leak),
                           format_shift(external)});
-    origins.rows.push_back({cell.filter, cell.scene, describe_engine(external), fmt::format("{}", external.undefined),
+    origins.rows.push_back({cell.filter, place, describe_engine(external), fmt::format("{}", external.undefined),
                             external.ms ? fmt::format("{} ms{}", records::format_number(external.ms),
                                                       external.timed ? ", " + *external.timed : "")
                                         : "–"});

@@ -129,6 +129,7 @@ void visit_fields(Is<ExternalRecord> auto& external, auto&& visit) {
   visit("fit", external.fit);
   visit("ms", external.ms, {.text = "what it costs, as its user says", .least = 0});
   visit("timed", external.timed, {.text = "how that was timed"});
+  visit("truth", external.truth, {.text = "names the scene, light, camera and size that it was scored against"});
   visit("undefined", external.undefined, {.text = "receivers without a visibility, which are left out"});
   visit("inside_rmse", external.inside_rmse, {.text = "over receivers that lie beside no silhouette", .least = 0});
   visit("aligned_by", external.aligned_by,

@@ -231,6 +231,7 @@ struct ExternalRecord {
   std::optional<std::string> fit;
   std::optional<double> ms;                ///< what it cost, as its user says
   std::optional<std::string> timed;        ///< how that was timed
+  std::string truth;                       ///< names the scene, light, camera and size that it was scored against
   std::int64_t undefined = 0;              ///< receivers that have no visibility: left out
   std::optional<double> inside_rmse;       ///< over receivers that lie beside no silhouette
   std::string aligned_by = "nothing";      ///< "depth", "coverage": what the shift was found from

@@ -66,9 +66,34 @@ TEST_F(Score, ARowStays_WhenTheRunIsRepeated_AndIsReplacedByItsName) {
   ASSERT_EQ(run("score out --name other --visibility 'out/cubes.exr#vsm.visibility'").exit_code, 0);
   make_run("--fresh");
   EXPECT_EQ(find_row("other")["external"]["nearest"], "vsm");
+  EXPECT_EQ(find_row("other")["images"]["grid"], nullptr);
   ASSERT_EQ(run("score out --name other --visibility 'out/cubes.exr#pcf2x2.visibility'").exit_code, 0);
   EXPECT_EQ(find_row("other")["external"]["nearest"], "pcf2x2");
   EXPECT_EQ(read_results()["cells"].size(), 4u);
+}
+
+TEST_F(Score, ARowOfAnotherLight_IsDropped_AndSaid) {
+  make_run();
+  ASSERT_EQ(run("score out --name other --visibility 'out/cubes.exr#vsm.visibility'").exit_code, 0);
+  const Outcome outcome =
+      run("run --grids --out out --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene cubes "
+          "--filters none,vsm --light 200,40");
+  EXPECT_THAT(outcome.err, HasSubstr("other, cubes: this row of another renderer is dropped"));
+  EXPECT_TRUE(find_row("other").is_null());
+}
+
+TEST_F(Score, ASceneThatHasChanged_IsNotScored) {
+  write("my.toml", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes/cubes.toml"));
+  ASSERT_EQ(
+      run("run --grids --out out --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene my.toml --filters none")
+          .exit_code,
+      0);
+  std::string text = read_text(folder() / "my.toml");
+  text.replace(text.find("elevation_deg"), 13, "elevation_deg = 20 #");
+  write("my.toml", text);
+  const Outcome outcome = run("score out --name x --visibility 'out/my.exr#none.visibility'");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("no longer the report's"));
 }
 
 TEST_F(Score, RegressTellsThatItMoved) {
@@ -180,6 +205,9 @@ TEST_F(Score, BadInput_IsOneSentence_AndLosesNothing) {
       {"score out --name x --command true", 3, "wrote no picture.exr"},
       {"score out --name x --command 'sleep 9 #' --cell-timeout 0.3", 3, "was killed (--cell-timeout)"},
       {"score out --name x --command true " + none, 2, "leave out the files"},
+      {"score out --name x --command 'sleep 9 2>/dev/null #' --cell-timeout 0.3", 3, "was killed (--cell-timeout)"},
+      {"score out --name x --command 'WORD=7 sh -c \"exit \\$WORD\" #'", 3, "exit code 7"},
+      {"score out --name x --map-size 64 " + none, 2, "no map of 64"},
       {"score nowhere --name x " + none, 3, "nowhere"},
   };
   for (const auto& [words, code, text] : cases) {

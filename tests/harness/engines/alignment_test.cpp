@@ -61,7 +61,8 @@ struct Drawing {
 };
 
 ExternalImages draw(const Drawing& drawing = {}) {
-  ExternalImages made{Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1), {}, Image(kWidth, kHeight, 1), "test", {}};
+  ExternalImages made{
+      Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1), {}, Image(kWidth, kHeight, 1), "test", {}, {}};
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const glm::dvec2 p = drawing.place({x + 0.5, y + 0.5});
@@ -200,6 +201,15 @@ TEST(Alignment, ADepthThatIsNone_IsNamed) {
   EXPECT_EQ(checked.alignment.by, "coverage");
 }
 
+TEST(Alignment, AZoomOfOnePercent_IsRefused_ThoughTheMiddleLiesRight) {
+  const auto place = [](const glm::dvec2& p) {
+    const glm::dvec2 half(0.5 * kWidth, 0.5 * kHeight);
+    return half + (p - half) * 1.015;
+  };
+  EXPECT_THAT(all_texts(check_images(draw({.place = place}), make_own())), HasSubstr("at the 99th percentile"));
+  EXPECT_THAT(all_texts(check_images(draw({.place = place}), make_own())), HasSubstr("REFUSED"));
+}
+
 TEST(Alignment, SwappedFilesAndMissingShadows_AreRefused) {
   ExternalImages swapped = draw();
   std::swap(swapped.lit, swapped.unlit);
@@ -258,13 +268,13 @@ std::string refusal_of(const ExternalImages& images) {
 
 TEST(Alignment, WhatCannotBeCompared_IsAnError) {
   const Image small(48, 27, 1), turned(kHeight, kWidth, 1), black(kWidth, kHeight, 1);
-  EXPECT_THAT(refusal_of({{}, {}, small, {}, "test", {}}),
+  EXPECT_THAT(refusal_of({{}, {}, small, {}, "test", {}, {}}),
               HasSubstr("48 x 27 pixels, and the run's picture has 96 x 54"));
-  EXPECT_THAT(refusal_of({{}, {}, turned, {}, "test", {}}), HasSubstr("exchanged"));
-  EXPECT_THAT(refusal_of({black, black, {}, {}, "test", {}}), HasSubstr("black at every receiver"));
+  EXPECT_THAT(refusal_of({{}, {}, turned, {}, "test", {}, {}}), HasSubstr("exchanged"));
+  EXPECT_THAT(refusal_of({black, black, {}, {}, "test", {}, {}}), HasSubstr("black at every receiver"));
   Image nothing = black;
   std::ranges::fill(nothing.texels, std::numeric_limits<float>::infinity());
-  EXPECT_THAT(refusal_of({{}, {}, nothing, {}, "test", {}}), HasSubstr("no receiver has a visibility"));
+  EXPECT_THAT(refusal_of({{}, {}, nothing, {}, "test", {}, {}}), HasSubstr("no receiver has a visibility"));
 }
 
 }  // namespace
