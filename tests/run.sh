@@ -5,4 +5,5 @@ cd "$(dirname "$0")/.."
 harness/setup.sh --tests
 cmake --preset tests
 cmake --build --preset tests
-exec xvfb-run -a ctest --preset tests "$@"
+# An X server that is reset whenever its last window is closed refuses whoever comes at that moment.
+exec xvfb-run -a -s "-screen 0 1280x1024x24 -nolisten tcp -noreset" ctest --preset tests "$@"
