@@ -25,8 +25,7 @@ Command make_export_command() {
   Command command{"export", "Write scenes for other renderers: a .glb of each, and where its light's map lies"};
   command.about =
       "Writes OUT/<scene>/<scene>.glb with camera and light, and scene.json with the picture's size and the window of "
-      "the "
-      "light's map. What another renderer draws of it becomes a row of a report with 'score'. 'run --scene "
+      "the light's map. What another renderer draws of it becomes a row of a report with 'score'. 'run --scene "
       "OUT/<scene>/<scene>.glb' measures the same scene.";
   auto a = std::make_shared<RunArguments>();
   command

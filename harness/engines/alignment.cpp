@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "harness/engines/light_checks.h"
+#include "report/records/format.h"
 
 namespace shadowbench::engines {
 namespace {
@@ -116,10 +117,10 @@ Alignment align_by_depth(const Image& depth, const OwnView& own, std::vector<Fin
   ShiftFound fit = find_shift({ours, theirs, is_plane, kLeastShareOfDepth});
   if (fit.far > fit.distances.size()) {
     findings.push_back(
-        {false,
-         fmt::format("its depth is not that of our surfaces at {} of the pixels: metres along the "
-                     "camera's axis are wanted, positive, and no depth of a projection",
-                     percent(static_cast<double>(fit.far) / static_cast<double>(fit.far + fit.distances.size())))});
+        {false, fmt::format("its depth is not that of our surfaces at {} of the pixels: metres along the "
+                            "camera's axis are wanted, positive, and no depth of a projection",
+                            records::format_rate(static_cast<double>(fit.far) /
+                                                 static_cast<double>(fit.far + fit.distances.size())))});
     return {};
   }
   if (fit.distances.empty()) return {};
@@ -208,11 +209,11 @@ void check_orientation(const std::array<Mask, 2>& coverage, int width, int heigh
   }
   if (least < kMuchLess * apart)
     findings.push_back({true, fmt::format("{} of the pixels show something else than ours: {} (then {})",
-                                          percent(apart), cause, percent(least))});
+                                          records::format_rate(apart), cause, records::format_rate(least))});
   else if (apart > kMost)
     findings.push_back({true, fmt::format("{} of the pixels show something else than ours: the camera, the model or "
                                           "the light's direction is another one",
-                                          percent(apart))});
+                                          records::format_rate(apart))});
 }
 
 void check_shift(const Alignment& found, std::vector<Finding>& findings) {
@@ -267,7 +268,7 @@ Image make_visibility(const ExternalImages& images, const OwnView& own, std::vec
   else if (brighter > kFew * receivers)
     findings.push_back({false, fmt::format("lit is brighter than unlit at {} of the receivers: tone mapping, other "
                                            "light or noise is in the pictures",
-                                           percent(brighter / receivers))});
+                                           records::format_rate(brighter / receivers))});
   return visibility;
 }
 
@@ -299,7 +300,7 @@ CheckedImages check_images(const ExternalImages& images, const OwnView& own) {
   if (share > kMany)
     checked.findings.push_back({false, fmt::format("{} of the receivers have no visibility (NaN, or unlit is 0): they "
                                                    "are left out",
-                                                   percent(share))});
+                                                   records::format_rate(share))});
   const std::array<Mask, 2> coverage = find_coverage(images, own);
   if (!coverage[0].empty()) {
     check_orientation(coverage, any.width, any.height, checked.findings);

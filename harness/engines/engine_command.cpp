@@ -49,7 +49,7 @@ std::vector<std::pair<records::CellRecord, std::vector<Finding>>> run_engines(
   std::vector<std::pair<records::CellRecord, std::vector<Finding>>> rows;
   std::vector<std::string> failures;
   for (const options::Engine& engine : engines) scorer.check_name(engine.name);
-  for (const RunScorer::Place& place : scorer.list_places()) {
+  for (const analysis::Place& place : scorer.list_places()) {
     if ((!request.scene.empty() && place.scene != request.scene) ||
         (!request.view.empty() && place.view != request.view))
       continue;

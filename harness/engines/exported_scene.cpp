@@ -131,20 +131,24 @@ std::vector<std::filesystem::path> export_scenes(const options::RunOptions& opti
   truth::TruthCache cache(options.cache, [&](const std::string& message) { progress.note("warning: " + message); });
   const run::RunPlan plan = run::make_plan(options, renderer.context->info().renderer);
   std::vector<std::filesystem::path> folders;
-  std::map<std::filesystem::path, Json> descriptions;
+  std::map<std::filesystem::path, std::pair<const run::PlannedTask*, Json>> scenes;
   for (const run::PlannedTask& each : plan.tasks) {
     const run::PlannedScene& planned = plan.scenes[each.scene];
     options::RunOptions named = planned.options;
     named.map_sizes.resize(1);
     named.fits.resize(1);
     const std::filesystem::path folder = options.out / run::task_stem(named, each.task);
-    const auto [place, is_new] = descriptions.try_emplace(folder);
-    if (is_new) place->second = describe_view(planned, *each.task.camera);
-    if (is_new) folders.push_back(folder);
+    if (!scenes.contains(folder)) {
+      scenes[folder] = {&each, describe_view(planned, *each.task.camera)};
+      folders.push_back(folder);
+    }
     measure::SceneAssets assets(renderer, planned.options, planned.scene, cache, measure::padding_texels(options));
-    place->second["maps"].push_back(
+    scenes[folder].second["maps"].push_back(
         describe_map(planned, each.task.map_size, assets.light_map(*each.task.camera, each.task.map_size).layers));
-    write_exported_scene(folder, planned, *each.task.camera, place->second);
+  }
+  for (const auto& [folder, scene] : scenes) {
+    const run::PlannedScene& planned = plan.scenes[scene.first->scene];
+    write_exported_scene(folder, planned, *scene.first->task.camera, scene.second);
     if (scene::find_cookie(planned.scene.light))
       progress.note(fmt::format("{}: the picture that the light shines through is left out", planned.scene.name));
   }

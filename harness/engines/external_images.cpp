@@ -5,8 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
-#include <utility>
+#include <map>
 #include <vector>
 
 #include "base/error.h"
@@ -15,14 +14,19 @@
 namespace shadowbench::engines {
 namespace {
 
-using Member = std::optional<images::Image> ExternalImages::*;
+/// A layer, and where its picture and the name of its own file stand.
+struct Layer {
+  std::string name;
+  std::optional<images::Image> ExternalImages::*image;
+  std::string ExternalFiles::*file;
+};
 
-const std::vector<std::pair<std::string, Member>>& list_layers() {
-  static const std::vector<std::pair<std::string, Member>> layers = {{"lit", &ExternalImages::lit},
-                                                                     {"unlit", &ExternalImages::unlit},
-                                                                     {"visibility", &ExternalImages::visibility},
-                                                                     {"depth", &ExternalImages::depth},
-                                                                     {"unbiased", &ExternalImages::unbiased}};
+const std::vector<Layer>& list_layers() {
+  static const std::vector<Layer> layers = {{"lit", &ExternalImages::lit, &ExternalFiles::lit},
+                                            {"unlit", &ExternalImages::unlit, &ExternalFiles::unlit},
+                                            {"visibility", &ExternalImages::visibility, &ExternalFiles::visibility},
+                                            {"depth", &ExternalImages::depth, &ExternalFiles::depth},
+                                            {"unbiased", &ExternalImages::unbiased, &ExternalFiles::unbiased}};
   return layers;
 }
 
@@ -39,8 +43,11 @@ std::vector<std::size_t> choose_channels(const images::StoredPicture& stored, co
   const std::vector<std::string> wanted =
       layer == "depth" ? std::vector<std::string>{"z", "depth"} : std::vector<std::string>{"r", "g", "b", "y"};
   std::vector<std::size_t> chosen, others;
+  const auto is_own = [&](const std::string& channel) { return channel.starts_with(layer + "."); };
+  const bool has_own = std::ranges::any_of(stored.channel_names, is_own);
   for (std::size_t c = 0; c < stored.channel_names.size(); ++c) {
     if (static_cast<int>(c) == stored.alpha_channel && stored.image.channels > 1) continue;
+    if (has_own && !is_own(stored.channel_names[c])) continue;  // of a file with several layers
     (std::ranges::count(wanted, ending(stored.channel_names[c])) > 0 ? chosen : others).push_back(c);
   }
   if (!chosen.empty()) return chosen;
@@ -70,17 +77,6 @@ images::Image to_grey(const images::StoredPicture& stored, const std::string& la
   return grey;
 }
 
-/// A file of its own, one of its parts, or one of its layers: FILE#lit.
-images::Image read_one(const std::string& file, const std::string& layer) {
-  const std::size_t mark = file.rfind('#');
-  if (mark != file.npos && std::filesystem::exists(file.substr(0, mark)))
-    if (auto layers = images::read_layers(file.substr(0, mark)); layers.contains(file.substr(mark + 1)))
-      return to_grey(layers.at(file.substr(mark + 1)), layer, file);
-  if (std::filesystem::is_regular_file(file))
-    if (auto layers = images::read_layers(file); layers.contains(layer)) return to_grey(layers.at(layer), layer, file);
-  return to_grey(images::read_stored_picture(file), layer, file);
-}
-
 void require_whole(const ExternalImages& read, const std::vector<std::string>& found) {
   if (read.visibility || (read.lit && read.unlit)) return;
   const std::string there = found.empty() ? "nothing of that" : fmt::format("{}", fmt::join(found, ", "));
@@ -92,12 +88,12 @@ void require_whole(const ExternalImages& read, const std::vector<std::string>& f
 
 void require_one_size(const ExternalImages& read) {
   const images::Image* first = nullptr;
-  for (const auto& [name, member] : list_layers()) {
-    const std::optional<images::Image>& image = read.*member;
+  for (const Layer& layer : list_layers()) {
+    const std::optional<images::Image>& image = read.*(layer.image);
     if (!image) continue;
     if (!first) first = &*image;
     if (image->width == first->width && image->height == first->height) continue;
-    fail_input(fmt::format("{} has {} x {} pixels, and another of them has {} x {}: write all of one size", name,
+    fail_input(fmt::format("{} has {} x {} pixels, and another of them has {} x {}: write all of one size", layer.name,
                            image->width, image->height, first->width, first->height),
                read.names);
   }
@@ -108,26 +104,23 @@ void require_one_size(const ExternalImages& read) {
 ExternalImages read_external_images(const ExternalFiles& files) {
   ExternalImages read;
   std::vector<std::string> found, names;
+  std::map<std::string, images::StoredPicture> stored;
   if (!files.layers.empty()) {
+    stored = images::read_layers(files.layers);
     names.push_back(files.layers);
-    const auto layers = images::read_layers(files.layers);
-    for (const auto& [name, layer] : layers) {
-      const auto known = std::ranges::find(list_layers(), name, &std::pair<std::string, Member>::first);
-      if (known == list_layers().end()) continue;
-      read.*(known->second) = to_grey(layer, name, files.layers + "#" + name);
-      found.push_back(name);
+  }
+  for (const Layer& layer : list_layers()) {
+    const std::string& file = files.*(layer.file);
+    if (!file.empty()) {
+      read.*(layer.image) = to_grey(images::read_stored_picture(file), layer.name, file);
+      names.push_back(file);
+    } else if (stored.contains(layer.name)) {
+      read.*(layer.image) = to_grey(stored.at(layer.name), layer.name, files.layers + "#" + layer.name);
     }
+    if (read.*(layer.image)) found.push_back(layer.name);
   }
-  for (const auto& [name, file] :
-       {std::pair("lit", &files.lit), std::pair("unlit", &files.unlit), std::pair("visibility", &files.visibility),
-        std::pair("depth", &files.depth), std::pair("unbiased", &files.unbiased)}) {
-    if (file->empty()) continue;
-    const auto known = std::ranges::find(list_layers(), name, &std::pair<std::string, Member>::first);
-    read.*(known->second) = read_one(*file, name);
-    found.emplace_back(name);
-    names.push_back(*file);
-  }
-  if (!files.shadow_map.empty()) read.shadow_map = read_one(files.shadow_map, "depth");
+  if (!files.shadow_map.empty())
+    read.shadow_map = to_grey(images::read_stored_picture(files.shadow_map), "depth", files.shadow_map);
   read.names = fmt::format("{}", fmt::join(names, ", "));
   require_whole(read, found);
   require_one_size(read);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "report/images/picture_io.h"
+#include "report/records/format.h"
 
 namespace shadowbench::engines {
 namespace {
@@ -72,7 +73,7 @@ void check_proportions(const LightPairs& pairs, std::vector<Finding>& findings) 
   findings.push_back({false, fmt::format("its light falls on our surfaces in other proportions, by {}: the light's "
                                          "direction is another one (mirrored, or as the way to the light), or the "
                                          "materials are not matt in the colours of the model",
-                                         percent(std::sqrt(rest / all)))});
+                                         records::format_rate(std::sqrt(rest / all)))});
 }
 
 /// Says where the light reaches other surfaces than ours.
@@ -88,7 +89,7 @@ void check_faces(const ExternalImages& images, const OwnView& own, std::vector<F
   if (!(apart > kMost * surfaces)) return;
   findings.push_back({false, fmt::format("{} of the surfaces are lit in one of the two pictures alone: the light's "
                                          "direction is another one (mirrored, or as the way to the light)",
-                                         percent(apart / surfaces))});
+                                         records::format_rate(apart / surfaces))});
 }
 
 /// Finds the direction from which a matt surface of our colours would have their light.
@@ -175,12 +176,10 @@ void check_samples(const LightPairs& pairs, const OwnView& own, std::vector<Find
       {false, fmt::format("{} of the pixels at silhouettes have other light than our surfaces there, and "
                           "hardly any inside: it is antialiased; switch multisampling off, or look at "
                           "the error without silhouettes",
-                          percent(odd[0] / all[0]))});
+                          records::format_rate(odd[0] / all[0]))});
 }
 
 }  // namespace
-
-std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
 std::optional<std::size_t> step(std::size_t pixel, int dx, int dy, int width, int height) {
   const int x = static_cast<int>(pixel) % width + dx, y = static_cast<int>(pixel) / width + dy;

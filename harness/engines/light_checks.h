@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "harness/engines/alignment.h"
@@ -12,9 +11,6 @@ namespace shadowbench::engines {
 /// Compares the light that another renderer's surfaces have without shadows with that of ours: values for a display in
 /// place of linear light, a light from elsewhere, antialiasing, few bits.
 void check_light(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings);
-
-/// "3.1 %".
-std::string percent(double share);
 
 /// The neighbour of a pixel; nothing beyond the picture's edge.
 std::optional<std::size_t> step(std::size_t pixel, int dx, int dy, int width, int height);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/content_hash.h"
 #include "base/error.h"
@@ -37,9 +36,8 @@ records::CellRecord make_external_record(const options::RunOptions& options, con
   records::CellRecord record = measure::make_record(options, task, request);
   record.external = std::move(external);
   record.key = records::cell_key(record);
-  for (const char* field :
-       {"time_ms", "ratio_to_none", "cost", "kernel", "kernel_radius_texels", "lights", "gpu", "coverage", "stability",
-        "map_scale", "nan", "excused", "attribution", "artefact.noise", "error.kernel_rmse"})
+  for (const char* field : {"time_ms", "ratio_to_none", "cost", "kernel", "kernel_radius_texels", "lights", "gpu",
+                            "coverage", "stability", "map_scale", "nan"})
     record.absent[field] = kAnother;
   return record;
 }
@@ -55,14 +53,24 @@ void note_alignment(records::ExternalRecord& external, const CheckedImages& chec
 }
 
 /// What pictures show where nothing is known: the truth, unless that would be much of them.
-images::Image fill_few(const images::Image& visibility, const measure::SceneTruth& truth, std::int64_t undefined) {
+images::Image fill_few(images::Image filled, const measure::SceneTruth& truth, std::int64_t undefined) {
   constexpr double kFew = 0.01;
   const auto receivers = static_cast<double>(std::ranges::count(truth.mask, 1));
-  images::Image filled = truth.receivers.to_image(visibility.texels);
   if (static_cast<double>(undefined) > kFew * receivers) return filled;
   for (std::size_t i = 0; i < filled.texels.size(); ++i)
     if (truth.mask[i] && !std::isfinite(filled.texels[i])) filled.texels[i] = truth.ratio.texels[i];
   return filled;
+}
+
+/// Whether two rows share a table and a grid: they differ in what drew them alone.
+bool stand_together(const records::CellRecord& a, const records::CellRecord& b) {
+  const auto surroundings = [](const records::CellRecord& cell) {
+    nlohmann::json settings = records::cell_settings(cell);
+    settings.erase("filter");
+    settings.erase("params");
+    return settings;
+  };
+  return surroundings(a) == surroundings(b);
 }
 
 void copy_shared_paths(records::ImagesRecord& to, const records::ImagesRecord& from) {
@@ -81,9 +89,7 @@ RunScorer::RunScorer(const options::RunOptions& options, options::Progress& prog
       results_(records::read_results(options.out / "results.json")),
       renderer_(measure::make_renderer(options.backend, options.resources)),
       cache_(options.cache, [this](const std::string& message) { progress_.note("warning: " + message); }),
-      plan_(run::make_plan(options_, renderer_.context->info().renderer)) {
-  options_.attribution = false;
-}
+      plan_(run::make_plan(options_, renderer_.context->info().renderer)) {}
 
 void RunScorer::check_name(const std::string& name) const {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
@@ -96,22 +102,21 @@ void RunScorer::check_name(const std::string& name) const {
                   fmt::format("--name: '{}' is a filter of this run: give the row a name of its own", name));
 }
 
-std::vector<RunScorer::Place> RunScorer::list_places() const {
-  std::vector<Place> places;
+std::vector<analysis::Place> RunScorer::list_places() const {
+  std::vector<analysis::Place> places;
   for (const run::PlannedTask& task : plan_.tasks) {
-    const Place place{task.task.scene->name, task.task.camera->name};
-    if (std::ranges::none_of(places, [&](const Place& p) { return p.scene == place.scene && p.view == place.view; }))
-      places.push_back(place);
+    const analysis::Place place{task.task.scene->name, task.task.camera->name};
+    if (std::ranges::count(places, place) == 0) places.push_back(place);
   }
   return places;
 }
 
 const run::PlannedTask& RunScorer::find_task(const std::string& scene, const std::string& view,
                                              const options::PictureSize& size, int map_size) const {
-  const std::vector<Place> places = list_places();
-  std::vector<Place> chosen;
+  const std::vector<analysis::Place> places = list_places();
+  std::vector<analysis::Place> chosen;
   std::vector<std::string> names;
-  for (const Place& place : places) {
+  for (const analysis::Place& place : places) {
     names.push_back(fmt::format("{} (view {})", place.scene, place.view));
     if ((scene.empty() || place.scene == scene) && (view.empty() || place.view == view)) chosen.push_back(place);
   }
@@ -175,15 +180,9 @@ OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
 }
 
 std::vector<const records::CellRecord*> RunScorer::list_peers(const records::CellRecord& cell) const {
-  auto settings = [](const records::CellRecord& each) {
-    nlohmann::json all = records::cell_settings(each);
-    all.erase("filter");
-    all.erase("params");
-    return all;
-  };
   std::vector<const records::CellRecord*> peers;
   for (const records::CellRecord& each : results_.cells)
-    if (each.key != cell.key && settings(each) == settings(cell)) peers.push_back(&each);
+    if (each.key != cell.key && stand_together(each, cell)) peers.push_back(&each);
   return peers;
 }
 
@@ -261,7 +260,8 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   const run::PlannedTask& task = find_task(request.scene, request.view, {any.width, any.height}, request.map_size);
   const run::PlannedScene& planned = plan_.scenes[task.scene];
   const Meta meta = request.meta ? read_meta(*request.meta) : Meta();
-  if (!meta.truth.empty() && meta.truth != run::name_view(planned, *task.task.camera)) {
+  const std::string view_name = run::name_view(planned, *task.task.camera);
+  if (!meta.truth.empty() && meta.truth != view_name) {
     fail_input(fmt::format("its 'truth' is not that of {}, view {}: it was drawn from the scene.json of another scene, "
                            "size or light; export this run's scene again",
                            task.task.scene->name, task.task.camera->name),
@@ -280,13 +280,13 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   cell.label = request.name;
   cell.record = make_external_record(planned.options, task.task, request.name, meta.external);
   note_alignment(*cell.record.external, checked);
-  cell.record.external->truth = run::name_view(planned, *task.task.camera);
+  cell.record.external->truth = view_name;
   cell.record.external->unaligned = refusal != checked.findings.end();
   for (const Finding& each : checked.findings)
     cell.record.warnings.push_back(fmt::format("{}, {}: {}", request.name, task.task.scene->name, each.text));
   cell.record.receivers = std::ranges::count(truth.mask, 1);
   cell.visibility = truth.receivers.to_image(checked.visibility.texels);
-  cell.picture = shade(task, fill_few(checked.visibility, truth, checked.undefined));
+  cell.picture = shade(task, fill_few(cell.visibility, truth, checked.undefined));
   cell.flip = measure::score(cell.record, cell.visibility, {}, cell.picture, truth);
   cell.unbiased = drawn.unbiased ? truth.receivers.to_image(drawn.unbiased->texels)
                                  : images::Image(cell.visibility.width, cell.visibility.height, 1);
@@ -323,7 +323,7 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
     cell.record.machine = peers.front()->machine;  // nothing of the row was timed: it is of no kind of its own
   }
   keep(cell.record);
-  if (std::ranges::count(scored_, &task) == 0) scored_.push_back(&task);
+  scored_.insert_or_assign(&task, cell.record);
   return {cell.record, checked.findings};
 }
 
@@ -341,22 +341,17 @@ void RunScorer::insert(const records::CellRecord& cell) {
     *known = cell;
     return;
   }
-  const auto last = std::find_if(cells.rbegin(), cells.rend(), [&](const records::CellRecord& each) {
-    return analysis::place_of(each) == analysis::place_of(cell) && each.map_size == cell.map_size;
-  });
+  const auto last = std::find_if(cells.rbegin(), cells.rend(),
+                                 [&](const records::CellRecord& each) { return stand_together(each, cell); });
   cells.insert(last.base(), cell);
 }
 
 /// With the pictures as they were: from the visibility that the run keeps.
-void RunScorer::draw_grid(const run::PlannedTask& task) {
+void RunScorer::draw_grid(const run::PlannedTask& task, const records::CellRecord& row) {
   const run::PlannedScene& planned = plan_.scenes[task.scene];
   measure::SceneMeasurement measured;
   for (const records::CellRecord& record : results_.cells) {
-    const bool is_of_task = std::ranges::count(task.keys, record.key) > 0;
-    const bool is_beside = record.external && analysis::place_of(record).scene == task.task.scene->name &&
-                           analysis::place_of(record).view == task.task.camera->name &&
-                           record.map_size == task.task.map_size;
-    if (!is_of_task && !is_beside) continue;
+    if (!stand_together(record, row)) continue;
     measure::MeasuredCell& cell = measured.cells.emplace_back();
     cell.record = record;
     cell.label = record.images.parts.value_or(record.filter);
@@ -369,7 +364,7 @@ void RunScorer::draw_grid(const run::PlannedTask& task) {
     if (cell.record.external) keep(cell.record);
 }
 
-void RunScorer::export_place(const Place& place, const std::filesystem::path& folder) {
+void RunScorer::export_place(const analysis::Place& place, const std::filesystem::path& folder) {
   const run::PlannedTask& task = find_task(place.scene, place.view, {}, 0);
   const run::PlannedScene& planned = plan_.scenes[task.scene];
   nlohmann::ordered_json description = describe_view(planned, *task.task.camera);
@@ -383,7 +378,7 @@ void RunScorer::finish() {
   results_ = records::read_results(options_.out / "results.json");  // others may have scored meanwhile
   for (const records::CellRecord& row : rows_) insert(row);
   if (options_.grids && options_.pictures)
-    for (const run::PlannedTask* task : scored_) draw_grid(*task);
+    for (const auto& [task, row] : scored_) draw_grid(*task, row);
   std::vector<std::string> keys;
   for (const records::CellRecord& cell : results_.cells) keys.push_back(cell.key);
   pages::write_report(options_.out, results_.run, keys);

@@ -12,6 +12,7 @@
 #include "harness/measure/scene_assets.h"
 #include "harness/options/progress.h"
 #include "harness/run/run_plan.h"
+#include "report/analysis/configuration.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::engines {
@@ -52,14 +53,11 @@ class RunScorer {
   /// Throws Error(kUsage) for what score() does not take as a name.
   void check_name(const std::string& name) const;
 
-  /// A scene and view of the run, to be drawn by others: writes <scene>.glb and scene.json.
-  struct Place {
-    std::string scene;
-    std::string view;
-  };
   const std::filesystem::path& folder() const { return options_.out; }
-  std::vector<Place> list_places() const;
-  void export_place(const Place& place, const std::filesystem::path& folder);
+
+  /// The scenes of the run with their views; and one of them to be drawn by others: <scene>.glb and scene.json.
+  std::vector<analysis::Place> list_places() const;
+  void export_place(const analysis::Place& place, const std::filesystem::path& folder);
 
   /// Draws the grids again that have new rows, and writes the report.
   void finish();
@@ -71,9 +69,9 @@ class RunScorer {
   measure::Renderer renderer_;
   truth::TruthCache cache_;
   run::RunPlan plan_;
-  std::map<std::size_t, measure::SceneAssets> assets_;  ///< by planned scene
-  std::vector<const run::PlannedTask*> scored_;         ///< tasks with new rows
-  std::vector<records::CellRecord> rows_;               ///< the new rows
+  std::map<std::size_t, measure::SceneAssets> assets_;             ///< by planned scene
+  std::map<const run::PlannedTask*, records::CellRecord> scored_;  ///< tasks with new rows, and one of these
+  std::vector<records::CellRecord> rows_;                          ///< the new rows
 
   const run::PlannedTask& find_task(const std::string& scene, const std::string& view, const options::PictureSize& size,
                                     int map_size) const;
@@ -89,7 +87,7 @@ class RunScorer {
                           const std::vector<std::uint8_t>& counts, const images::Image& truth) const;
   void keep(const records::CellRecord& cell);
   void insert(const records::CellRecord& cell);
-  void draw_grid(const run::PlannedTask& task);
+  void draw_grid(const run::PlannedTask& task, const records::CellRecord& row);
 };
 
 }  // namespace shadowbench::engines

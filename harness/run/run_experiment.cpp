@@ -141,8 +141,7 @@ class Experiment {
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (options_.part.is_worker()) return;
-    keep_rows(plan);
-    pages::write_report(options_.out, run_, list_report_keys(plan));
+    pages::write_report(options_.out, run_, keep_rows(plan));
   }
 
   void count(const measure::SceneMeasurement& measured) {
@@ -221,7 +220,7 @@ class Experiment {
       const auto is_whole = [&](const std::string& key, const records::CellRecord& cell) {
         return records::to_json(records::read_cell(options_.out, key)) == records::to_json(cell);
       };
-      const std::vector<std::string> keys = list_report_keys(plan);
+      const std::vector<std::string> keys = list_report_keys(plan, results.cells);
       return is_same(results.run.experiment) && keys.size() == results.cells.size() &&
              std::ranges::all_of(results.cells, [&](const records::CellRecord& cell) {
                return std::ranges::count(keys, cell.key) > 0 && is_whole(cell.key, cell);
@@ -237,57 +236,52 @@ class Experiment {
     return keys;
   }
 
-  /// The rows that other renderers have in the report; none where it cannot be read.
-  std::vector<records::CellRecord> list_rows() const {
-    const std::filesystem::path file = options_.out / "results.json";
-    if (options_.part.is_worker() || !std::filesystem::exists(file)) return {};
-    try {
-      std::vector<records::CellRecord> rows = records::read_results(file).cells;
-      std::erase_if(rows, [&](const records::CellRecord& cell) {
-        return !cell.external || !std::filesystem::exists(records::cell_path(options_.out, cell.key));
-      });
-      return rows;
-    } catch (const Error&) {
-      return {};
-    }
-  }
-
-  /// Whether a row was scored against what is measured now.
+  /// Whether a row of another renderer was scored against what is measured now.
   static bool is_current(const RunPlan& plan, const records::CellRecord& row) {
     return std::ranges::any_of(
         plan.tasks,
         [&](const PlannedTask& task) {
           const PlannedScene& planned = plan.scenes[task.scene];
-          return task.task.scene->name == row.scene && task.task.camera->name == row.view &&
-                 task.task.map_size == row.map_size &&
-                 row.fit == scene::describe_fit(planned.options.fit) + (planned.options.snap ? " snapped" : "") &&
+          const records::CellRecord now = measure::make_record(planned.options, task.task, {});
+          return now.scene == row.scene && now.view == row.view && now.map_size == row.map_size && now.fit == row.fit &&
                  name_view(planned, *task.task.camera) == row.external->truth;
         });
   }
 
-  /// With the rows of other renderers that are still scored against the same.
-  std::vector<std::string> list_report_keys(const RunPlan& plan) const {
+  /// The plan's cells, and the rows of other renderers among those of a report that still belong there.
+  std::vector<std::string> list_report_keys(const RunPlan& plan, const std::vector<records::CellRecord>& cells) const {
     std::vector<std::string> keys = list_keys(plan);
-    for (const records::CellRecord& row : list_rows())
-      if (is_current(plan, row)) keys.push_back(row.key);
+    for (const records::CellRecord& cell : cells)
+      if (cell.external && std::filesystem::exists(records::cell_path(options_.out, cell.key)) &&
+          is_current(plan, cell))
+        keys.push_back(cell.key);
     return keys;
   }
 
-  /// The grids were drawn without them.
-  void keep_rows(const RunPlan& plan) {
-    for (records::CellRecord& row : list_rows()) {
-      if (!is_current(plan, row)) {
+  /// Gives these keys for the report that this one replaces, whose grids were drawn again without the rows.
+  std::vector<std::string> keep_rows(const RunPlan& plan) {
+    std::vector<records::CellRecord> rows;
+    try {
+      const std::filesystem::path file = options_.out / "results.json";
+      if (std::filesystem::exists(file)) rows = records::read_results(file).cells;
+    } catch (const Error&) {
+      // A report that cannot be read has no rows to keep.
+    }
+    std::erase_if(rows, [](const records::CellRecord& cell) { return !cell.external; });
+    const std::vector<std::string> keys = list_report_keys(plan, rows);
+    for (records::CellRecord& row : rows) {
+      if (std::ranges::count(keys, row.key) == 0) {
         progress_.note(
             fmt::format("{}, {}: this row of another renderer is dropped, for what it was scored against has "
                         "changed; score it again",
                         row.filter, row.scene));
-        continue;
+      } else if (row.images.grid) {
+        row.images.grid.reset();
+        row.absent["images.grid"] = "the run drew the grid again; score the row again to have it there";
+        records::write_cell(options_.out, row);
       }
-      if (!row.images.grid) continue;
-      row.images.grid.reset();
-      row.absent["images.grid"] = "the run drew the grid again; score the row again to have it there";
-      records::write_cell(options_.out, row);
     }
+    return keys;
   }
 
   void warn(const std::string& message) {

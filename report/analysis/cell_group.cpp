@@ -43,9 +43,12 @@ std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells
   return groups;
 }
 
-std::vector<records::CellRecord> list_own_cells(std::vector<records::CellRecord> cells) {
-  std::erase_if(cells, [](const records::CellRecord& cell) { return cell.external.has_value(); });
-  return cells;
+std::optional<std::vector<records::CellRecord>> leave_out_external(const std::vector<records::CellRecord>& cells) {
+  const auto is_external = [](const records::CellRecord& cell) { return cell.external.has_value(); };
+  if (std::ranges::none_of(cells, is_external)) return std::nullopt;
+  std::vector<records::CellRecord> own = cells;
+  std::erase_if(own, is_external);
+  return own;
 }
 
 std::optional<std::size_t> find_class(const records::CellRecord& cell) {

@@ -22,8 +22,9 @@ struct CellGroup {
 /// Groups cells by what may be compared, in the order in which each group first appears.
 std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells);
 
-/// The cells of the program's own filters: what other renderers drew has no cost here, and is in no trade.
-std::vector<records::CellRecord> list_own_cells(std::vector<records::CellRecord> cells);
+/// A copy of the cells without those that other renderers drew, which have no cost here, and are in no trade. Nothing
+/// where there are none.
+std::optional<std::vector<records::CellRecord>> leave_out_external(const std::vector<records::CellRecord>& cells);
 
 /// The class of a cell's kernel, an index into filters::width_classes(); empty where it has none.
 std::optional<std::size_t> find_class(const records::CellRecord& cell);

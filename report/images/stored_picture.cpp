@@ -69,11 +69,22 @@ std::vector<std::string> list_parts(OIIO::ImageInput& input) {
   return names;
 }
 
+/// The channels of a layer, those whose names begin with its own and a dot.
+std::vector<int> find_layer(const OIIO::ImageSpec& spec, const std::string& layer) {
+  std::vector<int> channels;
+  for (int c = 0; c < spec.nchannels; ++c)
+    if (std::string_view(spec.channel_name(c)).starts_with(layer + ".")) channels.push_back(c);
+  return channels;
+}
+
+/// A part, or the one that has a layer of that name.
 int find_part(OIIO::ImageInput& input, const PictureName& name) {
   if (!name.part) return 0;
   const std::vector<std::string> parts = list_parts(input);
   const auto found = std::find(parts.begin(), parts.end(), *name.part);
   if (found != parts.end()) return static_cast<int>(found - parts.begin());
+  for (int part = 0; part < static_cast<int>(parts.size()); ++part)
+    if (!find_layer(input.spec(part), *name.part).empty()) return part;
   fail(name.file, fmt::format("there is no part '{}'{}; parts: {}", *name.part, did_you_mean(*name.part, parts),
                               fmt::join(parts, ", ")));
 }
@@ -136,7 +147,11 @@ StoredPicture choose_channels(const StoredPicture& whole, const OIIO::ImageSpec&
 StoredPicture read_stored_picture(const std::string& name) {
   const PictureName parsed = parse_name(name);
   const auto input = open_file(parsed.file);
-  return read_part(*input, find_part(*input, parsed), name);
+  const int part = find_part(*input, parsed);
+  const OIIO::ImageSpec spec = input->spec(part);
+  StoredPicture whole = read_part(*input, part, name);
+  const bool is_part = !parsed.part || list_parts(*input)[static_cast<std::size_t>(part)] == *parsed.part;
+  return is_part ? whole : choose_channels(whole, spec, find_layer(spec, *parsed.part));
 }
 
 std::map<std::string, StoredPicture> read_layers(const std::string& file) {

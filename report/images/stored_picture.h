@@ -18,10 +18,10 @@ struct StoredPicture {
   int origin_y = 0;
 };
 
-/// Reads a picture that `name` names: FILE, or FILE#PART for one part of a file with several. A file of the whole name
-/// comes first, and FILE alone is its first part. A part without a name of its own goes by its number, from 0.
-/// Throws Error(kInput): no such file, unreadable, damaged, no such part (naming those there are), deep or volumetric.
-/// Cost: reads that part alone.
+/// Reads a picture that `name` names: FILE, or FILE#PART for one part of a file with several, or for one layer of a
+/// part (channels such as PART.R). A file of the whole name comes first, and FILE alone is its first part. A part
+/// without a name of its own goes by its number, from 0. Throws Error(kInput): no such file, unreadable, damaged, no
+/// such part (naming those there are), deep or volumetric. Cost: reads that part alone.
 StoredPicture read_stored_picture(const std::string& name);
 
 /// Reads all of a file's pictures by their layers' names: what stands before the last dot of its channels' names, or

@@ -296,7 +296,8 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   const analysis::AdviceRequest request = choose_request(cells);
   document::Page page{"Shadow filters compared", {make_answer_section(run, cells, request)}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
-  const std::vector<records::CellRecord> own = analysis::list_own_cells(cells);
+  const auto without_external = analysis::leave_out_external(cells);
+  const std::vector<records::CellRecord>& own = without_external ? *without_external : cells;
   if (const auto surprises = analysis::list_surprises(own); !surprises.empty())
     add({"surprises", "What surprises", {document::Sentences{{}, surprises}}});
   if (!run.warnings.empty()) add({"warnings", "Warnings", {document::Sentences{{}, run.warnings}}, true});

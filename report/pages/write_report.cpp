@@ -37,7 +37,8 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));
-  const std::vector<records::CellRecord> own = analysis::list_own_cells(cells);
+  const auto without_external = analysis::leave_out_external(cells);
+  const std::vector<records::CellRecord>& own = without_external ? *without_external : cells;
   const std::optional<Trade> trade = make_trade(own);
   if (trade && trade->has_fronts) {
     AtomicFile file(dir / "fronts.csv");

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/toml.h"
-#include "harness/scene/files/scene_extras.h"
+#include "harness/scene/files/mesh_file.h"
 
 namespace shadowbench::scene {
 

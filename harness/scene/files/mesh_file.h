@@ -9,10 +9,15 @@
 #include <vector>
 
 #include "base/input_file.h"
-#include "harness/scene/files/scene_extras.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
+
+/// What a model's file says of the scene as a whole, where it does.
+struct SceneExtras {
+  std::optional<std::string> title;
+  std::optional<glm::vec3> background;  ///< linear
+};
 
 /// What a .gltf, .glb or .obj file holds: geometry in world space and, in glTF files, perhaps cameras and lights. It
 /// is not checked yet.
