@@ -90,7 +90,13 @@ options::RunOptions reread_options(const std::filesystem::path& folder, const Sc
   program.commands = {run};
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
-  run_command_line(program, static_cast<int>(argv.size()), argv.data());
+  try {
+    run_command_line(program, static_cast<int>(argv.size()), argv.data());
+  } catch (const Error& error) {
+    throw Error(error.kind(),
+                error.message() + "; the run's command is read again: score in the folder in which it was started",
+                error.where());
+  }
   take_drawing_options(arguments, options);
   options.out = folder;
   return options;
@@ -141,14 +147,7 @@ std::vector<Row> score_all(const ScoreArguments& arguments, const options::RunOp
 int score(const ScoreArguments& arguments) {
   check_arguments(arguments);
   const std::filesystem::path folder = run_folder(arguments.run);
-  options::RunOptions options;
-  try {
-    options = reread_options(folder, arguments);
-  } catch (const Error& error) {
-    throw Error(error.kind(),
-                error.message() + "; the run's command is read again: score in the folder in which it was started",
-                error.where());
-  }
+  options::RunOptions options = reread_options(folder, arguments);
   keep_scene(options, arguments.scene);
   const std::vector<Row> rows =
       work_with_progress(folder, [&](options::Progress& progress) { return score_all(arguments, options, progress); });

@@ -83,10 +83,15 @@ int find_part(OIIO::ImageInput& input, const PictureName& name) {
   const std::vector<std::string> parts = list_parts(input);
   const auto found = std::find(parts.begin(), parts.end(), *name.part);
   if (found != parts.end()) return static_cast<int>(found - parts.begin());
-  for (int part = 0; part < static_cast<int>(parts.size()); ++part)
+  std::vector<std::string> known = parts;
+  for (int part = 0; part < static_cast<int>(parts.size()); ++part) {
     if (!find_layer(input.spec(part), *name.part).empty()) return part;
-  fail(name.file, fmt::format("there is no part '{}'{}; parts: {}", *name.part, did_you_mean(*name.part, parts),
-                              fmt::join(parts, ", ")));
+    for (const std::string& channel : input.spec(part).channelnames)
+      if (const std::size_t dot = channel.rfind('.'); dot != channel.npos) known.push_back(channel.substr(0, dot));
+  }
+  known.erase(std::unique(known.begin(), known.end()), known.end());  // channels of a layer stand together
+  fail(name.file, fmt::format("there is no part '{}'{}; parts: {}", *name.part, did_you_mean(*name.part, known),
+                              fmt::join(known, ", ")));
 }
 
 void check(const OIIO::ImageSpec& spec, const std::string& where) {
