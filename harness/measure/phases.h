@@ -3,7 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
+
+#include "reference/metrics/error_stats.h"
+#include "reference/metrics/flicker.h"
+#include "report/records/records.h"
 
 namespace shadowbench::measure {
 
@@ -19,5 +24,12 @@ std::size_t count_phases_of_group(std::size_t phases);
 /// Methods for Multiple Integration, SIAM Journal on Numerical Analysis 13(6); antithetic pairs: Hammersley and Morton
 /// 1956.
 std::vector<glm::dvec2> list_phase_shifts(int count, std::uint32_t seed);
+
+/// Notes the mean of every error over the phases, which come in groups of `group`, with the interval of its RMSE; the
+/// largest error is the largest of all.
+void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases, std::size_t group);
+
+/// Notes how much the image changes from phase to phase, and why it is not known where there is one phase.
+void note_flicker(records::CellRecord& record, const std::optional<metrics::Change>& change);
 
 }  // namespace shadowbench::measure

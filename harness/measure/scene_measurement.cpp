@@ -16,7 +16,6 @@
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
 #include "harness/measure/timing/many_lights_timing.h"
-#include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/shade_pass.h"
@@ -248,7 +247,7 @@ class SceneBench {
                                           .on_part = [&](double part) { listener_.advance(part / timings); }});
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
-      set_times(result.cells[i].record, times, i, reference, times.empties[empty.of_filter[i]]);
+      note_times(result.cells[i].record, times, {i, reference, empty.of_filter[i]});
       result.cells[i].empty_lookup = empty.passes[empty.of_filter[i]]->list_passes(0).front();
       result.cells[i].empty_lookup.name = "empty";
     }
@@ -301,26 +300,6 @@ class SceneBench {
       }
       listener_.advance(static_cast<double>(phase) / static_cast<double>(shifts.size() - 1));
     }
-  }
-
-  void set_times(records::CellRecord& record, const RoundTimes& rounds, std::size_t filter, std::size_t reference,
-                 const std::vector<double>& empty) const {
-    const FilterTimes &times = rounds.filters[filter], &unfiltered = rounds.filters[reference];
-    const std::vector<double> moving = add_moving(rounds.map, times);
-    const auto count = static_cast<std::ptrdiff_t>(times.lookup.size());
-    record.time_ms.map = summarise({rounds.map.begin(), rounds.map.begin() + count});
-    record.time_ms.lookup = summarise(times.lookup);
-    record.time_ms.empty = summarise({empty.begin(), empty.begin() + count});
-    record.time_ms.static_light = find_difference(times.lookup, empty);
-    record.time_ms.moving = find_difference(moving, empty);
-    record.time_ms.stopped = name_of(times.stopped);
-    if (times.prefilter.empty())
-      record.absent["time_ms.prefilter"] = "the filter reads the depth map itself";
-    else
-      record.time_ms.prefilter = summarise(times.prefilter);
-    record.ratio_to_none.lookup = find_ratio(times.lookup, unfiltered.lookup);
-    record.ratio_to_none.static_light = record.ratio_to_none.lookup;
-    record.ratio_to_none.moving = find_ratio(moving, add_moving(rounds.map, unfiltered));
   }
 };
 

@@ -8,7 +8,6 @@
 #include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
 #include "reference/metrics/error_stats.h"
-#include "reference/metrics/flicker.h"
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
 #include "report/records/absence.h"
@@ -39,46 +38,6 @@ std::string warn_of_weight(const records::CellRecord& record, double rmse) {
       "{}, view {}: the share of the light that is seen and that of its unshadowed light that arrives differ by an "
       "RMSE of {}; --truth-weight chooses which one counts",
       record.scene, record.view, records::format_number(rmse));
-}
-
-constexpr const char* kOnePhase = "one phase of the map's grid tells nothing of the others; see --phases";
-
-/// Notes the mean of every error over the phases, which come in groups; the largest error is the largest of all.
-void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases, std::size_t group) {
-  metrics::ErrorStats sum;
-  std::vector<double> replicates(phases.size() / group);
-  for (const metrics::ErrorStats& stats : phases) {
-    sum.rmse += stats.rmse;
-    sum.mae += stats.mae;
-    sum.p95 += stats.p95;
-    sum.mean += stats.mean;
-    sum.max = std::max(sum.max, stats.max);
-  }
-  for (std::size_t i = 0; i < replicates.size() * group; ++i)
-    replicates[i / group] += phases[i].rmse / static_cast<double>(group);
-  const auto count = static_cast<double>(phases.size());
-  record.error.rmse = sum.rmse / count;
-  record.error.mae = sum.mae / count;
-  record.error.p95 = sum.p95 / count;
-  record.error.max = sum.max;
-  record.error.mean = sum.mean / count;
-  record.phases = static_cast<std::int64_t>(phases.size());
-  const auto interval = metrics::find_mean_interval(replicates);
-  if (!interval) return;
-  record.rmse_ci95 = records::Interval{interval->low, interval->high};
-  record.rmse_replicates = std::move(replicates);
-}
-
-void note_flicker(records::CellRecord& record, const std::optional<metrics::Change>& change) {
-  for (const char* field : {"error.flicker", "error.flicker_ci95", "error.rmse_ci95", "error.rmse_replicates"})
-    if (!change) record.absent[field] = kOnePhase;
-  if (!change) return;
-  record.error.flicker = change->value;
-  if (change->reach)
-    record.flicker_ci95 =
-        records::Interval{std::max(0.0, change->value - *change->reach), change->value + *change->reach};
-  else
-    record.absent["error.flicker_ci95"] = "two phases have no interval; see --phases";
 }
 
 }  // namespace

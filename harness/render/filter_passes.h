@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harness/render/gbuffer.h"
-#include "harness/render/map_passes.h"
+#include "harness/render/own_passes.h"
 #include "harness/render/prefilter.h"
 
 namespace shadowbench::render {
@@ -124,7 +124,7 @@ class FilterPasses {
   int map_size_;
   Defines map_defines_;
   std::optional<Prefilter> prefilter_;
-  std::optional<MapPasses> own_;
+  std::optional<OwnPasses> own_;
   gl::Program lookup_;
   std::optional<gl::Texture> blue_noise_;  ///< for filters that read it
   gl::FullscreenTriangle triangle_;

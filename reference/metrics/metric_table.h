@@ -87,7 +87,7 @@ void visit_metric(const Metric& metric, Values& values, Visitor&& visit) {
       metric.member);
 }
 
-/// Makes the rows of the table of metrics, in metric_rows.cpp; metric_table() keeps them.
+/// Makes the rows of the table of metrics; metric_table() keeps them.
 std::vector<Metric> list_metric_rows();
 
 /// All metrics, in the order in which they are listed: the one list of metrics that there is.

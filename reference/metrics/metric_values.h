@@ -6,7 +6,7 @@
 namespace shadowbench::metrics {
 
 // What is measured of one cell (a scene, a view, a filter, its parameters and a map). What does not exist is empty.
-// The table of metrics says what each number is; a metric's member stands here, and its row in metric_rows.cpp.
+// The table of metrics says what each number is; a metric's member stands here, and its row in metric_table.cpp.
 
 /// What the units of lengths along the light are worth in a map.
 struct MapScaleRecord {

@@ -135,12 +135,13 @@ class Rounds {
   }
 };
 
-}  // namespace
-
+/// In records.
 std::string name_of(StopReason reason) {
   constexpr const char* kNames[] = {"rounds", "precise", "budget"};
   return kNames[static_cast<std::size_t>(reason)];
 }
+
+}  // namespace
 
 std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times) {
   std::vector<double> sum = times.lookup;
@@ -181,6 +182,26 @@ RoundTimes time_rounds(const DrawnFilters& drawn, const RoundPlan& plan) {
   for (const auto& empty : drawn.empties)
     timed.empties.push_back(make_timed(drawn.timer, {}, look_up_by(empty.get())).lookup);
   return run_rounds(timed, plan);
+}
+
+void note_times(records::CellRecord& record, const RoundTimes& rounds, const TimedCell& cell) {
+  const FilterTimes &times = rounds.filters[cell.filter], &unfiltered = rounds.filters[cell.reference];
+  const std::vector<double>& empty = rounds.empties[cell.empty];
+  const std::vector<double> moving = add_moving(rounds.map, times);
+  const auto count = static_cast<std::ptrdiff_t>(times.lookup.size());
+  record.time_ms.map = summarise({rounds.map.begin(), rounds.map.begin() + count});
+  record.time_ms.lookup = summarise(times.lookup);
+  record.time_ms.empty = summarise({empty.begin(), empty.begin() + count});
+  record.time_ms.static_light = find_difference(times.lookup, empty);
+  record.time_ms.moving = find_difference(moving, empty);
+  record.time_ms.stopped = name_of(times.stopped);
+  if (times.prefilter.empty())
+    record.absent["time_ms.prefilter"] = "the filter reads the depth map itself";
+  else
+    record.time_ms.prefilter = summarise(times.prefilter);
+  record.ratio_to_none.lookup = find_ratio(times.lookup, unfiltered.lookup);
+  record.ratio_to_none.static_light = record.ratio_to_none.lookup;
+  record.ratio_to_none.moving = find_ratio(moving, add_moving(rounds.map, unfiltered));
 }
 
 }  // namespace shadowbench::measure

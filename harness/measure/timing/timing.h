@@ -10,6 +10,7 @@
 #include "harness/gl/timer/timer.h"
 #include "harness/options/round_limits.h"
 #include "harness/render/filter_passes.h"
+#include "report/records/records.h"
 
 namespace shadowbench::measure {
 
@@ -22,9 +23,6 @@ enum class StopReason {
   kPrecise,  ///< the ratio's interval is as narrow as was asked for
   kBudget,   ///< the time is spent
 };
-
-/// Names a reason in records: "rounds", "precise" or "budget".
-std::string name_of(StopReason reason);
 
 /// Times of one filter, one entry per round it took part in, from the first on; milliseconds.
 struct FilterTimes {
@@ -95,5 +93,15 @@ RoundTimes time_rounds(const DrawnFilters& drawn, const RoundPlan& plan);
 
 /// Adds what a filter costs in a frame in which light or casters move: map, prefilter and lookup, round by round.
 std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes& times);
+
+/// Indices into RoundTimes: a filter, the one that ratios refer to, and the filter's empty lookup.
+struct TimedCell {
+  std::size_t filter = 0;
+  std::size_t reference = 0;
+  std::size_t empty = 0;
+};
+
+/// Notes what a cell costs: the medians of its passes, and its own times under a static and a moving light.
+void note_times(records::CellRecord& record, const RoundTimes& rounds, const TimedCell& cell);
 
 }  // namespace shadowbench::measure

@@ -4,7 +4,7 @@
 #include "tests/report/added_metric/added_metric.h"
 
 #define list_metric_rows list_project_rows
-#include "reference/metrics/metric_rows.cpp"
+#include "reference/metrics/metric_table.cpp"
 #undef list_metric_rows
 
 namespace shadowbench::metrics {

@@ -1,4 +1,4 @@
-#include "harness/render/map_passes.h"
+#include "harness/render/own_passes.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ std::string map_name(const PassSpec& spec) { return "map_" + spec.name; }
 
 }  // namespace
 
-MapPasses::MapPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
+OwnPasses::OwnPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
                      const LightSetup& light, const Defines& map_defines)
     : filter_(request.spec.path), map_size_(map_size) {
   for (const PassSpec& spec : request.spec.passes) {
@@ -41,7 +41,7 @@ MapPasses::MapPasses(ShaderLibrary& shaders, const filters::FilterRequest& reque
   retune(request, light);
 }
 
-int MapPasses::count_steps(const PassSpec& spec) const {
+int OwnPasses::count_steps(const PassSpec& spec) const {
   switch (spec.steps) {
     case PassSteps::kOnce: return 1;
     case PassSteps::kAxes: return 3;
@@ -59,12 +59,12 @@ int MapPasses::count_steps(const PassSpec& spec) const {
                          spec.name, texels));
 }
 
-void MapPasses::fail(const PassSpec& spec, const std::string& message) const {
+void OwnPasses::fail(const PassSpec& spec, const std::string& message) const {
   throw Error(ErrorKind::kFilter, message, fmt::format("{}:{}", filter_, spec.line));
 }
 
 /// The compiler knows what a pass reads: it keeps the samplers of no other maps.
-void MapPasses::check_reads(std::size_t pass) const {
+void OwnPasses::check_reads(std::size_t pass) const {
   for (std::size_t later = pass; later < passes_.size(); ++later) {
     const bool own = later == pass && passes_[pass].spec.steps != PassSteps::kOnce;
     if (own || !passes_[pass].program.has(map_name(passes_[later].spec))) continue;
@@ -74,14 +74,14 @@ void MapPasses::check_reads(std::size_t pass) const {
   }
 }
 
-void MapPasses::check_encode(const gl::Program& encode) const {
+void OwnPasses::check_encode(const gl::Program& encode) const {
   for (const Pass& pass : passes_) {
     if (!encode.has(map_name(pass.spec))) continue;
     fail(pass.spec, fmt::format("encode() reads the map '{}', which is not written yet", pass.spec.name));
   }
 }
 
-PassMap MapPasses::make_map(const PassSpec& spec) const {
+PassMap OwnPasses::make_map(const PassSpec& spec) const {
   const GLenum format = gl::parse_pixel_format(spec.store).internal_format;
   const bool levels = spec.steps == PassSteps::kLevels;
   const GLenum magnify = spec.is_integer() ? GL_NEAREST : GL_LINEAR;
@@ -97,29 +97,29 @@ PassMap MapPasses::make_map(const PassSpec& spec) const {
   return map;
 }
 
-std::shared_ptr<PassMaps> MapPasses::make_maps() const {
+std::shared_ptr<PassMaps> OwnPasses::make_maps() const {
   auto maps = std::make_shared<PassMaps>();
   for (const Pass& pass : passes_) maps->push_back(make_map(pass.spec));
   return maps;
 }
 
-void MapPasses::retune(const filters::FilterRequest& request, const LightSetup& light) {
+void OwnPasses::retune(const filters::FilterRequest& request, const LightSetup& light) {
   for (Pass& pass : passes_) {
     set_uniforms(pass.program, request, light);
     pass.program.set("map_texel_uv", 1.0f / static_cast<float>(map_size_));
   }
 }
 
-void MapPasses::turn_to(const LightSetup& light, std::shared_ptr<PassMaps> maps) {
+void OwnPasses::turn_to(const LightSetup& light, std::shared_ptr<PassMaps> maps) {
   for (Pass& pass : passes_) set_light(pass.program, light);
   maps_ = std::move(maps);
 }
 
-void MapPasses::bind() const {
+void OwnPasses::bind() const {
   for (std::size_t i = 0; i < passes_.size(); ++i) (*maps_)[i].texture.bind(kFirstPassUnit + static_cast<GLuint>(i));
 }
 
-void MapPasses::run(const ShadowMap& map, int layer, const Prefilter* encoded) {
+void OwnPasses::run(const ShadowMap& map, int layer, const Prefilter* encoded) {
   if (encoded) encoded->bind();
   bind();
   for (std::size_t i = 0; i < passes_.size(); ++i) {
@@ -131,7 +131,7 @@ void MapPasses::run(const ShadowMap& map, int layer, const Prefilter* encoded) {
   }
 }
 
-void MapPasses::draw(Pass& pass, gl::Framebuffer& target, int step) {
+void OwnPasses::draw(Pass& pass, gl::Framebuffer& target, int step) {
   const int strides = (pass.steps - 1) / 2;  // along each axis
   const bool is_prefix = pass.spec.steps == PassSteps::kPrefix;
   const bool along_v = step > strides;
@@ -147,7 +147,7 @@ void MapPasses::draw(Pass& pass, gl::Framebuffer& target, int step) {
 }
 
 /// Steps take turns between two maps, so that the last one writes to the map that is read.
-void MapPasses::run_steps(std::size_t i) {
+void OwnPasses::run_steps(std::size_t i) {
   PassMap& last = (*maps_)[i];
   const GLuint unit = kFirstPassUnit + static_cast<GLuint>(i);
   for (int step = 0; step < passes_[i].steps; ++step) {
@@ -158,7 +158,7 @@ void MapPasses::run_steps(std::size_t i) {
 }
 
 /// While a level is written only the ones before it can be read.
-void MapPasses::run_levels(std::size_t i) {
+void OwnPasses::run_levels(std::size_t i) {
   PassMap& map = (*maps_)[i];
   for (int level = 0; level < passes_[i].steps; ++level) {
     map.texture.set_last_level(std::max(level - 1, 0));
@@ -167,24 +167,24 @@ void MapPasses::run_levels(std::size_t i) {
   map.texture.set_last_level(passes_[i].steps - 1);
 }
 
-int MapPasses::passes() const {
+int OwnPasses::passes() const {
   int steps = 0;
   for (const Pass& pass : passes_) steps += pass.steps;
   return steps;
 }
 
-std::int64_t MapPasses::texels_written(const Pass& pass) const {
+std::int64_t OwnPasses::texels_written(const Pass& pass) const {
   const std::int64_t all = std::int64_t{1} * side(pass.spec) * side(pass.spec);
   return pass.spec.steps == PassSteps::kLevels ? (4 * all - 1) / 3 : all * pass.steps;
 }
 
-std::int64_t MapPasses::texels_written() const {
+std::int64_t OwnPasses::texels_written() const {
   std::int64_t texels = 0;
   for (const Pass& pass : passes_) texels += texels_written(pass);
   return texels;
 }
 
-std::vector<DrawnPass> MapPasses::list_passes() const {
+std::vector<DrawnPass> OwnPasses::list_passes() const {
   std::vector<DrawnPass> passes;
   for (const Pass& pass : passes_) {
     const gl::PixelFormat& format = gl::parse_pixel_format(pass.spec.store);
@@ -198,7 +198,7 @@ std::vector<DrawnPass> MapPasses::list_passes() const {
   return passes;
 }
 
-std::int64_t MapPasses::bytes(const gl::Program& reader) const {
+std::int64_t OwnPasses::bytes(const gl::Program& reader) const {
   std::int64_t bytes = 0;
   for (std::size_t i = 0; i < passes_.size(); ++i)
     if (reader.has(map_name(passes_[i].spec))) bytes += static_cast<std::int64_t>((*maps_)[i].texture.bytes());

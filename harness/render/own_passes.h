@@ -27,12 +27,12 @@ struct PassMap {
 using PassMaps = std::vector<PassMap>;
 
 /// The passes that a filter declares itself, as `[pass.NAME]`: they come after encode and blur, and before the lookup.
-class MapPasses {
+class OwnPasses {
  public:
   /// Throws Error(kFilter) with the line of the filter's file: GLSL that does not compile, a pass that reads what is
   /// only written after it, mip levels of a map whose side is no power of two, a format that this GL does not draw
   /// into.
-  MapPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
+  OwnPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
             const Defines& map_defines);
 
   /// Refuses an encode(), compiled as `encode`, that reads the map of a pass.
