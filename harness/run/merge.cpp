@@ -103,6 +103,7 @@ std::vector<std::string> list_files(const records::CellRecord& cell) {
        {&records::ImagesRecord::picture, &records::ImagesRecord::visibility, &records::ImagesRecord::depth_map,
         &records::ImagesRecord::grid, &records::ImagesRecord::exr, &records::ImagesRecord::values,
         &records::ImagesRecord::truth_picture, &records::ImagesRecord::truth_values,
+        &records::ImagesRecord::supersampled, &records::ImagesRecord::truth_supersampled,
         &records::ImagesRecord::texel_density, &records::ImagesRecord::texel_grid, &records::ImagesRecord::all_lights,
         &records::ImagesRecord::stability})
     if (cell.images.*member) files.push_back(*(cell.images.*member));

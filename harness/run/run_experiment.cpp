@@ -19,6 +19,7 @@
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
 #include "harness/run/run_progress.h"
+#include "harness/run/supersampled_pictures.h"
 #include "harness/run/task_run.h"
 #include "harness/run/time_forecast.h"
 #include "harness/scene/mesh_tools.h"
@@ -141,6 +142,7 @@ class Experiment {
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (options_.part.is_worker()) return;
+    if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, options_, plan, cache_);
     pages::write_report(options_.out, run_, keep_rows(plan));
   }
 

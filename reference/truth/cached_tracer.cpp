@@ -39,6 +39,12 @@ std::string name_grid(const MapGrid& grid) {
   return name;
 }
 
+std::string name_light(const AreaLight& light) {
+  return fmt::format("light {} at {} u {} v {}", static_cast<int>(light.shape()),
+                     name_vector(light.centre_direction(glm::dvec3(0.0))), name_vector(light.half_u()),
+                     name_vector(light.half_v()));
+}
+
 Layers to_layers(const TracedVisibility& traced) {
   return {traced.visibility,
           traced.standard_error,
@@ -92,10 +98,7 @@ Layers CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::st
 }
 
 ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLight& light) {
-  const std::string what = fmt::format("light {} at {} u {} v {}", static_cast<int>(light.shape()),
-                                       name_vector(light.centre_direction(glm::dvec3(0.0))),
-                                       name_vector(light.half_u()), name_vector(light.half_v()));
-  Layers layers = find_or_trace(receivers, what, kViewLayers, [&] {
+  Layers layers = find_or_trace(receivers, name_light(light), kViewLayers, [&] {
     const TracedVisibility area = trace_area(occluders(), receivers, light, settings_, samples(light));
     Layers traced = to_layers(area);
     traced.push_back(area.ratio);
@@ -109,6 +112,16 @@ ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLigh
   area.ratio = std::move(layers[kTracedLayers]);
   area.ratio_error = std::move(layers[kTracedLayers + 1]);
   return {std::move(area), std::move(hard), std::move(blockers)};
+}
+
+std::vector<float> CachedTracer::trace_light(const ReceiverImage& receivers, const AreaLight& light,
+                                             double standard_error) {
+  const auto trace = [&] {
+    TraceSettings rough = settings_;
+    rough.standard_error = standard_error;
+    return Layers{trace_area(occluders(), receivers, light, rough, samples(light)).ratio};
+  };
+  return find_or_trace(receivers, fmt::format("{} within {}", name_light(light), standard_error), 1, trace).front();
 }
 
 TracedVisibility CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::string& what,

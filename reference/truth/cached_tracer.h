@@ -43,6 +43,10 @@ class CachedTracer {
   /// Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
   ViewRays trace_view(const ReceiverImage& receivers, const AreaLight& light);
 
+  /// The share of an area light's light that arrives at each receiver, for pictures that are only looked at.
+  /// Cost: 64 rays for most receivers, at the edges of shadows as many as `standard_error` needs.
+  std::vector<float> trace_light(const ReceiverImage& receivers, const AreaLight& light, double standard_error);
+
   /// Cost: as trace_view().
   TracedVisibility trace_kernel(const ReceiverImage& receivers, const filters::Kernel& kernel, const MapGrid& grid);
 

@@ -12,6 +12,11 @@ const startPicture = (holder) => {
   const caption = figure.querySelector("figcaption") ?? element(figure, "figcaption");
   let shown = null;
   const button = addButton(figure, "Look closer", () => shadowbench.openViewer(shown));
+  let isSmooth = true;
+  const smooth = addButton(figure, "", () => {
+    isSmooth = !isSmooth;
+    show(shown.right, shown.place);
+  });
   const say = (text) => (message.textContent = text);
   const sayTruth = (text) => shown && shown.left === kTruth && (caption.firstChild.textContent = text);
   const live = startLivePicture({ figure, stage, slider, line, sayTruth, say });
@@ -19,15 +24,20 @@ const startPicture = (holder) => {
 
   const show = (index, place) => {
     const cell = cellAt(index, place);
-    const truth = run.truths[place]?.picture;
+    const measured = { picture: cell.picture, truth: run.truths[place]?.picture };
+    const { picture, truth } = cell.smooth && isSmooth ? cell.smooth : measured;
+    smooth.hidden = !cell.smooth;
+    smooth.textContent = `${cell.smooth?.samples} samples a pixel`;
+    smooth.title = "The errors are of one sample a pixel";
+    smooth.setAttribute("aria-pressed", isSmooth);
     const [wholeWidth] = run.configurations[index].size;
     const [x, y, width, height] = cell.part;
-    const hasBoth = Boolean(truth && cell.picture);
+    const hasBoth = Boolean(truth && picture);
     shown = { place, left: truth ? kTruth : index, right: index, layer: "picture", rect: { x, y, width, height } };
     stage.style.aspectRatio = `${width}/${height}`;
     stage.style.setProperty("--before", `${(100 * x) / wholeWidth}%`); // what the stage hides at its left
     stage.style.setProperty("--share", width / wholeWidth);
-    [truth, cell.picture].forEach((path, i) => {
+    [truth, picture].forEach((path, i) => {
       images[i].hidden = !path;
       if (path && images[i].getAttribute("src") !== path) images[i].src = path;
       images[i].alt = `${i === 0 ? "truth" : nameOf(index)} on ${run.places[place].title}`;
@@ -39,12 +49,12 @@ const startPicture = (holder) => {
     }
     stage.classList.toggle("single", !hasBoth);
     slider.hidden = line.hidden = !hasBoth;
-    stage.hidden = caption.hidden = button.hidden = !truth && !cell.picture;
+    stage.hidden = caption.hidden = button.hidden = !truth && !picture;
     const name = `${nameOf(index)} on ${run.places[place].title}`;
     slider.setAttribute("aria-label", `How much of the truth is seen beside ${name}`);
     caption.replaceChildren();
     for (const text of hasBoth ? ["truth", name] : [truth ? "truth" : name]) element(caption, "bdi", {}, text);
-    message.textContent = truth || cell.picture ? "" : "This run stored no pictures.";
+    message.textContent = truth || picture ? "" : "This run stored no pictures.";
     live.show(index, place, Boolean(hasBoth && cell.frames && run.truths[place].values));
   };
   images.forEach((image) =>

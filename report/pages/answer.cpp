@@ -63,18 +63,25 @@ document::Table make_table(const records::RunRecord& run, const std::vector<reco
   return table;
 }
 
-/// The picture to begin with: the fast one against the truth, on the scene where it differs most from it.
-std::optional<document::Split> make_picture(const analysis::Advice& advice) {
-  const analysis::Candidate& shown = advice.keeping.front();
+/// The cell whose picture differs most from the truth's; null where none has both.
+const records::CellRecord* find_worst_picture(const analysis::Configuration& configuration) {
   const records::CellRecord* worst = nullptr;
-  for (const records::CellRecord* cell : shown.configuration.cells)
+  for (const records::CellRecord* cell : configuration.cells)
     if (cell->images.picture && cell->images.truth_picture && cell->images.hardest && cell->error.flip &&
         (!worst || *cell->error.flip > *worst->error.flip))
       worst = cell;
+  return worst;
+}
+
+/// The picture to begin with: the fast one against the truth, on the scene where it differs most from it.
+std::optional<document::Split> make_picture(const analysis::Advice& advice) {
+  const analysis::Candidate& shown = advice.keeping.front();
+  const records::CellRecord* worst = find_worst_picture(shown.configuration);
   if (!worst) return std::nullopt;
   const std::string on = " on " + analysis::describe_place(analysis::place_of(*worst), advice.places);
-  return document::Split{{*worst->images.truth_picture, "truth" + on},
-                         {*worst->images.picture, shown.configuration.name + on},
+  const records::ImagesRecord& images = worst->images;
+  return document::Split{{images.truth_supersampled.value_or(*images.truth_picture), "truth" + on},
+                         {images.supersampled.value_or(*images.picture), shown.configuration.name + on},
                          worst->width,
                          worst->height,
                          choose_part(*worst)};
@@ -96,6 +103,16 @@ analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& c
   analysis::AdviceRequest request;
   if (const auto gpu = choose_gpu(cells); gpu && can_advise(cells)) request.cheapest = {analysis::CostKind::kGpu, *gpu};
   return request;
+}
+
+std::vector<const records::CellRecord*> list_first_pictures(const std::vector<records::CellRecord>& cells) {
+  std::vector<const records::CellRecord*> shown;
+  if (!can_advise(cells)) return shown;
+  const analysis::Advice advice = analysis::advise(cells, choose_request(cells));
+  if (advice.keeping.empty()) return shown;
+  for (const analysis::Pick& pick : analysis::list_picks(advice))
+    if (const auto* cell = find_worst_picture(advice.keeping[pick.index].configuration)) shown.push_back(cell);
+  return shown;
 }
 
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,

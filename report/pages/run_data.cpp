@@ -135,6 +135,10 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
           {"intervals", list_intervals(cell, frame)},
           {"cause", find_cause(cell)},
           {"picture", path_of(cell.images.picture)},
+          {"smooth", cell.images.samples ? json{{"samples", *cell.images.samples},
+                                                {"picture", path_of(cell.images.supersampled)},
+                                                {"truth", path_of(cell.images.truth_supersampled)}}
+                                         : json()},
           {"part", choose_part(cell)},
           {"frames", path_of(cell.images.frames)},
           {"values", path_of(cell.images.values)}};

@@ -145,6 +145,10 @@ struct ImagesRecord {
   std::optional<std::string> frames = std::nullopt;  ///< how cells that were drawn together are drawn, for the page
   std::optional<std::string> parts = std::nullopt;   ///< no path, but how the names of the cell's parts in `exr` begin
   std::optional<TileRecord> hardest = std::nullopt;  ///< where the picture's FLIP is largest
+  /// Of what the page shows first, both with several samples a pixel: the picture, and that of the truth.
+  std::optional<std::string> supersampled = std::nullopt;
+  std::optional<std::string> truth_supersampled = std::nullopt;
+  std::optional<std::int64_t> samples = std::nullopt;  ///< of each of their pixels
 };
 
 /// How wide the filter's kernel is.

@@ -1,0 +1,161 @@
+#include "harness/run/supersampled_pictures.h"
+
+#include <cstdint>
+#include <span>
+
+#include "base/content_hash.h"
+#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/measure/view_receivers.h"
+#include "harness/render/shade_pass.h"
+#include "harness/run/task_images.h"
+#include "report/files/file_name.h"
+#include "report/images/picture_io.h"
+#include "report/pages/answer.h"
+#include "report/records/json_io.h"
+
+namespace shadowbench::run {
+namespace {
+
+constexpr int kMostSamples = 1 << 23;  // of a whole picture: their G-buffer takes 268 MB
+constexpr double kStandardError =
+    0.02;                             // of the truth at a sample; that of a pixel's 16 is as small as it was measured
+constexpr float kSamePlane = 0.05f;   // how far off its pixel's plane a sample may lie, by its distance in the plane
+constexpr float kSameNormal = 0.99f;  // cosine
+
+/// Samples of a pixel along each axis; 1 where more would not fit.
+int choose_side(int width, int height) {
+  for (const int side : {4, 2})
+    if (std::int64_t{width} * height * side * side <= kMostSamples) return side;
+  return 1;
+}
+
+/// Means of squares of samples.
+images::Image reduce(const images::Image& samples, int side) {
+  images::Image picture(samples.width / side, samples.height / side, samples.channels);
+  const float weight = 1.0f / static_cast<float>(side * side);
+  for (int y = 0; y < samples.height; ++y)
+    for (int x = 0; x < samples.width; ++x)
+      for (int c = 0; c < samples.channels; ++c) picture.at(x / side, y / side)[c] += weight * samples.at(x, y)[c];
+  return picture;
+}
+
+bool is_same_surface(const truth::ReceiverPoint& pixel, const truth::ReceiverPoint& sample) {
+  const glm::vec3 way = sample.position_ws - pixel.position_ws;
+  return pixel.counts && glm::dot(pixel.normal_ws, sample.normal_ws) > kSameNormal &&
+         std::abs(glm::dot(way, pixel.normal_ws)) <= kSamePlane * glm::length(way);
+}
+
+/// One view through one map, drawn with many samples.
+class SampledView {
+ public:
+  SampledView(measure::Renderer& renderer, const PlannedScene& planned, const measure::SceneTask& task,
+              measure::SceneAssets& assets, int side)
+      : renderer_(renderer),
+        planned_(planned),
+        task_(task),
+        assets_(assets),
+        side_(side),
+        gbuffer_(side * planned.options.width, side * planned.options.height) {
+    assets.draw_view(gbuffer_, *task.camera);
+  }
+
+  images::Image draw(const filters::FilterRequest& request) {
+    measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
+    const auto passes = measure::make_filter_passes(renderer_, planned_.options, planned_.scene, light, request);
+    render::ImageTarget target("visibility", GL_R32F, gbuffer_.width(), gbuffer_.height());
+    passes->prefilter(light.map);
+    passes->lookup(gbuffer_, light.map, target);
+    return shade(target.texture(), planned_.options.range);
+  }
+
+  images::Image draw_truth() { return shade(render::upload_image(trace()), {}); }
+
+ private:
+  measure::Renderer& renderer_;
+  const PlannedScene& planned_;
+  const measure::SceneTask& task_;
+  measure::SceneAssets& assets_;
+  int side_;
+  render::GBuffer gbuffer_;
+
+  images::Image shade(const gl::Texture& visibility, const filters::RangeRule& range) {
+    return reduce(render::shade(renderer_.shaders, gbuffer_, visibility, planned_.scene, *task_.camera, range), side_);
+  }
+
+  /// The light that arrives at the samples. Where a pixel's rays and those of its neighbours all agreed, that is known
+  /// of the samples on the pixel's own surface.
+  images::Image trace() {
+    const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+    measure::ViewReceivers samples = measure::read_view_receivers(gbuffer_, planned_.scene.light);
+    std::vector<std::uint8_t> traced(samples.image.points.size());
+    const auto pixel_of = [&](std::size_t sample) {
+      const auto width = static_cast<std::size_t>(gbuffer_.width()), side = static_cast<std::size_t>(side_);
+      return sample / width / side * (width / side) + sample % width / side;
+    };
+    for (std::size_t i = 0; i < traced.size(); ++i) {
+      truth::ReceiverPoint& sample = samples.image.points[i];
+      const std::size_t pixel = pixel_of(i);
+      const bool is_known = truth.rays.area.rays[pixel] == truth::kRaysOfSettledPixel &&
+                            is_same_surface(truth.receivers.image.points[pixel], sample);
+      traced[i] = sample.counts && !is_known ? 1 : 0;
+    }
+    ContentHash hash;
+    hash.add(samples.image.content);
+    hash.add_values(std::span<const std::uint8_t>(traced));
+    truth::ReceiverImage open = samples.image;
+    for (std::size_t i = 0; i < traced.size(); ++i) open.points[i].counts = traced[i] != 0;
+    open.content = hash.name();
+    std::vector<float> arriving =
+        assets_.tracer().trace_light(open, scene::make_area_light(planned_.scene.light), kStandardError);
+    for (std::size_t i = 0; i < traced.size(); ++i)
+      if (traced[i] == 0 && samples.image.points[i].counts) arriving[i] = truth.ratio.texels[pixel_of(i)];
+    return samples.to_image(arriving);
+  }
+};
+
+/// The cells of a task among those that are shown, with their requests.
+std::vector<std::pair<records::CellRecord, filters::FilterRequest>> list_shown(
+    const options::RunOptions& options, const PlannedScene& planned, const PlannedTask& task,
+    const std::vector<const records::CellRecord*>& shown) {
+  std::vector<std::pair<records::CellRecord, filters::FilterRequest>> cells;
+  for (const filters::FilterRequest& request : options.filters) {
+    if (request.user_file) continue;  // drawn by a process of its own
+    const std::string key = measure::make_record(planned.options, task.task, request).key;
+    for (const records::CellRecord* cell : shown)
+      if (cell->key == key) cells.emplace_back(*cell, request);
+  }
+  return cells;
+}
+
+}  // namespace
+
+void draw_supersampled_pictures(measure::Renderer& renderer, const options::RunOptions& options, const RunPlan& plan,
+                                truth::TruthCache& cache) {
+  std::vector<records::CellRecord> cells;
+  for (const PlannedTask& task : plan.tasks)
+    for (const std::string& key : task.keys) cells.push_back(records::read_cell(options.out, key));
+  const gl::Recorder::Pause pause(renderer.recorder.get());
+  const std::vector<const records::CellRecord*> shown = pages::list_first_pictures(cells);
+  for (const PlannedTask& task : plan.tasks) {
+    const PlannedScene& planned = plan.scenes[task.scene];
+    const int side = choose_side(planned.options.width, planned.options.height);
+    auto drawn = list_shown(options, planned, task, shown);
+    if (side == 1 || drawn.empty()) continue;
+    measure::SceneAssets assets(renderer, planned.options, planned.scene, cache, measure::padding_texels(options));
+    SampledView view(renderer, planned, task.task, assets, side);
+    const std::string stem = "images/" + task_stem(planned.options, task.task);
+    const std::string truth = stem + ".truth.supersampled.png";
+    images::write_picture_png(options.out / truth, view.draw_truth());
+    for (auto& [cell, request] : drawn) {
+      const std::string picture = stem + "." + files::make_file_stem(request.label()) + ".supersampled.png";
+      images::write_picture_png(options.out / picture, view.draw(request));
+      cell.images.supersampled = picture;
+      cell.images.truth_supersampled = truth;
+      cell.images.samples = side * side;
+      records::write_cell(options.out, cell);
+    }
+  }
+}
+
+}  // namespace shadowbench::run

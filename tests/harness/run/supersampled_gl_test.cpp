@@ -1,0 +1,96 @@
+// The pictures that a page shows first, with 16 samples a pixel, are means of pictures with four times as many pixels
+// along each axis.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "harness/run/run_experiment.h"
+#include "report/images/picture_io.h"
+#include "report/records/json_io.h"
+
+namespace shadowbench::test {
+namespace {
+
+class NoProgress final : public options::Progress {
+  void begin(int, int) override {}
+  void show(int, const std::string&, const std::optional<options::WorkAhead>&) override {}
+  void note(const std::string&) override {}
+};
+
+struct MeasuredRun {
+  std::filesystem::path folder;
+  std::vector<records::CellRecord> cells;
+
+  const records::CellRecord& of(const std::string& filter) const {
+    return *std::ranges::find(cells, filter, &records::CellRecord::filter);
+  }
+  images::Image read(const std::optional<std::string>& path) const {
+    return images::read_picture(folder / path.value());
+  }
+};
+
+MeasuredRun measure_sized(const std::filesystem::path& folder, const images::Size& size) {
+  options::RunOptions options;
+  options.resources = options::find_resources();
+  options.sizes = {{size.width, size.height}};
+  options.rounds = options::RoundLimits::exactly(1);
+  const filters::Catalogue catalogue(options.resources.filters);
+  options.reference = catalogue.parse_requests("none").front();
+  options.filters = catalogue.parse_requests("none,pcf2x2,tent5x5");
+  options.scenes = {"ball"};
+  options.map_sizes = {256};
+  options.out = folder;
+  options.command = {"test"};
+  NoProgress progress;
+  run::run_experiment(options, progress);
+  return {folder, records::read_results(folder / "results.json").cells};
+}
+
+/// How far a picture is from the means in linear light of 4 x 4 pixels of a larger one: on average, and at most.
+std::pair<double, double> compare_means(const images::Image& small, const images::Image& large) {
+  double sum = 0.0, most = 0.0;
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x)
+      for (int c = 0; c < small.channels; ++c) {
+        double mean = 0.0;
+        for (int i = 0; i < 16; ++i)
+          mean += static_cast<double>(images::decode_srgb(large.at(4 * x + i % 4, 4 * y + i / 4)[c])) / 16.0;
+        const double gap =
+            std::abs(static_cast<double>(small.at(x, y)[c] - images::encode_srgb(static_cast<float>(mean))));
+        sum += gap;
+        most = std::max(most, gap);
+      }
+  return {sum / static_cast<double>(small.texels.size()), most};
+}
+
+TEST(Supersampled, Pictures_AreMeansOfLargerOnes) {
+  const std::filesystem::path root =
+      std::filesystem::temp_directory_path() / ("shadowbench.samples." + std::to_string(getpid()));
+  const MeasuredRun run = measure_sized(root / "run", {96, 54}), large = measure_sized(root / "large", {384, 216});
+  int shown = 0;
+  for (const records::CellRecord& cell : run.cells) {
+    EXPECT_EQ(cell.images.supersampled.has_value(), cell.images.samples.has_value());
+    if (!cell.images.supersampled) continue;
+    SCOPED_TRACE(cell.filter);
+    ++shown;
+    EXPECT_EQ(cell.images.samples, 16);
+    const auto [mean, most] =
+        compare_means(run.read(cell.images.supersampled), large.read(large.of(cell.filter).images.picture));
+    EXPECT_LT(most, 0.01) << "rounding to 8 bits of both";
+    const auto [truth_mean, truth_most] =
+        compare_means(run.read(cell.images.truth_supersampled), large.read(cell.images.truth_picture));
+    EXPECT_LT(truth_mean, 0.001);
+    EXPECT_LT(truth_most, 0.05) << "rays are random, and fewer for each sample";
+    const auto [measured_mean, measured_most] =
+        compare_means(run.read(cell.images.picture), large.read(large.of(cell.filter).images.picture));
+    EXPECT_GT(measured_mean, 4.0 * mean) << "one sample a pixel is another picture";
+    EXPECT_GT(measured_most, 0.1);
+  }
+  EXPECT_GT(shown, 0);
+  std::filesystem::remove_all(root);
+}
+
+}  // namespace
+}  // namespace shadowbench::test
