@@ -6,6 +6,7 @@
 #include <set>
 
 #include "report/analysis/extremes.h"
+#include "report/pages/engine_bias.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv_tables.h"
 
@@ -312,6 +313,7 @@ document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::
 
 document::Page make_bias_page(const records::BiasSweepRecord& sweep) {
   document::Page page{"Depth bias: acne against contact", {make_bias_answer(sweep)}, {}};
+  page.sections.push_back(make_engine_section(sweep));
   for (const records::BiasModeRecord& mode : sweep.modes) page.sections.push_back(make_mode_section(mode, sweep));
   page.sections.push_back(
       {"data",

@@ -181,14 +181,16 @@ void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
         path("relative to the report folder: a script with the truth as 16-bit numbers, for the page", true));
   visit("frames", images.frames, path("relative to the report folder: how the page draws the cell again", true));
   visit("hardest", images.hardest, {.text = "the tile where the picture's FLIP is largest", .later = true});
-  visit(
-      "supersampled", images.supersampled,
-      path(
-          "relative to the report folder: the picture with several samples a pixel; of cells that the page shows first",
-          true));
+  // Of the cells that the page shows first.
+  visit("supersampled", images.supersampled,
+        {.text = "relative to the report folder: the picture with several samples a pixel",
+         .is_path = true,
+         .may_lack = true});
   visit("truth_supersampled", images.truth_supersampled,
-        path("relative to the report folder: the truth's picture with as many samples a pixel", true));
-  visit("samples", images.samples, {.text = "of each pixel of the supersampled pictures", .later = true});
+        {.text = "relative to the report folder: the truth's picture with as many samples a pixel",
+         .is_path = true,
+         .may_lack = true});
+  visit("samples", images.samples, {.text = "of each pixel of the supersampled pictures", .may_lack = true});
 }
 
 /// Visits a cell's metrics, and over what its errors are means.

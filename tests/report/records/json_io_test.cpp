@@ -78,7 +78,8 @@ CellRecord make_full_cell() {
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
   cell.images = {"a.png", "b.png", "c.png",   "d.png", "e.exr",
                  "g.png", "h.png", "all.png", "i.png", "j.js",
-                 "k.png", "l.js",  "m.js",    "vsm",   TileRecord{1, 2, 3, 4}};
+                 "k.png", "l.js",  "m.js",    "vsm",   TileRecord{1, 2, 3, 4},
+                 "n.png", "o.png", 16};
   cell.stability = {1, 2, 3, -1e-6, 4.5, 11.25, 0.5, 0.25, 0.125, 4, 5};
   cell.coverage = {3.5, 0.25, 0.75, 0.5};
   cell.fit = "view snapped";
@@ -144,6 +145,9 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(back.images.truth_values, "l.js");
   EXPECT_EQ(back.images.parts, "vsm");
   EXPECT_EQ(back.images.hardest, (TileRecord{1, 2, 3, 4}));
+  EXPECT_EQ(back.images.supersampled, "n.png");
+  EXPECT_EQ(back.images.truth_supersampled, "o.png");
+  EXPECT_EQ(back.images.samples, 16);
   EXPECT_EQ(back.stability.negative_variance_texels, 3);
   EXPECT_EQ(back.stability.safe_exponent, 11.25);
   EXPECT_EQ(back.stability.bound_exact_violations, 5);
