@@ -42,6 +42,20 @@ metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<
        .contact_ws = metrics::kArtefactLimits.contact_texels * layers.front().frustum.texel_size_ws});
 }
 
+/// The number of the layer that has the largest share in each pixel, from 1 on; 0 where a pixel does not count.
+std::vector<std::uint8_t> find_owners(const std::vector<TracedLayer>& layers, const SceneTruth& truth) {
+  std::vector<std::uint8_t> owners(truth.mask.size());
+  for (std::size_t i = 0; i < owners.size(); ++i) {
+    float largest = 0.0f;
+    for (std::size_t layer = 0; layer < layers.size(); ++layer)
+      if (truth.mask[i] && layers[layer].shares[i] > largest) {
+        largest = layers[layer].shares[i];
+        owners[i] = static_cast<std::uint8_t>(layer + 1);
+      }
+  }
+  return owners;
+}
+
 }  // namespace
 
 Surroundings trace_surroundings(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
@@ -91,6 +105,7 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
                                make_unbiased_light(options, task.scene->light, light_.layers));
   around_ = trace_surroundings(assets_.tracer(), layers_, truth_, widest_kernel_texels(options_));
   masks_ = make_masks(around_, layers_, truth_);
+  if (layers_.size() > 1) owners_ = find_owners(layers_, truth_);
 }
 
 /// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
@@ -147,6 +162,10 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
        too_few("are wholly lit, with their surroundings"));
   note(record, "artefact.leak", record.artefact.leak, metrics::rate_above(image, masks_->leak, limits.leak_above),
        too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
+  const bool has_seams = layers_.size() > 1;
+  note(record, "artefact.seam", record.artefact.seam,
+       has_seams ? metrics::measure_seam(image, truth_.area.texels, owners_, options_.width) : std::nullopt,
+       has_seams ? too_few("lie on either side of a seam") : "the map has one layer");
   const auto touching = std::ranges::count(masks_->contact_gap, 1);
   note(record, "artefact.contact_gap", record.artefact.contact_gap,
        metrics::rate_contact_gap(image, cell.unbiased.texels, masks_->contact_gap),

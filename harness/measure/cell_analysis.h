@@ -60,6 +60,7 @@ class CellAnalyser {
   std::vector<TracedLayer> layers_;
   Surroundings around_;
   std::optional<metrics::ArtefactMasks> masks_;
+  std::vector<std::uint8_t> owners_;                   ///< see measure_seam(); empty where the map has one layer
   std::map<std::string, std::vector<float>> kernels_;  ///< by name
 
   std::vector<float> trace_unsettled(double half_width_texels, const LayerTrace& trace);

@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -225,10 +226,31 @@ measure::MeasuredCell measure_user_filter(const options::RunOptions& options, co
   return read_cell(own, task, request);
 }
 
+namespace {
+
 void check_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
                        const filters::FilterRequest& request, const WorkerScene& scene) {
   const ScratchFolder folder(make_temporary_folder_path(options.out, "worker"));
   run_filter_worker(make_worker_options(options, task, request, folder.path()), request, scene, "--check");
+}
+
+}  // namespace
+
+void check_user_filters(const RunPlan& plan, const std::string& backend) {
+  std::set<std::string> checked;  // ids
+  std::vector<filters::FilterMistake> mistakes;
+  for (const PlannedTask& planned : plan.tasks) {
+    const PlannedScene& scene = plan.scenes[planned.scene];
+    for (const filters::FilterRequest& request : planned.task.filters) {
+      if (!request.user_file || !checked.insert(request.spec.id).second) continue;
+      try {
+        check_user_filter(scene.options, planned.task, request, {scene.argument, backend});
+      } catch (const filters::FilterErrors& error) {
+        mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
+      }
+    }
+  }
+  if (!mistakes.empty()) throw filters::FilterErrors(std::move(mistakes));
 }
 
 }  // namespace shadowbench::run

@@ -10,6 +10,7 @@
 
 #include "harness/measure/scene_measurement.h"
 #include "harness/options/options.h"
+#include "harness/run/run_plan.h"
 
 namespace shadowbench::run {
 
@@ -78,9 +79,9 @@ struct WorkerScene {
 measure::MeasuredCell measure_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
                                           const filters::FilterRequest& request, const WorkerScene& scene);
 
-/// Compiles a user's filter in a process of its own. A process that does not finish is left to the cell to tell of.
-/// Throws likewise.
-void check_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
-                       const filters::FilterRequest& request, const WorkerScene& scene);
+/// Compiles every user's filter that has a cell to be measured, once, each in a process of its own. A process that does
+/// not finish is left to the cell to tell of.
+/// Throws FilterErrors with the mistakes of all of them, and Error for what else a process refuses.
+void check_user_filters(const RunPlan& plan, const std::string& backend);
 
 }  // namespace shadowbench::run

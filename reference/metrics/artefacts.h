@@ -68,4 +68,14 @@ std::optional<double> rate_contact_gap(std::span<const float> image, std::span<c
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
                                  std::span<const float> kernel, std::span<const std::uint8_t> counts, int width);
 
+/// How much more the error of an image, which is image less truth, changes across a seam between two layers of a map
+/// than beside it: the root mean square of its change from pixel to pixel over pairs of neighbours that different
+/// layers serve, less that over pairs of one layer, at most kSeamPixels off a seam, as often side by side or below each
+/// other as those. `layers` has the number of the
+/// layer with the largest share in each pixel, and 0 where a pixel does not count. Gives nothing where there are fewer
+/// than kFewestReceivers of either kind of pairs.
+inline constexpr int kSeamPixels = 8;
+std::optional<double> measure_seam(std::span<const float> image, std::span<const float> truth,
+                                   std::span<const std::uint8_t> layers, int width);
+
 }  // namespace shadowbench::metrics

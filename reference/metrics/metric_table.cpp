@@ -122,6 +122,12 @@ std::vector<Metric> list_artefacts() {
                    "from its mean over the 3x3 neighbourhood; for filters of the kind 'stochastic' only",
                    limits.noise_above),
        kRate, kTabled},
+      {"artefact.seam", at<&V::artefact, &ArtefactRecord::seam>, "visibility", kAny, kLess, "seam",
+       fmt::format("how much more the error (image less truth) changes across the seams of a map's layers, such as "
+                   "cascades, than beside them: root mean square of its change between neighbouring pixels that "
+                   "different layers serve, less that of pairs of one layer within {} pixels of a seam",
+                   kSeamPixels),
+       kNotKept, kUntabled, "", kRun, nullptr, true},
   };
 }
 

@@ -56,6 +56,7 @@ struct ArtefactRecord {
   std::optional<double> leak;
   std::optional<double> contact_gap;
   std::optional<double> noise;
+  std::optional<double> seam;
 };
 
 /// One of the parts that the error is the sum of.

@@ -37,19 +37,19 @@ constexpr EngineSetting kSettings[] = {
     {"three.js bias", "constant", [](const Need& need) { return -need.depth; },
      "three.js adds `bias` to the receiver's depth in [0,1]; less is nearer to the light (LightShadow, "
      "shadowmap_pars_fragment)."},
-    {"Unity URP depth bias", "constant", [](const Need& need) { return need.texels / kSoftKernel; },
+    {"Unity URP Depth Bias", "constant", [](const Need& need) { return need.texels / kSoftKernel; },
      "Unity's universal pipeline moves casters away from the light by so many texels, 2.5 times as far for soft "
      "shadows, which stand here (ShadowUtils.GetShadowBias, Shadows.hlsl). It sets glPolygonOffset(2.5, 1) besides."},
-    {"Godot shadow_bias", "constant", [](const Need& need) { return 100.0 * need.depth; },
+    {"Godot Bias", "constant", [](const Need& need) { return 100.0 * need.depth; },
      "Godot moves receivers towards the light by a hundredth of it times the depth range (light_storage.cpp, 4.x)."},
     {"Filament constantBias", "constant", [](const Need& need) { return need.metres; },
      "Filament takes metres (LightManager::ShadowOptions)."},
     {"three.js normalBias", "normal-offset", [](const Need& need) { return need.setting * need.texel_m * need.sine; },
      "three.js moves receivers along the normal by so many metres at every angle (shadowmap_vertex)."},
-    {"Unity URP normal bias", "normal-offset",
+    {"Unity URP Normal Bias", "normal-offset",
      [](const Need& need) { return need.setting * need.sine / (1.0 - need.cosine) / kSoftKernel; },
      "Unity moves casters along the normal by so many texels times 1 - n.l, 2.5 times as far for soft shadows."},
-    {"Godot shadow_normal_bias", "normal-offset",
+    {"Godot Normal Bias", "normal-offset",
      [](const Need& need) { return need.setting / (need.sine * (1.0 - need.cosine)); },
      "Godot moves receivers along the normal by so many texels times 1 - n.l, less the part along the light "
      "(scene_forward_clustered.glsl)."},

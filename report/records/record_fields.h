@@ -185,12 +185,15 @@ void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
   visit("supersampled", images.supersampled,
         {.text = "relative to the report folder: the picture with several samples a pixel",
          .is_path = true,
-         .may_lack = true});
+         .may_lack = true,
+         .later = true});
   visit("truth_supersampled", images.truth_supersampled,
         {.text = "relative to the report folder: the truth's picture with as many samples a pixel",
          .is_path = true,
-         .may_lack = true});
-  visit("samples", images.samples, {.text = "of each pixel of the supersampled pictures", .may_lack = true});
+         .may_lack = true,
+         .later = true});
+  visit("samples", images.samples,
+        {.text = "of each pixel of the supersampled pictures", .may_lack = true, .later = true});
 }
 
 /// Visits a cell's metrics, and over what its errors are means.
@@ -206,7 +209,11 @@ void visit_metrics(Is<CellRecord> auto& cell, auto&& visit) {
   for (const metrics::Metric& metric : metrics::metric_table())
     metrics::visit_metric(metric, cell, [&](const std::string& path, auto& value) {
       visit(path, value,
-            {.text = metric.definition, .least = metric.range.min, .most = metric.range.max, .unit = metric.unit});
+            {.text = metric.definition,
+             .least = metric.range.min,
+             .most = metric.range.max,
+             .later = metric.later,
+             .unit = metric.unit});
     });
   visit("phases", cell.phases,
         {.text = "places of the map's grid, moved by parts of a texel, that the errors of visibility are means over; "

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 namespace shadowbench::metrics {
@@ -118,6 +119,33 @@ TEST(NoiseRate, LeavesOutPixelsBesideOnesThatDoNotCount) {
 TEST(NoiseRate, WithoutPenumbra_IsAbsent) {
   const std::vector<float> lit(1600, 1.0f);
   EXPECT_FALSE(rate_noise(lit, std::vector<double>(1600, 1.0), lit, std::vector<std::uint8_t>(1600, 1), 40));
+}
+
+/// A picture of two layers, left and right, whose error is `error(x, layer)`; its last column does not count.
+std::optional<double> measure_two_layers(const std::function<double(int, int)>& error) {
+  constexpr int kWidth = 64, kHeight = 128;
+  std::vector<float> image, truth;
+  std::vector<std::uint8_t> layers;
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    const int x = i % kWidth, layer = x < kWidth / 2 ? 1 : 2;
+    truth.push_back(x % 2 == 0 ? 0.25f : 0.75f);
+    image.push_back(truth.back() + static_cast<float>(error(x, layer)));
+    layers.push_back(x == kWidth - 1 ? 0 : static_cast<std::uint8_t>(layer));
+  }
+  return measure_seam(image, truth, layers, kWidth);
+}
+
+TEST(Seam, IsWhatTheErrorChangesBetweenLayers_MoreThanWithinThem) {
+  EXPECT_NEAR(measure_two_layers([](int, int layer) { return layer == 1 ? 0.0 : 0.125; }).value(), 0.125, 1e-6);
+  EXPECT_NEAR(measure_two_layers([](int x, int) { return 0.01 * x; }).value(), 0.0, 1e-6)
+      << "a change that goes on is beside the seam too, though not along it";
+  EXPECT_NEAR(measure_two_layers([](int x, int) { return x == 0 || x == 63 ? 0.5 : 0.0; }).value(), 0.0, 1e-6)
+      << "what is far off, or does not count, plays no part";
+}
+
+TEST(Seam, IsAbsentWithoutTwoLayers) {
+  const std::vector<float> image(4096, 0.5f);
+  EXPECT_FALSE(measure_seam(image, image, std::vector<std::uint8_t>(4096, 1), 64));
 }
 
 }  // namespace

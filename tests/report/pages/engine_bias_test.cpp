@@ -29,11 +29,11 @@ double lift(const glm::dvec3& way) { return glm::dot(way, kNormal) / glm::dot(kT
 const std::map<std::string, std::function<glm::dvec3(double)>> kEngines = {
     {"three.js bias", [](double bias) { return kToLight * (-bias * kRange); }},
     {"three.js normalBias", [](double bias) { return kNormal * bias; }},
-    {"Unity URP depth bias", [](double bias) { return kToLight * (2.5 * kTexel * bias); }},
-    {"Unity URP normal bias",
+    {"Unity URP Depth Bias", [](double bias) { return kToLight * (2.5 * kTexel * bias); }},
+    {"Unity URP Normal Bias",
      [](double bias) { return kNormal * (2.5 * kTexel * bias * (1.0 - glm::dot(kToLight, kNormal))); }},
-    {"Godot shadow_bias", [](double bias) { return kToLight * (bias / 100.0 * kRange); }},
-    {"Godot shadow_normal_bias",
+    {"Godot Bias", [](double bias) { return kToLight * (bias / 100.0 * kRange); }},
+    {"Godot Normal Bias",
      [](double bias) {
        const glm::dvec3 way = kNormal * ((1.0 - glm::dot(kToLight, kNormal)) * bias * kTexel);
        return way - kToLight * glm::dot(kToLight, way);
