@@ -1,6 +1,6 @@
 /*+++
 title = "Contact hardening in one set of taps"
-source = "Myers 2021, Shadows of Cold War: A Scalable Approach to Shadowing, SIGGRAPH, Advances in Real-Time Rendering; each of the four texels of a tap weighs as a hardware fetch weighs it"
+source = "Myers 2021, Shadows of Cold War: A Scalable Approach to Shadowing, SIGGRAPH, Advances in Real-Time Rendering; each of the four texels of a tap weighs as a hardware fetch weighs it. Filament had its like until 2026, and removed it as expensive and of low quality: Agopian, its pull request 10188"
 kind = "stochastic"
 claims = "contact-hardening"
 radius_texels = "max_radius"

@@ -76,7 +76,7 @@ layout(binding = {unit}) uniform {sampler} map_{name};
 constexpr const char* kFetch = R"(
 vec4 fetch_{name}(Receiver r, vec2 offset_texels) {{
   COUNT_FETCH(r, offset_texels, {texels}, {bits});
-  return textureLod(map_{name}, r.uv + offset_texels * map_texel_uv, 0.0);
+  return textureLod(map_{name}, (r.uv + offset_texels * map_texel_uv){scale}, 0.0);
 }}
 )";
 
@@ -85,7 +85,7 @@ vec4 fetch_{name}(Receiver r, vec2 offset_texels) {{
 constexpr const char* kFetchLevels = R"(
 vec4 fetch_{name}_lod(Receiver r, vec2 offset_texels, float lod) {{
   COUNT_FETCH(r, offset_texels, {texels} * exp2(ceil(max(lod, 0.0))), {bits});
-  return textureLod(map_{name}, r.uv + offset_texels * map_texel_uv, lod);
+  return textureLod(map_{name}, (r.uv + offset_texels * map_texel_uv){scale}, lod);
 }}
 vec4 fetch_{name}_grad(Receiver r, vec2 offset_texels, vec2 along_x, vec2 along_y) {{
   float x = length(along_x), y = length(along_y);
@@ -95,7 +95,7 @@ vec4 fetch_{name}_grad(Receiver r, vec2 offset_texels, vec2 along_x, vec2 along_
   for (int i = 0; i < taps; ++i) {{
     vec2 place = offset_texels + (x > y ? along_x : along_y) * ((float(i) + 0.5) / float(taps) - 0.5);
     COUNT_FETCH(r, offset_texels, {texels}, {bits});
-    sum += textureLod(map_{name}, r.uv + place * map_texel_uv, lod);
+    sum += textureLod(map_{name}, (r.uv + place * map_texel_uv){scale}, lod);
   }}
   return sum / float(taps);
 }}
@@ -114,12 +114,15 @@ std::string declare_pass_map(const PassSpec& spec, GLuint unit) {
                                       "exp2(float({1})), {2})",
                                       texels, level, bits);
   const char* parameter = has_levels ? ", int level" : "";
+  // Levels have the power of two for a side that holds the map.
+  const std::string scale =
+      has_levels ? fmt::format(" / (map_texel_uv * {} * float(textureSize(map_{}, 0).x))", texels, spec.name) : "";
   const auto write = [&](const char* glsl) {
     return fmt::format(fmt::runtime(glsl), fmt::arg("unit", unit), fmt::arg("name", spec.name),
                        fmt::arg("sampler", spec.is_integer() ? "usampler2D" : "sampler2D"),
                        fmt::arg("texel", spec.texel_type()), fmt::arg("parameter", parameter), fmt::arg("count", count),
                        fmt::arg("level", level), fmt::arg("bits", bits), fmt::arg("texels", texels),
-                       fmt::arg("anisotropy", spec.anisotropy));
+                       fmt::arg("anisotropy", spec.anisotropy), fmt::arg("scale", scale));
   };
   return write(kLoad) + (spec.is_integer() ? "" : write(kFetch)) +
          (spec.is_integer() || !has_levels ? "" : write(kFetchLevels));

@@ -52,11 +52,13 @@ int OwnPasses::count_steps(const PassSpec& spec) const {
     }
     case PassSteps::kLevels: break;
   }
-  const auto texels = static_cast<unsigned>(side(spec));
-  if (std::has_single_bit(texels)) return std::bit_width(texels);
-  fail(spec, fmt::format("steps = \"levels\" needs a map whose side is a power of two, and '{}' has {} texels: choose "
-                         "another --map-size",
-                         spec.name, texels));
+  return std::bit_width(static_cast<unsigned>(side(spec)));
+}
+
+int MapPasses::side(const PassSpec& spec) const {
+  const int texels = spec.half ? map_size_ / 2 : map_size_;
+  if (spec.steps != PassSteps::kLevels) return texels;
+  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(texels)));
 }
 
 void OwnPasses::fail(const PassSpec& spec, const std::string& message) const {

@@ -30,8 +30,7 @@ using PassMaps = std::vector<PassMap>;
 class OwnPasses {
  public:
   /// Throws Error(kFilter) with the line of the filter's file: GLSL that does not compile, a pass that reads what is
-  /// only written after it, mip levels of a map whose side is no power of two, a format that this GL does not draw
-  /// into.
+  /// only written after it, a format that this GL does not draw into.
   OwnPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size, const LightSetup& light,
             const Defines& map_defines);
 
@@ -70,7 +69,8 @@ class OwnPasses {
   std::vector<std::unique_ptr<PassMap>> scratch_;  ///< steps take turns between two maps; null where there is one step
   gl::FullscreenTriangle triangle_;
 
-  int side(const filters::PassSpec& spec) const { return spec.half ? map_size_ / 2 : map_size_; }
+  /// Levels halve: their side is the power of two that holds the map.
+  int side(const filters::PassSpec& spec) const;
   int count_steps(const filters::PassSpec& spec) const;
   std::int64_t texels_written(const Pass& pass) const;
   void check_reads(std::size_t pass) const;

@@ -49,17 +49,21 @@ class Filtered {
   std::unique_ptr<Lookup> lookup_;
 };
 
-class ContactHardening : public ::testing::TestWithParam<const char*> {
- protected:
-  /// With disks of up to 20 texels and the most taps.
-  std::string finest() const {
-    const std::string id = GetParam();
-    return id + ":taps=32,max_radius=20" + (id == "pcss" ? ",search_taps=32" : "");
-  }
-};
+class ContactHardening : public ::testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Filters, ContactHardening, ::testing::Values("pcss", "dpcf"),
                          [](const auto& each) { return std::string(each.param); });
+
+/// Filters with disks of up to 20 texels and the most taps.
+class Penumbra : public ::testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Filters, Penumbra,
+                         ::testing::Values("pcss:taps=32,max_radius=20,search_taps=32", "dpcf:taps=32,max_radius=20",
+                                           "evssm:taps=8,max_radius=40,rotation=per-pixel"),
+                         [](const auto& each) {
+                           const std::string text = each.param;
+                           return text.substr(0, text.find(':'));
+                         });
 
 TEST_P(ContactHardening, LightOfNoSize_EqualsHardShadow) {
   std::mt19937 random(3);
@@ -92,10 +96,10 @@ double share_of_disk(double t) {
 }
 
 /// A half-plane over a floor that lies parallel to it.
-TEST_P(ContactHardening, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
+TEST_P(Penumbra, OfAnEdge_IsAsWideAsTheLightMakesIt) {
   constexpr float kEdge = 0.3f;
-  const DepthMap map = make_map([](int x, int) { return x < kMapSide / 2 ? kEdge : 1.0f; });
-  const Filtered soft(finest(), map);
+  const DepthMap map = make_map([](int x, int) { return x < kMapSide / 2 ? kEdge : kFloor; });
+  const Filtered soft(GetParam(), map);
   struct Case {
     float light_size, nearness;
   };
@@ -117,7 +121,8 @@ TEST_P(ContactHardening, PenumbraOfAnEdge_IsAsWideAsTheLightMakesIt) {
       return sum / kPixels;
     };
     const double expected = find_width([&](double x) { return share_of_disk(x / radius); });
-    EXPECT_NEAR(find_width(seen), expected, 0.1 * expected) << "radius " << radius;
+    // Narrow ones are blurred by how single texels are read.
+    EXPECT_NEAR(find_width(seen), expected, std::max(0.1 * expected, 0.35)) << "radius " << radius;
   }
 }
 

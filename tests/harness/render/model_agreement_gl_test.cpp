@@ -234,22 +234,22 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
 
 INSTANTIATE_TEST_SUITE_P(
     Parameters, ModelVariants,
-    ::testing::Values("gather_pcf:radius=1", "gather_pcf:radius=3,shape=castano", "pcss:rotation=none,max_radius=2",
-                      "pcss:rotation=interleaved-gradient,taps=8,search_taps=4", "pcss:max_radius=0",
-                      "dpcf:rotation=none,max_radius=2", "dpcf:rotation=interleaved-gradient,taps=8",
-                      "dpcf:max_radius=20,taps=32", "dpcf:max_radius=0", "poisson:rotation=none",
-                      "poisson:rotation=interleaved-gradient,taps=8", "poisson:radius=0,taps=4", "evsm2:radius=0",
-                      "evsm2:bleed_reduction=0.2", "evsm4:bleed_reduction=0.2", "gather_pcf:radius=1,shape=castano",
-                      "gather_pcf:shape=castano", "gather_pcf:radius=3", "evsm4:store=rgba16f",
-                      "evsm4:radius=1,c_down=20", "msm_hamburger:store=rgba16", "msm_hausdorff:store=rgba16,radius=1",
-                      "msm_hausdorff:radius=1", "poisson:taps=32,radius=6", "vsm:radius=0", "vsm:radius=12",
-                      "vsm:bleed_reduction=0,slope_variance=0", "vsm:slope_variance=1",
-                      "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20",
-                      "esm:fallback=percentage-closer", "esm:fallback=percentage-closer,radius=0",
-                      "esm:fallback=percentage-closer,combine=log,radius=1", "esm:combine=log,c=500",
-                      "esm:combine=log,radius=0", "esm:c=8,store=r16f", "vsm_sat:radius=0", "vsm_sat:radius=20",
-                      "vsm_sat:bleed_reduction=0,slope_variance=0", "csm_conv:radius=0,damping=0", "csm_conv:scale=1",
-                      "vssm:max_radius=0", "vssm:max_radius=4,bleed_reduction=0", "vssm:min_variance=0.001"),
+    ::testing::Values(
+        "gather_pcf:radius=1", "gather_pcf:radius=3,shape=castano", "pcss:rotation=none,max_radius=2",
+        "pcss:rotation=interleaved-gradient,taps=8,search_taps=4", "pcss:max_radius=0",
+        "dpcf:rotation=none,max_radius=2", "dpcf:rotation=interleaved-gradient,taps=8", "dpcf:max_radius=20,taps=32",
+        "dpcf:max_radius=0", "poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
+        "poisson:radius=0,taps=4", "evsm2:radius=0", "evsm2:bleed_reduction=0.2", "evsm4:bleed_reduction=0.2",
+        "gather_pcf:radius=1,shape=castano", "gather_pcf:shape=castano", "gather_pcf:radius=3", "evsm4:store=rgba16f",
+        "evsm4:radius=1,c_down=20", "msm_hamburger:store=rgba16", "msm_hausdorff:store=rgba16,radius=1",
+        "msm_hausdorff:radius=1", "poisson:taps=32,radius=6", "vsm:radius=0", "vsm:radius=12",
+        "vsm:bleed_reduction=0,slope_variance=0", "vsm:slope_variance=1", "vsm:min_variance=0.001,store=rg16f",
+        "esm:radius=0", "esm:c=20", "esm:fallback=percentage-closer", "esm:fallback=percentage-closer,radius=0",
+        "esm:fallback=percentage-closer,combine=log,radius=1", "esm:combine=log,c=500", "esm:combine=log,radius=0",
+        "esm:c=8,store=r16f", "vsm_sat:radius=0", "vsm_sat:radius=20", "vsm_sat:bleed_reduction=0,slope_variance=0",
+        "csm_conv:radius=0,damping=0", "csm_conv:scale=1", "vssm:max_radius=0", "vssm:max_radius=4,bleed_reduction=0",
+        "vssm:min_variance=0.001", "evssm:taps=1,rotation=none", "evssm:taps=8,rotation=per-pixel",
+        "evssm:max_radius=0", "evssm:max_radius=8,bleed_reduction=0.2,c_down=10"),
     [](const auto& each) {
       std::string name = each.param;
       for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

@@ -1,6 +1,7 @@
 // Casters that move take their shadows with them, and light and camera that stay change nothing: on every built-in
 // scene.
 
+#include <algorithm>
 #include <cstdio>
 #include <tuple>
 
@@ -14,7 +15,8 @@ using filters::Receiver;
 constexpr int kMovedMapSize = 512;
 constexpr int kMovedWidth = 320, kMovedHeight = 180;
 constexpr glm::dvec2 kStepTexels{
-    4.0, 3.0};                 // whole texels of the map: the texel grid lies on the moved casters as on the others
+    4.0, 3.0};  // whole texels of the map: the texel grid lies on the moved casters as on the others
+constexpr glm::dvec2 kStepOfLevels{16.0, -16.0};  // the same for mip levels up to texels of 16
 constexpr double kRoom = 1.5;  // before and behind the planes that fit the scene, metres: for what moves
 
 /// Coordinates that have moved are rounded otherwise: a silhouette that runs near a texel's centre may take one texel
@@ -49,11 +51,16 @@ void freeze_frustum(scene::Scene& scene) {
       scene::MapWindow{center, fit.width_ws, scene::MapWindow::Planes{-half - kRoom, half + kRoom}};
 }
 
-/// Gives a way along the floor that is kStepTexels in the map.
-glm::vec3 choose_way(const scene::LightFrustum& frustum) {
+glm::dvec2 step_of(const filters::FilterSpec& spec) {
+  const auto has_levels = [](const filters::PassSpec& pass) { return pass.steps == filters::PassSteps::kLevels; };
+  return std::ranges::any_of(spec.passes, has_levels) ? kStepOfLevels : kStepTexels;
+}
+
+/// Gives a way along the floor that is `step_texels` in the map.
+glm::vec3 choose_way(const scene::LightFrustum& frustum, glm::dvec2 step_texels) {
   const glm::dmat3 world_from_light = glm::transpose(glm::dmat3(frustum.light_from_world));
   const glm::dvec3 across =
-      frustum.texel_size_ws * (kStepTexels.x * world_from_light[0] + kStepTexels.y * world_from_light[1]);
+      frustum.texel_size_ws * (step_texels.x * world_from_light[0] + step_texels.y * world_from_light[1]);
   const glm::dvec3 light(frustum.direction_ws);
   return glm::vec3(across - light * (across.y / light.y));
 }
@@ -109,7 +116,8 @@ class MovedCaster : public ::testing::TestWithParam<std::tuple<std::string, std:
     return scene;
   }();
   filters::FilterRequest request_ = request_of(std::get<1>(GetParam()));
-  glm::vec3 way_ = choose_way(scene::fit_light(scene_, scene::FitMode::kTight, kMovedMapSize, 6.0));
+  glm::vec3 way_ =
+      choose_way(scene::fit_light(scene_, scene::FitMode::kTight, kMovedMapSize, 6.0), step_of(request_.spec));
 };
 
 /// A camera that goes along sees the same picture on the floor, which stays, as on what moved.

@@ -18,6 +18,7 @@ struct Checked {
   const char* glsl;  ///< has `bool agrees(Receiver r, ivec2 own)`, own being the receiver's texel
   int passes_run;
   double allowed = 0.0;  ///< share of receivers that may disagree
+  int side = kPassSide;  ///< of the map, texels
 };
 
 filters::FilterRequest make_request(const Checked& checked) {
@@ -64,9 +65,12 @@ bool agrees(Receiver r, ivec2 own) {
   for (int y = 0; y < 8; ++y) for (int x = 0; x < 8; ++x) largest = max(largest, load_depth(8 * block + ivec2(x, y)));
   vec2 to_middle = (vec2(own / 8 * 8) + 4.0) - r.uv / map_texel_uv;
   return load_farthest(block, 3).x == largest && load_farthest(ivec2(0), 7).x == 1.0 &&
-         fetch_farthest_lod(r, to_middle, 3.0).x == largest;
+         abs(fetch_farthest_lod(r, to_middle, 3.0).x - largest) < 1e-4;
 })",
                       2 + 8};
+
+/// The same with a map of 96 texels: the side of the levels is the next power of two.
+const Checked kLevelsOfAnySide{"LevelsOfAnySide", kLevels.passes, kLevels.glsl, kLevels.passes_run, 0.0, 96};
 
 const Checked kHalf{"Half", "[pass.mean]\nstore = \"r32f\"\nsize = \"half\"\n",
                     R"(float mean_of(ivec2 t) {
@@ -139,7 +143,7 @@ class OwnPasses : public ::testing::TestWithParam<Checked> {};
 
 TEST_P(OwnPasses, WriteWhatTheyShould) {
   const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, kPassSide, 160, 90);
+  Bench bench(shared_context(), scene, GetParam().side, 160, 90);
   const filters::FilterRequest request = make_request(GetParam());
   const std::vector<float> image = bench.draw(request);
   const auto receivers = bench.receivers(request);
@@ -153,7 +157,8 @@ TEST_P(OwnPasses, WriteWhatTheyShould) {
   EXPECT_EQ(passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).passes, GetParam().passes_run);
 }
 
-INSTANTIATE_TEST_SUITE_P(Steps, OwnPasses, ::testing::Values(kPrefix, kLevels, kHalf, kAxes, kSeveral, kFootprint),
+INSTANTIATE_TEST_SUITE_P(Steps, OwnPasses,
+                         ::testing::Values(kPrefix, kLevels, kLevelsOfAnySide, kHalf, kAxes, kSeveral, kFootprint),
                          [](const auto& each) { return std::string(each.param.name); });
 
 /// Lights that take turns keep their maps apart.
@@ -205,8 +210,6 @@ constexpr const char* kSecond = "vec4 second(PassInput p) { return vec4(1.0); }\
 constexpr const char* kAgree = "bool agrees(Receiver r, ivec2 own) { return true; }\n";
 const std::string kTwo = std::string(kFirst) + kSecond + kAgree;
 const std::string kOwn = std::string("vec4 first(PassInput p) { return load_first(p.texel); }\n") + kAgree;
-const std::string kMip =
-    std::string("vec4 first(PassInput p) { return p.step == 0 ? vec4(0.0) : load_first(p.texel, 0); }\n") + kAgree;
 const std::string kStored = std::string("vec4 encode(EncodeInput e) { return load_first(ivec2(0)); }\n") +
                             "vec4 first(PassInput p) { return vec4(1.0); }\n" + kAgree;
 
@@ -216,8 +219,6 @@ INSTANTIATE_TEST_SUITE_P(
                               "checked.glsl:6", "reads the map 'second', which is not written yet"},
                       Refused{"[pass.first]\nstore = \"r32f\"\n", kOwn.c_str(), "checked.glsl:6",
                               "reads the map 'first', which is not written yet"},
-                      Refused{"[pass.first]\nstore = \"r32f\"\nsteps = \"levels\"\n", kMip.c_str(), "checked.glsl:6",
-                              "power of two, and 'first' has 96 texels"},
                       Refused{"store = \"r32f\"\n[pass.first]\nstore = \"r32f\"\n", kStored.c_str(), "checked.glsl:7",
                               "encode() reads the map 'first', which is not written yet"}));
 

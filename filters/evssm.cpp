@@ -1,0 +1,135 @@
+#include "filters/disk_points.h"
+#include "filters/mip_levels.h"
+#include "filters/penumbra/penumbra_disk.h"
+#include "filters/warped_variance.h"
+
+namespace shadowbench::filters {
+namespace {
+
+template <class T>
+class Evssm {
+  using P = Position<T>;
+  using Moments = std::array<T, 4>;
+
+ public:
+  explicit Evssm(const ModelInput& input)
+      : c_down_(Warps<T>::read(input.values, "c_down")),
+        warps_(input, Warps<T>::read(input.values, "c"), c_down_),
+        levels_(input, [this](const EncodeInput<T>& e) { return warps_.encode(e.depth); }),
+        points_(generate_disk_points(input.spec, input.values, "disk_points")),
+        widest_(std::max(P(0.5) * Warps<T>::read(input.values, "max_radius"), kLeastRadius)),
+        reduction_(Warps<T>::read(input.values, "bleed_reduction")),
+        accuracy_(input.accuracy),
+        rotation_(text_or(input.values, "rotation", "none")),
+        seed_(input.seed) {}
+
+  /// Every receiver has a disk of its own.
+  static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }
+
+  T visibility(const Receiver& r, Tally& tally) const {
+    const T zero(P(0)), one(P(1)), depth(static_cast<P>(r.depth));
+    if (r.depth > 1.0f) return zero;
+    if (r.uv != glm::clamp(r.uv, 0.0f, 1.0f)) return one;
+    const T search = limit(radius_of(r, T(static_cast<P>(r.depth_unbiased))), widest_);
+    const auto [lit, nearness] = change_by_radius(search, [&](const T& R) { return look_around(r, R); });
+    if (is_sure(lit, tally)) return doubt(value_of(lit) > 0.5 ? one : zero, lit);
+    const T down = warps_.down(depth), blockers = down - (down - nearness) / (one - lit);
+    const T warped = minimum(maximum(-blockers, -down), exponential(T(c_down_), accuracy_));
+    const T above = depth - (T(P(0.5)) - T(P(0.5)) * logarithm(warped) / T(c_down_));
+    const T radius = limit(radius_of(r, above), search);
+    tally.disk_radius_texels = value_of(radius);
+    const DiskTurn<T> turn(rotation_, r.pixel, seed_);
+    const auto average = [&](const T& R) { return std::array{warps_.bound_light(fetch_disk(r, R, turn), depth)}; };
+    const T light = change_by_radius(radius, average)[0];
+    return doubt(maximum(light - T(reduction_), zero) / (one - T(reduction_)), lit);
+  }
+
+ private:
+  static constexpr P kLeastRadius = P(1);
+  static constexpr double kSure = 2e-3;
+  static constexpr double kTie = 2e-5;
+  static constexpr double kUncertain = 0.5;  // texels: a disk of a radius so far off says nothing
+
+  P c_down_;
+  Warps<T> warps_;
+  MipLevels<T, 4> levels_;
+  std::vector<glm::vec2> points_;
+  P widest_;
+  P reduction_;
+  GlAccuracy accuracy_;
+  std::string rotation_;
+  std::uint32_t seed_;
+
+  static T limit(const T& radius, const T& widest) { return minimum(maximum(radius, T(kLeastRadius)), widest); }
+
+  static T radius_of(const Receiver& r, const T& above) {
+    const P widening =
+        P(0.5) * static_cast<P>(r.light_size) * static_cast<P>(r.depth_range_ws) / static_cast<P>(r.texel_size_ws);
+    return T(widening) * above / T(PenumbraDisk<T>::shrink(r, static_cast<P>(value_of(above))));
+  }
+
+  static double beyond_sure(const T& lit) { return std::min(value_of(lit), 1.0 - value_of(lit)) - kSure; }
+
+  /// Whether all around is as good as lit, or as good as blocked; excused at a tie.
+  static bool is_sure(const T& lit, Tally& tally) {
+    if (std::abs(beyond_sure(lit)) < kTie) tally.excused = true;
+    return beyond_sure(lit) < 0.0;
+  }
+
+  /// Nothing bounds a result where rounding may decide whether all around is sure.
+  static T doubt(T light, const T& lit) {
+    if constexpr (std::is_same_v<T, Tracked>)
+      if (std::abs(beyond_sure(lit)) <= lit.bound) light.bound = HUGE_VAL;
+    return light;
+  }
+
+  Moments fetch_wide(const Receiver& r, const Offset<T>& offset, const T& side) const {
+    const int level = static_cast<int>(std::floor(std::log2(value_of(side))));
+    const T coarser = (side * side * T(std::exp2(P(-2) * static_cast<P>(level))) - T(P(1))) / T(P(3));
+    return MipLevels<T, 4>::mix(levels_.fetch(r, offset, level), levels_.fetch(r, offset, level + 1), coarser);
+  }
+
+  Moments fetch_disk(const Receiver& r, const T& radius, const DiskTurn<T>& turn) const {
+    const P all = static_cast<P>(value_of(radius)), count = static_cast<P>(points_.size());
+    const P side = std::max(all / std::sqrt(count), kLeastRadius),
+            reach = std::sqrt(std::max(all * all - side * side, P(0)));
+    Moments sum{};
+    for (const glm::vec2& point : points_) {
+      const Moments tap = fetch_wide(r, turn.place(reach, point), T(side));
+      for (std::size_t c = 0; c < 4; ++c) sum[c] = sum[c] + tap[c];
+    }
+    for (T& channel : sum) channel = channel / T(count);
+    return sum;
+  }
+
+  /// The light around a receiver, and the mean of the negative warp.
+  std::array<T, 2> look_around(const Receiver& r, const T& radius) const {
+    const Moments around = fetch_wide(r, {}, radius);
+    return {warps_.bound_light(around, T(static_cast<P>(r.depth))), around[2]};
+  }
+
+  /// What `find` finds for a radius, and, in tracked precision, how much that changes where the radius, and with it the
+  /// taps' places, are as far off as they may be.
+  template <class Find>
+  static auto change_by_radius(const T& radius, Find find) {
+    auto found = find(T(static_cast<P>(value_of(radius))));
+    if constexpr (std::is_same_v<T, Tracked>) {
+      if (!(radius.bound < kUncertain)) {
+        for (T& each : found) each.bound = HUGE_VAL;
+        return found;
+      }
+      const double off = radius.bound + PenumbraDisk<T>::kRounding;
+      const auto narrower = find(T(std::max(radius.value - off, 1.0))), wider = find(T(radius.value + off));
+      for (std::size_t i = 0; i < found.size(); ++i)
+        found[i].bound +=
+            std::max(std::abs(narrower[i].value - found[i].value), std::abs(wider[i].value - found[i].value));
+    }
+    return found;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<ScalarModel> make_evssm_model() { return make_templated_model<Evssm>(); }
+
+}  // namespace shadowbench::filters
