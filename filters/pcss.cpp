@@ -60,21 +60,13 @@ class Pcss {
     return blockers > P(0) ? std::optional(depths / blockers) : std::nullopt;
   }
 
-  /// A texel of the search, if it blocks. Near a border between texels rounding decides which one it is, and where the
-  /// depths differ that counts unless neither blocks.
+  /// A texel of the search, if it blocks.
   std::optional<P> find_blocker_at(const Receiver& r, const Offset<T>& offset, Tally& tally) const {
     Tally own;
-    const float depth = map_.fetch_depth(r, offset, own);
     const float plane = map_.nearest_depth(r, offset, Disk::biased(r, offset), own);
+    const float depth = Disk::read_depth(
+        map_, r, offset, [&](float d) { return std::min(d, plane); }, tally);
     if (Disk::is_close(depth, plane)) tally.excused = true;
-    if (own.excused) {
-      for (const P x : {-Disk::kRounding, Disk::kRounding}) {
-        for (const P y : {-Disk::kRounding, Disk::kRounding}) {
-          const float other = map_.fetch_depth(r, {offset.x + x, offset.y + y}, own);
-          if (other != depth && std::min(other, depth) < plane) tally.excused = true;
-        }
-      }
-    }
     return depth < plane ? std::optional(static_cast<P>(depth)) : std::nullopt;
   }
 };

@@ -64,6 +64,20 @@ class PenumbraDisk {
     return static_cast<float>(static_cast<P>(r.depth) - bias);
   }
 
+  /// The depth of the texel at an offset. Near a border between texels rounding decides which one that is: it is
+  /// excused where `meaning`, which turns a depth into what it counts as, differs.
+  template <class Meaning>
+  static float read_depth(const DepthReader<T>& map, const Receiver& r, const Offset<T>& offset, Meaning meaning,
+                          Tally& tally) {
+    Tally own;
+    const float depth = map.fetch_depth(r, offset, own);
+    if (!own.excused) return depth;
+    for (const P x : {-kRounding, kRounding})
+      for (const P y : {-kRounding, kRounding})
+        if (meaning(map.fetch_depth(r, {offset.x + x, offset.y + y}, own)) != meaning(depth)) tally.excused = true;
+    return depth;
+  }
+
   /// Whether rounding decides which of two depths is the nearer one.
   static bool is_close(float depth, float other) { return std::abs(depth - other) < 1e-7f; }
 

@@ -59,7 +59,8 @@ class Penumbra : public ::testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Filters, Penumbra,
                          ::testing::Values("pcss:taps=32,max_radius=20,search_taps=32", "dpcf:taps=32,max_radius=20",
-                                           "evssm:taps=8,max_radius=40,rotation=per-pixel"),
+                                           "evssm:taps=8,max_radius=40,rotation=per-pixel",
+                                           "smrt:rays=32,steps=32,max_radius=20,thickness=1"),
                          [](const auto& each) {
                            const std::string text = each.param;
                            return text.substr(0, text.find(':'));
@@ -72,6 +73,23 @@ TEST_P(ContactHardening, LightOfNoSize_EqualsHardShadow) {
   for (int i = 0; i < 500; ++i) {
     const Receiver r = make_floor_receiver(2.0 + 0.12 * i, 61.0 - 0.11 * i, 0.0f);
     ASSERT_EQ(soft.at(r), hard.at(r)) << i;
+  }
+}
+
+/// A ray to the centre of the light, and rays to a light without a size, compare with the receiver's own texel alone,
+/// however many steps they take.
+TEST(Smrt, OneRay_AndALightOfNoSize_EqualNoFilter) {
+  std::mt19937 random(4);
+  const DepthMap map = make_map([&](int, int) { return static_cast<float>(random()) * 0x1p-32f; });
+  const Filtered hard("none", map);
+  for (const char* text :
+       {"smrt:rays=1", "smrt:rays=1,thickness=1,steps=32", "smrt:rays=1,steps=4", "smrt:thickness=1"}) {
+    const Filtered traced(text, map);
+    for (int i = 0; i < 2000; ++i) {
+      Receiver r = make_floor_receiver(2.0 + 0.03 * i, 61.0 - 0.0275 * i, i % 2 == 0 ? 0.0f : 0.3f);
+      if (std::string(text) == "smrt:thickness=1") r.light_size = 0.0f;
+      ASSERT_EQ(traced.at(r), hard.at(r)) << text << ", " << i;
+    }
   }
 }
 

@@ -249,7 +249,9 @@ INSTANTIATE_TEST_SUITE_P(
         "esm:c=8,store=r16f", "vsm_sat:radius=0", "vsm_sat:radius=20", "vsm_sat:bleed_reduction=0,slope_variance=0",
         "csm_conv:radius=0,damping=0", "csm_conv:scale=1", "vssm:max_radius=0", "vssm:max_radius=4,bleed_reduction=0",
         "vssm:min_variance=0.001", "evssm:taps=1,rotation=none", "evssm:taps=8,rotation=per-pixel",
-        "evssm:max_radius=0", "evssm:max_radius=8,bleed_reduction=0.2,c_down=10"),
+        "evssm:max_radius=0", "evssm:max_radius=8,bleed_reduction=0.2,c_down=10", "smrt:rays=1",
+        "smrt:rotation=none,steps=16,thickness=1", "smrt:rotation=interleaved-gradient,rays=4,steps=4",
+        "smrt:max_radius=4,thickness=8"),
     [](const auto& each) {
       std::string name = each.param;
       for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
@@ -275,8 +277,18 @@ INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,
                          ::testing::Combine(::testing::Values("cubes", "steps"),
                                             ::testing::Values("none", "pcf2x2", "tent3x3", "box3x3", "teach4x4",
                                                               "box4x4", "tent5x5", "castano7", "gather_pcf", "poisson",
-                                                              "pcss", "dpcf")),
+                                                              "pcss", "dpcf", "smrt")),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
+
+/// With the same bias, a ray to the light's centre is a comparison with one texel.
+TEST(ShadowMapRayTracing, OneRay_EqualsNoFilter_BitForBit) {
+  const render::BiasRule bias = render::parse_bias({"constant:depth=1e-3"});
+  for (const char* name : {"ball", "fence", "lantern"}) {
+    Bench bench(shared_context(), load_builtin(name), 512, 240, 135);
+    const auto draw = [&](const char* text) { return bench.draw(catalogue().parse_requests(text).front(), bias); };
+    EXPECT_EQ(draw("smrt:rays=1"), draw("none")) << name;
+  }
+}
 
 /// What lies outside the map, on a scene with many receivers there.
 class BorderAgreement : public ::testing::TestWithParam<std::tuple<filters::Border, std::string>> {};
