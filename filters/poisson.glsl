@@ -5,10 +5,10 @@ kind = "stochastic"
 radius_texels = "radius"
 [param.taps]
 default = 16
-choices = [4, 8, 16, 32]
+choices = [4, 5, 8, 16, 32]
 const = true
 unit = "hardware 2x2 fetches"
-text = "points in the disk; too few turn the penumbra into noise or bands"
+text = "points in the disk; too few turn the penumbra into noise or bands; 5 with rotation=interleaved-gradient are what three.js draws since 2025 (its pull requests 32303 and 32381)"
 [param.radius]
 default = 3.0
 min = 0.0
