@@ -1,5 +1,6 @@
 #include "filters/disk_points.h"
 #include "filters/model.h"
+#include "filters/penumbra/early_bail.h"
 #include "filters/penumbra/penumbra_disk.h"
 
 namespace shadowbench::filters {
@@ -14,6 +15,7 @@ class Pcss {
   explicit Pcss(const ModelInput& input)
       : map_(input),
         points_(generate_disk_points(input.spec, input.values, "disk_points")),
+        bail_(input.values),
         search_points_(generate_disk_points(input.spec, input.values, "search_points")),
         disk_(input.values),
         rotation_(text_or(input.values, "rotation", "none")),
@@ -32,9 +34,10 @@ class Pcss {
     if (radius < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
     tally.disk_radius_texels = static_cast<double>(radius);
     T sum{};
-    for (const glm::vec2& point : points_) {
-      const Offset<T> offset = turn.place(radius, point);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Offset<T> offset = turn.place(radius, points_[bail_.order(i, points_.size())]);
       sum = sum + map_.compare_2x2(r, offset, Disk::biased(r, offset), tally);
+      if (bail_.agrees(i, value_of(sum), tally)) return T(value_of(sum) > 0.0 ? P(1) : P(0));
     }
     return sum / T(static_cast<P>(points_.size()));
   }
@@ -42,6 +45,7 @@ class Pcss {
  private:
   DepthReader<T> map_;
   std::vector<glm::vec2> points_;
+  EarlyBail bail_;
   std::vector<glm::vec2> search_points_;
   Disk disk_;
   std::string rotation_;
@@ -50,12 +54,14 @@ class Pcss {
   /// The mean depth of the blockers found.
   std::optional<P> find_blocker(const Receiver& r, P search, const DiskTurn<T>& turn, Tally& tally) const {
     P depths{}, blockers{};
-    for (const glm::vec2& point : search_points_) {
-      const Offset<T> offset = turn.place(search, point);
+    for (std::size_t i = 0; i < search_points_.size(); ++i) {
+      const Offset<T> offset = turn.place(search, search_points_[bail_.order(i, search_points_.size())]);
       const std::optional<P> depth = find_blocker_at(r, offset, tally);
-      if (!depth) continue;
-      depths += *depth;
-      blockers += P(1);
+      if (depth) {
+        depths += *depth;
+        blockers += P(1);
+      }
+      if (blockers == P(0) && bail_.agrees(i, 0.0, tally)) return std::nullopt;
     }
     return blockers > P(0) ? std::optional(depths / blockers) : std::nullopt;
   }

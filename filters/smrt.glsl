@@ -21,7 +21,7 @@ default = 2.0
 min = 1.0
 max = 64.0
 unit = "steps"
-text = "how far a surface of the map is taken to reach down from where it lies; 1 leaves no gap between steps, but lets rays slip through slopes; too much darkens what is below an occluder's edge"
+text = "how far a surface of the map is taken to reach down from where it lies; 1 leaves no gap between steps, but lets rays slip through slopes; too little lights lines in shadows where one occluder's edge lies above another, too much darkens what is below an edge"
 [param.max_radius]
 default = 12.0
 min = 0.0

@@ -249,8 +249,9 @@ INSTANTIATE_TEST_SUITE_P(
         "esm:c=8,store=r16f", "vsm_sat:radius=0", "vsm_sat:radius=20", "vsm_sat:bleed_reduction=0,slope_variance=0",
         "csm_conv:radius=0,damping=0", "csm_conv:scale=1", "vssm:max_radius=0", "vssm:max_radius=4,bleed_reduction=0",
         "vssm:min_variance=0.001", "evssm:taps=1,rotation=none", "evssm:taps=8,rotation=per-pixel",
-        "evssm:max_radius=0", "evssm:max_radius=8,bleed_reduction=0.2,c_down=10", "smrt:rays=1",
-        "smrt:rotation=none,steps=16,thickness=1", "smrt:rotation=interleaved-gradient,rays=4,steps=4",
+        "evssm:max_radius=0", "evssm:max_radius=8,bleed_reduction=0.2,c_down=10", "poisson:bail=agree",
+        "poisson:bail=agree,pattern=blue-noise", "poisson:taps=5,rotation=interleaved-gradient", "pcss:bail=agree",
+        "smrt:rays=1", "smrt:rotation=none,steps=16,thickness=1", "smrt:rotation=interleaved-gradient,rays=4,steps=4",
         "smrt:max_radius=4,thickness=8"),
     [](const auto& each) {
       std::string name = each.param;
