@@ -38,33 +38,31 @@ seed = 1
 +++*/
 #include "lib/penumbra.glsl"
 
-// How far a step lies above the receiver, in depth: alike for all receivers, so that a shadow that moves stays as it is.
+// How far a step lies above any receiver, in depth: the same for all, so that a shadow that moves stays as it is.
 float height_of(float step) {
   float share = step / float(steps);
   return share * share;
 }
 
-// Whether a surface of the map that reaches down from where it lies crosses a step of a ray, which begins at the step's
-// height and is read at `within` of it. Whatever lies above the last step is crossed by it.
-bool crosses(Receiver r, vec2 point, int step, float within) {
+// 1 where a surface of the map, which reaches down from where it lies, crosses a step of a ray that begins at the
+// step's height and is read at `within` of it; else 0. Whatever lies above the last step is crossed by it.
+float block(Receiver r, vec2 point, int step, float within) {
   vec2 offset = min(penumbra_radius(r, height_of(float(step) + within)), max_radius) * point;
   float depth = fetch_depth(r, offset);
   float start = nearest_depth(r, offset, biased_depth(r, offset));
-  if (depth >= start - height_of(float(step))) return false;
-  return step == steps - 1 || depth >= start - height_of(float(step) + thickness);
+  bool is_beyond = step < steps - 1 && depth < start - height_of(float(step) + thickness);
+  return depth >= start - height_of(float(step)) || is_beyond ? 0.0 : 1.0;
 }
 
 float visibility(Receiver r) {
   vec2 turn = find_turn(r.pixel);
-  int lit = rays;
+  float lit = float(rays);
   for (int i = 0; i < rays; ++i) {
     vec2 point = rotate(disk_points[i], turn);
     float within = fract((float(i) + 0.5) * 0.61803399);  // rays read their steps at other places, a golden ratio on
-    for (int k = 0; k < steps; ++k) {
-      if (!crosses(r, point, k, within)) continue;
-      --lit;
-      break;
-    }
+    float blocked = 0.0;
+    for (int k = 0; k < steps && blocked == 0.0; ++k) blocked = block(r, point, k, within);
+    lit -= blocked;
   }
-  return float(lit) / float(rays);
+  return lit / float(rays);
 }
