@@ -96,14 +96,14 @@ float light_of(vec4 moments, float up, float down) {
 }
 
 float visibility(Receiver r) {
-  if (r.depth > 1.0) return 0.0;  // outside the map its passes repeat its edge
-  if (any(notEqual(r.uv, clamp(r.uv, 0.0, 1.0)))) return 1.0;
+  bool is_beyond = r.depth > 1.0;
+  // Outside the map its passes repeat its edge.
+  if (is_beyond || any(notEqual(r.uv, clamp(r.uv, 0.0, 1.0)))) return is_beyond ? 0.0 : 1.0;
   float up = warp_up(r.depth, c), down = warp_down(r.depth, c_down);
   float search = clamp(penumbra_radius(r, r.depth_unbiased), least_radius, max(0.5 * max_radius, least_radius));
   vec4 around = fetch_wide(r, vec2(0.0), search);
   float lit = light_of(around, up, down);
-  if (lit > 1.0 - sure) return 1.0;
-  if (lit < sure) return 0.0;
+  if (min(lit, 1.0 - lit) < sure) return round(lit);
   float blockers = down - (down - around.z) / (1.0 - lit);
   float depth = 0.5 - 0.5 * log(clamp(-blockers, -down, exp(c_down))) / c_down;
   float radius = clamp(penumbra_radius(r, r.depth - depth), least_radius, search);
