@@ -55,7 +55,7 @@ int OwnPasses::count_steps(const PassSpec& spec) const {
   return std::bit_width(static_cast<unsigned>(side(spec)));
 }
 
-int MapPasses::side(const PassSpec& spec) const {
+int OwnPasses::side(const PassSpec& spec) const {
   const int texels = spec.half ? map_size_ / 2 : map_size_;
   if (spec.steps != PassSteps::kLevels) return texels;
   return static_cast<int>(std::bit_ceil(static_cast<unsigned>(texels)));
