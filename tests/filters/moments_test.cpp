@@ -7,6 +7,7 @@
 
 #include "filters/catalogue.h"
 #include "filters/four_moments.h"
+#include "filters/packed_moments.h"
 #include "filters/percentage_closer.h"
 
 namespace shadowbench::filters {
@@ -88,7 +89,8 @@ TEST(Moments, OfTwoDepths_GiveTheLitShare) {
   DepthMap map{kMomentMapSide, {}};
   for (int i = 0; i < kMomentMapSide * kMomentMapSide; ++i)
     map.stored.push_back(i % kMomentMapSide < kMomentMapSide / 2 ? kNear : kFar);
-  for (const char* text : {"msm_hamburger", "msm_hausdorff", "evsm2", "evsm4"}) {
+  for (const char* text : {"msm_hamburger", "msm_hausdorff", "evsm2", "evsm4", "msm_packed64:lookup=bilinear",
+                           "msm_packed32:lookup=bilinear"}) {
     const FilterRequest request = request_blocks(text);
     const auto lookup = prepare_blocks(request, map);
     const PercentageCloser closer(*find_kernel(request.spec, request.values), map);
@@ -117,6 +119,42 @@ TEST(Moments, OfADepth_FillTheStore_AndComeBack) {
     EXPECT_NEAR(most[i], 1.0, 1e-5) << i;
     EXPECT_GE(least[i], -1e-15);
     EXPECT_LE(most[i], 1.0 + 1e-15);
+  }
+}
+
+/// Two depths and a share become their own description; rounded, they keep within a step, and do not meet.
+TEST(PackedMoments, OfTwoDepths_AreTheseDepths) {
+  constexpr packed_moments::Levels kLevels{2048, 2048, 64, 16};
+  for (const auto& [near, far, share] : {std::tuple(-0.4, 0.5, 0.25), {-0.999, 0.999, 0.5}, {0.1, 0.1002, 0.9}}) {
+    four_moments::Moments<double> moments;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto power = static_cast<double>(i + 1);
+      moments[i] = (1.0 - share) * std::pow(near, power) + share * std::pow(far, power);
+    }
+    const auto exact = packed_moments::describe(moments), packed = packed_moments::pack(moments, kLevels);
+    EXPECT_NEAR(exact.nearer, near, 1e-6);
+    EXPECT_NEAR(exact.farther, far, 1e-6);
+    EXPECT_NEAR(exact.share, share, 1e-6);
+    EXPECT_NEAR(packed.nearer, near, 1.0 / 2047.0);
+    EXPECT_NEAR(packed.farther, far, 2.0 / 2047.0);
+    EXPECT_GT(packed.farther, packed.nearer);
+    EXPECT_LE(packed.share, 1.0);
+  }
+}
+
+/// The light of what is described is that of the moments, by the polynomial of their Hankel matrix.
+TEST(PackedMoments, Described_GiveTheShareOfTheMoments) {
+  std::mt19937 random(3);
+  const auto uniform = [&] { return 2.0 * static_cast<double>(random()) * 0x1p-32 - 1.0; };
+  for (int i = 0; i < 500; ++i) {
+    four_moments::Moments<double> moments{};
+    for (int depth = 0; depth < 5; ++depth) {
+      const double x = uniform();
+      for (std::size_t k = 0; k < 4; ++k) moments[k] += 0.2 * std::pow(x, static_cast<double>(k + 1));
+    }
+    const double x = uniform();
+    const double share = four_moments::share_of_points(moments, x, four_moments::solve(moments, x));
+    EXPECT_NEAR(packed_moments::find_share(packed_moments::describe(moments), x, 0.0), share, 1e-3) << i;
   }
 }
 

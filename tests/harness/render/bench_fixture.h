@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -153,6 +154,14 @@ inline std::vector<std::string> filter_ids() {
   std::vector<std::string> ids;
   for (const auto& spec : catalogue().filters()) ids.push_back(spec.id);
   return ids;
+}
+
+/// Whether a filter rounds what it averaged to whole numbers. Rounding in single precision may decide about a step of
+/// them, and a step of few is seen.
+inline bool rounds_to_steps(const filters::FilterSpec& spec) {
+  return std::ranges::any_of(
+      spec.passes,
+      [](const filters::PassSpec& pass) { return pass.is_integer() && pass.steps == filters::PassSteps::kOnce; });
 }
 
 }  // namespace shadowbench::test

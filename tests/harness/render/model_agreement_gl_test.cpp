@@ -34,6 +34,11 @@ filters::GlAccuracy measured_accuracy() {
 /// Whether it looks up something else than the depth map.
 bool stores(const filters::FilterSpec& spec) { return spec.has_encode || !spec.passes.empty(); }
 
+/// The largest share of receivers that may be excused.
+double most_excused(const filters::FilterSpec& spec, double otherwise) {
+  return rounds_to_steps(spec) ? 0.08 : otherwise;
+}
+
 double pcf_tolerance() {
   static const int bits = gl::measure_pcf_weights(shared_context(), GL_DEPTH_COMPONENT32F).bits;
   return bits >= 22 ? 1e-4 : 1.0 / 128.0;
@@ -120,8 +125,9 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
     EXPECT_GT(a.shadowed, 0.01);
     // Filters that choose their kernel are excused by that choice, too.
     const double by_choice = fit_of(scene) == scene::FitMode::kParaboloid ? 0.05 : 0.01;
-    const double most_excused = catalogue().find(filter).claims.empty() ? 0.005 : by_choice;
-    EXPECT_LT(static_cast<double>(a.excused), most_excused * static_cast<double>(a.compared));
+    const filters::FilterSpec& spec = catalogue().find(filter);
+    EXPECT_LT(static_cast<double>(a.excused),
+              most_excused(spec, spec.claims.empty() ? 0.005 : by_choice) * static_cast<double>(a.compared));
     // Across a silhouette the position's rounding alone can exceed the minimum variance, and light-bleeding reduction
     // widens every bound. So does reading depth back from a perspective map, and texels that are small beside the
     // range of depth, as a warped map has them near the camera.
@@ -167,7 +173,7 @@ TEST_P(ModelFormats, GlImageEqualsModel) {
     const filters::FilterRequest request = catalogue().parse_requests(id).front();
     const Agreement a = compare(bench, request);
     EXPECT_GT(a.shadowed, 0.01) << id;
-    EXPECT_LT(static_cast<double>(a.excused), 0.01 * static_cast<double>(a.compared)) << id;
+    EXPECT_LT(static_cast<double>(a.excused), most_excused(request.spec, 0.01) * static_cast<double>(a.compared)) << id;
     if (stores(request.spec)) {
       EXPECT_LE(a.worst_bound_ratio, 1.0) << id;
       // A depth that is read back one ULP off falls on another step of a summed-area table, alike all over a plane.
@@ -222,7 +228,7 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
   const filters::FilterRequest request = catalogue().parse_requests(GetParam()).front();
   const Agreement a = compare(bench, request);
   EXPECT_GT(a.shadowed, 0.01);
-  EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
+  EXPECT_LT(static_cast<double>(a.excused), most_excused(request.spec, 0.005) * static_cast<double>(a.compared));
   const bool half = filters::text_or(request.values, "store", "").find("16") != std::string::npos;
   if (stores(request.spec)) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
@@ -252,7 +258,8 @@ INSTANTIATE_TEST_SUITE_P(
         "evssm:max_radius=0", "evssm:max_radius=8,bleed_reduction=0.2,c_down=10", "poisson:bail=agree",
         "poisson:bail=agree,pattern=blue-noise", "poisson:taps=5,rotation=interleaved-gradient", "pcss:bail=agree",
         "smrt:rays=1", "smrt:rotation=none,steps=16,thickness=1", "smrt:rotation=interleaved-gradient,rays=4,steps=4",
-        "smrt:max_radius=4,thickness=8"),
+        "smrt:max_radius=4,thickness=8", "msm_packed64:lookup=bilinear", "msm_packed64:radius=0",
+        "msm_packed32:lookup=bilinear", "msm_packed32:radius=1"),
     [](const auto& each) {
       std::string name = each.param;
       for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
@@ -303,7 +310,7 @@ TEST_P(BorderAgreement, GlImageEqualsModel) {
   const Agreement a = compare(bench, request);
   EXPECT_GT(a.compared, 20000u);
   EXPECT_GT(a.shadowed, 0.1);
-  EXPECT_LT(static_cast<double>(a.excused), 0.02 * static_cast<double>(a.compared));
+  EXPECT_LT(static_cast<double>(a.excused), most_excused(request.spec, 0.02) * static_cast<double>(a.compared));
   if (stores(request.spec)) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
     EXPECT_LE(a.worst_float, 2e-3);

@@ -1,0 +1,9 @@
+#include "filters/packed_moments.h"
+
+namespace shadowbench::filters {
+
+std::unique_ptr<ScalarModel> make_msm_packed64_model() {
+  return make_templated_model<PackedMoments<packed_moments::Levels{65536, 65536, 65536, 65536}>::Filter>();
+}
+
+}  // namespace shadowbench::filters
