@@ -59,6 +59,14 @@ S share_of_points(const Moments<S>& b, S x, const std::array<S, 3>& c) {
 }
 
 template <class S>
+S distance_to_blockers(const Moments<S>& b, S x, const std::array<S, 3>& c) {
+  const S mass = S(1) / (c[0] + x * (c[1] + x * c[2]));
+  if (c[2] >= S(0)) return (x - b[0]) / (S(1) - mass);
+  const S root = std::sqrt(c[1] * c[1] - S(4) * c[0] * c[2]);
+  return x - (c[1] < S(0) ? S(0.5) * (root - c[1]) / c[2] : S(-2) * c[0] / (c[1] + root));
+}
+
+template <class S>
 bool leaves_range(const std::array<S, 3>& c) {
   const S root = std::sqrt(std::max(c[1] * c[1] - S(4) * c[0] * c[2], S(0)));
   const S far = S(-0.5) * (c[1] + (c[1] < S(0) ? -root : root));
@@ -94,6 +102,27 @@ S find_light(Depths depths, const std::array<S, 4>& stored, S depth, S bias) {
   return S(1) - std::clamp((share - bias) / (S(1) - bias), S(0), S(1));
 }
 
+inline constexpr double kEvaluation = 16.0 * kUnitRoundoff;  // of a lookup, as an error of the moments
+
+/// How far what `function` makes of stored moments is from `seen`, where these are off by a quarter and by half of
+/// their bounds, all ways round: the largest difference. Moments that belong to no distribution may become anything.
+template <class Function>
+double change_by_rounding(const std::array<Tracked, 4>& stored, double bias, double seen, const Function& function) {
+  double largest = 0.0;
+  for (const double part : {0.25, 0.5}) {
+    for (unsigned corner = 0; corner < 16; ++corner) {
+      std::array<double, 4> moved{};
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double off = part * (stored[i].bound + kEvaluation);
+        moved[i] = stored[i].value + ((corner >> i & 1u) != 0 ? off : -off);
+      }
+      if (!are_of_a_distribution(decode(moved, bias))) return HUGE_VAL;
+      largest = std::max(largest, std::abs(function(moved) - seen));
+    }
+  }
+  return largest;
+}
+
 }  // namespace four_moments
 
 /// The scalar model of moment shadow maps.
@@ -120,7 +149,6 @@ struct FourMoments {
 
    private:
     using Stored = std::array<double, 4>;
-    static constexpr double kEvaluation = 16.0 * kUnitRoundoff;  // of the lookup, as an error of the moments
     static constexpr double kSafety = 2.0;
 
     EncodedMap<T, 4> map_;
@@ -135,22 +163,7 @@ struct FourMoments {
       return four_moments::find_light(kDepths, stored, static_cast<double>(r.depth), static_cast<double>(bias_));
     }
 
-    /// What the light becomes where stored numbers are off by `share` of their bounds, all ways round: the largest
-    /// change. Moments that belong to no distribution may become anything.
-    double change_by_rounding(const Stored& stored, const Stored& error, double share, const Receiver& r) const {
-      const double seen = light(stored, r);
-      double largest = 0.0;
-      for (unsigned corner = 0; corner < 16; ++corner) {
-        Stored moved = stored;
-        for (std::size_t i = 0; i < 4; ++i) moved[i] += (corner >> i & 1u) != 0 ? share * error[i] : -share * error[i];
-        if (!four_moments::are_of_a_distribution(four_moments::decode(moved, static_cast<double>(bias_))))
-          return HUGE_VAL;
-        largest = std::max(largest, std::abs(light(moved, r) - seen));
-      }
-      return largest;
-    }
-
-    /// The same where the place in the map is off.
+    /// How much the light changes where the place in the map is off.
     double change_by_place(const Stored& stored, const Receiver& r) const {
       const double seen = light(stored, r), step = map_.placement();
       double largest = 0.0;
@@ -172,10 +185,8 @@ struct FourMoments {
       map_.fetch(r, tally);
       const auto middle = map_.fetch_between(r, {});
       const Stored stored = values_of(middle);
-      Stored error{};
-      for (std::size_t i = 0; i < 4; ++i) error[i] = bound_of(middle[i]) + kEvaluation;
-      const double by_rounding =
-          std::max(change_by_rounding(stored, error, 0.25, r), change_by_rounding(stored, error, 0.5, r));
+      const double by_rounding = four_moments::change_by_rounding(middle, static_cast<double>(bias_), light(stored, r),
+                                                                  [&](const Stored& moved) { return light(moved, r); });
       return {light(stored, r), kSafety * (by_rounding + change_by_place(stored, r))};
     }
   };

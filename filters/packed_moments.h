@@ -100,7 +100,6 @@ struct PackedMoments {
 
    private:
     using Stored = std::array<double, 4>;
-    static constexpr double kEvaluation = 16.0 * kUnitRoundoff;  // of packing, as an error of the moments
     static constexpr double kSafety = 2.0;
     static constexpr double kSeen = 0.0625;  // of the moments' bounds: roundings were never seen to reach further
     static constexpr double kTie = 1e-3;     // of light: what a step that rounding decides about may change
@@ -182,7 +181,7 @@ struct PackedMoments {
             return (corner >> i & 1u) != 0 ? part * bound : -part * bound;
           };
           Stored moved = stored;
-          for (std::size_t i = 0; i < 4; ++i) moved[i] += off(i, bound_of(texel[i]) + kEvaluation);
+          for (std::size_t i = 0; i < 4; ++i) moved[i] += off(i, bound_of(texel[i]) + four_moments::kEvaluation);
           const auto moments = four_moments::decode(moved, bias);
           if (!four_moments::are_of_a_distribution(moments)) return {here.exact, HUGE_VAL};
           const Light there = both(moments, depth.value + off(4, depth.bound));

@@ -16,15 +16,15 @@ P count_moment_steps(int side) {
   return std::min(P(16777216), std::floor(P(4e9) / static_cast<P>(side * side)));
 }
 
-/// Means of two moments over boxes of texels, as shaders/lib/summed_area.glsl makes them from its summed-area table;
-/// `side` is the longest side of a box in texels. Whole numbers are added in single precision alone: elsewhere the
-/// moments are as encode() gives them, and tracked precision knows by how much the steps move them.
-template <class T>
+/// Means of two or four moments over boxes of texels, as shaders/lib/summed_area.glsl makes them from its summed-area
+/// table; `side` is the longest side of a box in texels. Whole numbers are added in single precision alone: elsewhere
+/// the moments are as encode() gives them, and tracked precision knows by how much the steps move them.
+template <class T, std::size_t N>
 class SummedMoments {
   using P = Position<T>;
 
  public:
-  using Moments = std::array<T, 2>;
+  using Moments = std::array<T, N>;
 
   template <class Encode>
   SummedMoments(const ModelInput& input, int side, Encode encode)
@@ -32,7 +32,8 @@ class SummedMoments {
         memory_{size_, store_bytes(input.spec.passes.back().store)},
         steps_(count_moment_steps<P>(side)),
         table_(static_cast<std::size_t>(size_ * size_)) {
-    const EncodedMap<T, 2> map(input, 0, encode);
+    outside_ = encode(EncodeInput<T>{T(P(1)), {}});
+    const EncodedMap<T, N> map(input, 0, encode);
     for (int y = 0; y < size_; ++y)
       for (int x = 0; x < size_; ++x) table_[index(x, y)] = add(map.texel(x, y), x, y);
   }
@@ -45,7 +46,7 @@ class SummedMoments {
     if constexpr (std::is_same_v<T, Tracked>) {
       for (int edge = 0; edge < 8; ++edge) {
         const Moments moved = move_edge(low, high, edge);
-        for (std::size_t c = 0; c < 2; ++c) moments[c].bound += 0.5 * std::abs(moved[c].value - moments[c].value);
+        for (std::size_t c = 0; c < N; ++c) moments[c].bound += 0.5 * std::abs(moved[c].value - moments[c].value);
       }
     }
     return moments;
@@ -53,13 +54,14 @@ class SummedMoments {
 
  private:
   struct Sums {
-    std::array<double, 2> values{};
-    std::array<double, 2> bounds{};  ///< of single precision
+    std::array<double, N> values{};
+    std::array<double, N> bounds{};  ///< of single precision
   };
 
   int size_;
   MapMemory memory_;  ///< of the table
   P steps_;
+  Moments outside_;
   std::vector<Sums> table_;
 
   /// What the table counts 1 as.
@@ -70,7 +72,7 @@ class SummedMoments {
   Sums add(const Moments& moments, int x, int y) const {
     const Sums &left = at(x - 1, y), &below = at(x, y - 1), &both = at(x - 1, y - 1);
     Sums sums;
-    for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t c = 0; c < N; ++c) {
       double value = value_of(moments[c]);
       value = value > 0.0 ? std::min(value, 1.0) : 0.0;  // what is no number becomes 0, as in the GL
       if constexpr (std::is_same_v<T, float>)
@@ -97,10 +99,11 @@ class SummedMoments {
     const glm::ivec2 inside = glm::clamp(to, -1, size_ - 1) - glm::clamp(from, -1, size_ - 1);
     const int outside = (to.x - from.x) * (to.y - from.y) - inside.x * inside.y;
     Moments sum;
-    for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t c = 0; c < N; ++c) {
       const double value = all.values[c] - left.values[c] - below.values[c] + both.values[c];
       const double bound = all.bounds[c] - left.bounds[c] - below.bounds[c] + both.bounds[c];
-      sum[c] = make_uncertain<T>(static_cast<P>(value) / unit(), std::max(bound, 0.0)) + T(static_cast<P>(outside));
+      sum[c] = make_uncertain<T>(static_cast<P>(value) / unit(), std::max(bound, 0.0)) +
+               T(static_cast<P>(outside)) * outside_[c];
     }
     return sum;
   }
@@ -119,10 +122,11 @@ class SummedMoments {
       const T weight(part(left_part, i & 1) * part(right_part, i >> 1 & 1) * part(bottom_part, i >> 2 & 1) *
                      part(top_part, i >> 3));
       const Moments sum = window(from, to);
-      for (std::size_t c = 0; c < 2; ++c) moments[c] = moments[c] + weight * sum[c];
+      for (std::size_t c = 0; c < N; ++c) moments[c] = moments[c] + weight * sum[c];
       area = area + weight * T(static_cast<P>((to.x - from.x) * (to.y - from.y)));
     }
-    return {moments[0] / area, moments[1] / area};
+    for (T& moment : moments) moment = moment / area;
+    return moments;
   }
 
   /// The mean with one edge off by as much as single precision may place it.

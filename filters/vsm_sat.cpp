@@ -28,7 +28,7 @@ class VsmSat {
  private:
   Variance<T> variance_;
   int radius_;
-  SummedMoments<T> moments_;
+  SummedMoments<T, 2> moments_;
 };
 
 }  // namespace

@@ -35,40 +35,26 @@ text = "share of the dark end that is cut to black; hides light bleeding, and ha
 store = "rg32ui"
 steps = "prefix"
 +++*/
-#include "lib/penumbra_radius.glsl"
-#include "lib/summed_area.glsl"
-
-const float least_half_width = 0.5;   // texels: the box is never smaller than a texel
-const float box_of_disk = 0.8660254;  // half-width of the box with the standard deviation of a disk of radius 1
+#include "lib/penumbra_box.glsl"
 
 vec4 encode(EncodeInput e) {
   float within_texel = slope_variance * dot(e.depth_per_texel, e.depth_per_texel);
   return vec4(e.depth, e.depth * e.depth + within_texel, 0.0, 0.0);
 }
 
-int longest_side() { return 2 * max_radius + 3; }
-
 uvec4 summed(PassInput p) { return sum_moments(p, longest_side()); }
-
-vec2 moments_around(Receiver r, float half_width) {
-  vec2 place = r.uv / map_texel_uv;
-  return mean_moments(place - half_width, place + half_width, longest_side());
-}
 
 float variance_of(vec2 moments) { return max(moments.y - moments.x * moments.x, min_variance); }
 
-// The half-width of the box for a blocker so far above the receiver in depth, texels.
-float half_width(Receiver r, float depth_above) { return box_of_disk * penumbra_radius(r, depth_above); }
-
 float visibility(Receiver r) {
-  float search = clamp(half_width(r, r.depth_unbiased), least_half_width, max(float(max_radius), least_half_width));
-  vec2 around = moments_around(r, search);
+  float search = search_half_width(r);
+  vec2 around = mean_around(r, search).xy;
   float distance = r.depth - around.x;
   if (distance <= 0.0) return 1.0;
   // The mean distance to the blockers, where all that does not block has the receiver's depth and the blocked share is
   // what Chebyshev's inequality leaves.
   float to_blockers = distance + variance_of(around) / distance;
-  vec2 moments = moments_around(r, clamp(half_width(r, to_blockers), least_half_width, search));
+  vec2 moments = mean_around(r, clamp(half_width(r, to_blockers), least_half_width, search)).xy;
   distance = r.depth - moments.x;
   if (distance <= 0.0) return 1.0;
   float variance = variance_of(moments);

@@ -45,6 +45,15 @@ float share_of_points(vec4 b, float x, vec3 c) {
   return (0.5 * (1.0 - mass) * (c.y + root) + c.z * (b.x - mass * x)) / root;
 }
 
+// How far before x the points lie on the mean that `share_of_points` counts, of which there must be some: both others,
+// or the nearer one, a root of the polynomial.
+float distance_to_blockers(vec4 b, float x, vec3 c) {
+  float mass = 1.0 / (c.x + x * (c.y + x * c.z));
+  if (c.z >= 0.0) return (x - b.x) / (1.0 - mass);
+  float root = sqrt(c.y * c.y - 4.0 * c.x * c.z);
+  return x - (c.y < 0.0 ? 0.5 * (root - c.y) / c.z : -2.0 * c.x / (c.y + root));
+}
+
 // Whether one of the two other points lies outside [-1,1], where no depth is.
 bool leaves_range(vec3 c) {
   float root = sqrt(max(c.y * c.y - 4.0 * c.x * c.z, 0.0));
