@@ -21,6 +21,8 @@ text = "share of a wide distribution that is mixed in; too small gives noise, to
 store = "rgba32ui"
 steps = "prefix"
 +++*/
+#define MOMENTS vec4
+#define MOMENT_SUMS uvec4
 #include "lib/four_moments.glsl"
 #include "lib/penumbra_box.glsl"
 

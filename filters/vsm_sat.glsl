@@ -49,7 +49,7 @@ uvec4 summed(PassInput p) { return sum_moments(p, longest_side()); }
 float visibility(Receiver r) {
   vec2 place = r.uv / map_texel_uv;
   float reach = float(radius) + 0.5;
-  vec2 moments = mean_moments(place - reach, place + reach, longest_side()).xy;
+  vec2 moments = mean_moments(place - reach, place + reach, longest_side());
   float distance = r.depth - moments.x;
   if (distance <= 0.0) return 1.0;
   float variance = max(moments.y - moments.x * moments.x, min_variance);

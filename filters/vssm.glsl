@@ -48,13 +48,13 @@ float variance_of(vec2 moments) { return max(moments.y - moments.x * moments.x, 
 
 float visibility(Receiver r) {
   float search = search_half_width(r);
-  vec2 around = mean_around(r, search).xy;
+  vec2 around = mean_around(r, search);
   float distance = r.depth - around.x;
   if (distance <= 0.0) return 1.0;
   // The mean distance to the blockers, where all that does not block has the receiver's depth and the blocked share is
   // what Chebyshev's inequality leaves.
   float to_blockers = distance + variance_of(around) / distance;
-  vec2 moments = mean_around(r, clamp(half_width(r, to_blockers), least_half_width, search)).xy;
+  vec2 moments = mean_around(r, clamp(half_width(r, to_blockers), least_half_width, search));
   distance = r.depth - moments.x;
   if (distance <= 0.0) return 1.0;
   float variance = variance_of(moments);

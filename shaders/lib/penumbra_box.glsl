@@ -16,7 +16,7 @@ float search_half_width(Receiver r) {
   return clamp(half_width(r, r.depth_unbiased), least_half_width, max(float(max_radius), least_half_width));
 }
 
-vec4 mean_around(Receiver r, float half_width) {
+MOMENTS mean_around(Receiver r, float half_width) {
   vec2 place = r.uv / map_texel_uv;
   return mean_moments(place - half_width, place + half_width, longest_side());
 }
