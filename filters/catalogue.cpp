@@ -22,6 +22,7 @@ namespace shadowbench::filters {
 namespace {
 
 constexpr std::string_view kAll = "all", kTeaching = "teaching", kWidth = "width";
+constexpr char kPresetMark = '@';
 
 /// A report's pictures are named for filters, and the first of these names is its own; the others name many filters.
 constexpr std::string_view kReservedIds[] = {"truth", kAll, kTeaching};
@@ -73,13 +74,26 @@ void assign_value(FilterRequest& request, const std::string& assignment) {
 
 /// Puts the radius in place of the width that was asked for.
 void apply_width(FilterRequest& request) {
-  if (request.width.empty()) return;
+  if (request.width.empty() || !request.presets.empty()) return;  // of a preset it was put there
   const double radius = solve_radius(request.spec, request.values, request.width);
   const auto& name = std::get<std::string>(request.spec.radius_texels);
   if (std::ranges::count(request.set_by_user, name) > 0)
     fail(fmt::format("{} sets '{}' and 'width', which says the same: leave one out", request.spec.id, name));
   request.values[name] = radius;
   request.set_by_user.push_back(name);
+}
+
+/// Makes one request of those that are the same, where a preset is among them.
+std::vector<FilterRequest> merge_presets(std::vector<FilterRequest> requests) {
+  std::vector<FilterRequest> merged;
+  for (FilterRequest& request : requests) {
+    const auto same = std::ranges::find_if(merged, [&](const auto& other) { return is_same(request, other); });
+    if (same == merged.end() || (same->presets.empty() && request.presets.empty()))
+      merged.push_back(std::move(request));
+    else
+      same->presets.insert(same->presets.end(), request.presets.begin(), request.presets.end());
+  }
+  return merged;
 }
 
 /// What a filter computes with: its file without ids, titles, sources, claims, what is said of parameters, and
@@ -137,7 +151,7 @@ ParamValue parse_value(const FilterSpec& spec, const std::string& name, const st
 
 bool is_same(const FilterRequest& a, const FilterRequest& b) { return a.spec.id == b.spec.id && a.values == b.values; }
 
-Catalogue::Catalogue(const std::filesystem::path& folder) {
+Catalogue::Catalogue(const std::filesystem::path& folder) : folder_(folder) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
     if (entry.path().extension() == ".glsl") filters_.push_back(load_filter(entry.path()));
@@ -152,6 +166,8 @@ Catalogue::Catalogue(const std::filesystem::path& folder) {
   std::sort(filters_.begin(), filters_.end(),
             [&](const FilterSpec& a, const FilterSpec& b) { return order(a) < order(b); });
 }
+
+std::vector<Preset> Catalogue::presets() const { return load_presets(folder_ / "presets.toml"); }
 
 const FilterSpec& Catalogue::find(const std::string& id) const {
   std::vector<std::string> known;
@@ -196,27 +212,48 @@ FilterRequest Catalogue::make_request(const std::string& id) const {
   return request;
 }
 
-std::vector<FilterRequest> Catalogue::parse_requests(const std::string& text) const {
-  std::vector<FilterRequest> requests;
-  for (const std::string& item : split_list(text.empty() ? std::string(kAll) : text)) {
-    if (item == kAll || item == kTeaching) {
-      for (const FilterSpec& spec : filters_)
-        if (spec.teaching == (item == kTeaching)) requests.push_back(make_request(spec.id));
-      continue;
-    }
-    const std::size_t colon = item.find(':');
-    const bool continues = colon == std::string::npos && item.find('=') != std::string::npos;
-    if (continues) {
-      if (requests.empty()) fail(fmt::format("'{}' comes before any filter: write FILTER:PARAM=VALUE", item));
-      assign_value(requests.back(), item);
-      continue;
-    }
-    if (item.empty()) fail(fmt::format("empty filter name in '{}'", text));
+FilterRequest Catalogue::make_request(const Preset& preset) const {
+  try {
+    std::vector<FilterRequest> requests = parse_requests(preset.filter);
+    if (requests.size() != 1) fail(fmt::format("'{}' is {} filters, and must be one", preset.filter, requests.size()));
+    requests.front().presets = {preset};
+    return requests.front();
+  } catch (const Error& error) {
+    throw Error(ErrorKind::kInput, fmt::format("the preset '{}': {}", preset.name, error.message()), preset.where);
+  }
+}
+
+void Catalogue::add_requests(std::vector<FilterRequest>& requests, const std::string& item) const {
+  const std::size_t colon = item.find(':');
+  const bool has_value = item.find('=') != std::string::npos;
+  if (item == kAll || item == kTeaching) {
+    for (const FilterSpec& spec : filters_)
+      if (spec.teaching == (item == kTeaching)) requests.push_back(make_request(spec.id));
+  } else if (item.starts_with(kPresetMark) && colon == std::string::npos && !has_value) {
+    for (const Preset& preset : choose_presets(presets(), item.substr(1))) requests.push_back(make_request(preset));
+  } else if (item.starts_with(kPresetMark) ||
+             (colon == std::string::npos && has_value && !requests.empty() && !requests.back().presets.empty())) {
+    fail(
+        fmt::format("'{}': a preset has the parameters of its engine; to change one, write its filter, which 'list "
+                    "presets' shows",
+                    item));
+  } else if (colon == std::string::npos && has_value) {
+    if (requests.empty()) fail(fmt::format("'{}' comes before any filter: write FILTER:PARAM=VALUE", item));
+    assign_value(requests.back(), item);
+  } else {
     requests.push_back(make_request(item.substr(0, colon)));
     if (colon != std::string::npos) assign_value(requests.back(), item.substr(colon + 1));
   }
+}
+
+std::vector<FilterRequest> Catalogue::parse_requests(const std::string& text) const {
+  std::vector<FilterRequest> requests;
+  for (const std::string& item : split_list(text.empty() ? std::string(kAll) : text)) {
+    if (item.empty()) fail(fmt::format("empty filter name in '{}'", text));
+    add_requests(requests, item);
+  }
   for (FilterRequest& request : requests) apply_width(request);
-  return requests;
+  return merge_presets(std::move(requests));
 }
 
 }  // namespace shadowbench::filters

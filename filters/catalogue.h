@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "filters/filter_spec.h"
+#include "filters/presets.h"
 
 namespace shadowbench::filters {
 
@@ -15,6 +16,7 @@ struct FilterRequest {
   std::vector<std::string> set_by_user;  ///< names of the parameters that were asked for
   std::string width;                     ///< asked for in place of a radius, as in solve_radius(); empty: was not
   bool user_file = false;                ///< given by its path; it runs in a process of its own
+  std::vector<Preset> presets;           ///< that were asked for, and are this
 
   /// The id, with the asked-for parameters in parentheses; what tables and grids print.
   std::string label() const;
@@ -32,6 +34,9 @@ class Catalogue {
 
   const std::vector<FilterSpec>& filters() const { return filters_; }
 
+  /// Reads the presets that stand beside the filters. Throws as load_presets().
+  std::vector<Preset> presets() const;
+
   /// Throws Error(kUsage), with the nearest id, when there is no such filter.
   const FilterSpec& find(const std::string& id) const;
 
@@ -44,15 +49,19 @@ class Catalogue {
 
   /// Parses `a,b:param=value,param=value,c`. In place of a radius a filter takes `width=`, as solve_radius() does.
   /// `all` stands for every filter but those for teaching, at its defaults, and `teaching` for these; an empty text is
-  /// `all`. Throws Error(kUsage) for an unknown filter or parameter (with the nearest name) and for a value out of
-  /// range.
+  /// `all`. `@name` stands for presets, as choose_presets() finds them; what is asked for as a preset and otherwise,
+  /// too, is one request. Throws Error(kUsage) for an unknown filter, preset or parameter (with the nearest name) and
+  /// for a value out of range, and Error(kInput) with the line of a preset that is no filter of this catalogue.
   std::vector<FilterRequest> parse_requests(const std::string& text) const;
 
  private:
+  std::filesystem::path folder_;
   std::vector<FilterSpec> filters_;
   std::vector<std::string> user_ids_;
 
   FilterRequest make_request(const std::string& id) const;
+  FilterRequest make_request(const Preset& preset) const;
+  void add_requests(std::vector<FilterRequest>& requests, const std::string& item) const;
 };
 
 /// Every parameter its default.

@@ -26,7 +26,8 @@ void add_drawing_options(Command& command, DrawingArguments& arguments, const st
 void add_builtin_filters_option(Command& command, std::string& filters) {
   command
       .add("--filters", &filters,
-           "built-in filters with parameters (default: all but those for teaching; see 'list filters')")
+           "built-in filters with parameters, or @PRESET (default: all but those for teaching; see 'list filters' and "
+           "'list presets')")
       .names(ValueKind::kFilters)
       .also_called("--filter");
 }
@@ -73,10 +74,22 @@ void require_distinct(const std::vector<filters::FilterRequest>& requests) {
   }
 }
 
+std::vector<std::string> describe_presets(const std::vector<filters::FilterRequest>& requests) {
+  std::vector<std::string> notes;
+  for (const filters::FilterRequest& request : requests)
+    for (const filters::Preset& preset : request.presets) notes.push_back(filters::describe_preset(preset));
+  return notes;
+}
+
+void print_presets(const std::vector<filters::FilterRequest>& requests) {
+  for (const std::string& note : describe_presets(requests)) fmt::print(stderr, "note: {}\n", note);
+}
+
 std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& text,
                                                           const options::Resources& resources) {
   std::vector<filters::FilterRequest> requests = filters::Catalogue(resources.filters).parse_requests(text);
   require_distinct(requests);
+  print_presets(requests);
   return requests;
 }
 

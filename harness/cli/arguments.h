@@ -76,7 +76,13 @@ std::vector<std::string> list_builtin_scenes(const options::Resources& resources
 /// Refuses filters that are named twice with the same parameters.
 void require_distinct(const std::vector<filters::FilterRequest>& requests);
 
-/// Parses the built-in filters that --filters names, and refuses one that is named twice.
+/// What the user should know about each preset that was asked for.
+std::vector<std::string> describe_presets(const std::vector<filters::FilterRequest>& requests);
+
+/// Prints that, where a command has no notes to add it to.
+void print_presets(const std::vector<filters::FilterRequest>& requests);
+
+/// Parses the built-in filters that --filters names, refuses one that is named twice, and calls print_presets().
 std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& text, const options::Resources& resources);
 
 /// The results.json of a run, which is named by its folder or by that file. Throws Error(kInput) where there is

@@ -126,6 +126,37 @@ int list_filters(const ListArguments& arguments) {
   return 0;
 }
 
+void print_preset(const filters::Preset& preset) {
+  const std::string options = filters::write_bias_options(preset);
+  fmt::print("@{}  {}\n", preset.name, preset.title);
+  const auto print = [](const char* key, const std::string& text) { fmt::print("  {:<8} {}\n", key, text); };
+  print("filter", preset.filter);
+  print("differs", preset.differs);
+  print("bias", preset.bias);
+  print("", options.empty() ? "no --bias is the same" : options);
+  print("version", preset.version);
+  for (const std::string& source : preset.sources) print(&source == &preset.sources.front() ? "source" : "", source);
+  fmt::print("\n");
+}
+
+nlohmann::json to_json(const filters::Preset& preset) {
+  return {{"name", preset.name},       {"title", preset.title},    {"filter", preset.filter},
+          {"differs", preset.differs}, {"bias", preset.bias},      {"bias_options", preset.bias_options},
+          {"version", preset.version}, {"sources", preset.sources}};
+}
+
+int list_presets(const ListArguments& arguments) {
+  const filters::Catalogue catalogue(options::find_resources().filters);
+  nlohmann::json json = nlohmann::json::array();
+  for (const filters::Preset& preset : catalogue.presets())
+    if (arguments.json)
+      json.push_back(to_json(preset));
+    else
+      print_preset(preset);
+  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  return 0;
+}
+
 int list_scenes(const ListArguments& arguments) {
   const std::filesystem::path folder = options::find_resources().scenes;
   nlohmann::json json = nlohmann::json::array();
@@ -182,7 +213,8 @@ int list_gl(const ListArguments& arguments) {
 }  // namespace
 
 Command make_list_command() {
-  Command command{"list", "Show what there is: filters, scenes, metrics, GPUs, or the OpenGL underneath"};
+  Command command{"list",
+                  "Show what there is: filters, presets of engines, scenes, metrics, GPUs, or the OpenGL underneath"};
   auto a = std::make_shared<ListArguments>();
   const auto add = [&](const char* name, const char* title, int (*show)(const ListArguments&)) {
     Command& sub = command.commands.emplace_back(Command{name, title});
@@ -190,6 +222,7 @@ Command make_list_command() {
     if (show != list_gl) add_json_option(sub, a->json);
   };
   add("filters", "Filters with parameters, ranges, units and source", list_filters);
+  add("presets", "Filters as engines ship them, with their bias, and what of the engine they lack", list_presets);
   add("scenes", "Built-in scenes", list_scenes);
   add("metrics", "Numbers that a run reports, with unit, range and definition", list_metrics);
   add("gpus", "GPUs whose costs a run estimates, as far as the Vulkan driver of this machine knows them", list_gpus);

@@ -33,7 +33,8 @@ add_custom_target(shadowbench_manual ALL DEPENDS ${_manual}/written)
 
 set(_share ${CMAKE_INSTALL_DATADIR}/shadowbench)
 install(TARGETS shadowbench RUNTIME COMPONENT program)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters COMPONENT program FILES_MATCHING PATTERN "*.glsl")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters COMPONENT program FILES_MATCHING PATTERN "*.glsl"
+        PATTERN presets.toml)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/ DESTINATION ${_share}/shaders COMPONENT program PATTERN "*.md" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/ DESTINATION ${_share}/data COMPONENT program PATTERN "*.md" EXCLUDE)
 install(DIRECTORY ${_manual}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program FILES_MATCHING PATTERN "*.1.gz")

@@ -45,6 +45,7 @@ void choose_filters(options::RunOptions& options, RunArguments& arguments) {
   if (const auto& tuned = options::find_told<std::string>(arguments.told, "--tuned"); !tuned.empty())
     options.notes = tune::apply_tuned(options.filters, catalogue, tuned, options.map_sizes);
   require_distinct(options.filters);
+  for (std::string& note : describe_presets(options.filters)) options.notes.push_back(std::move(note));
   if (!arguments.until_different.empty())
     options.until_different = parse_pair(catalogue, arguments.until_different, options);
   options.grids =

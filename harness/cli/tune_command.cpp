@@ -42,6 +42,7 @@ void choose_tuned_filters(options::RunOptions& options, const TuneArguments& arg
                     arguments.filter_files.front()));
   }
   options.filters = filters::Catalogue(options.resources.filters).parse_requests(arguments.filters);
+  print_presets(options.filters);
   for (const filters::FilterRequest& request : options.filters) render::require_usable(options.bias, request.spec);
 }
 

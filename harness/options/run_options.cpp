@@ -244,8 +244,8 @@ std::vector<RunOption> list_run_options() {
   t.decides = Decides::kCells;
   t.add_row("--filters",
             "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm:width=medium; width, a class of "
-            "'list filters' or texels, sets the radius; 'all' is every filter but those for teaching (default: those "
-            "of the experiment 'default')",
+            "'list filters' or texels, sets the radius; 'all' is every filter but those for teaching; @ before a name "
+            "of 'list presets' is what an engine ships (default: those of the experiment 'default')",
             std::string())
       .names(ValueKind::kFilters)
       .also_called("--filter");

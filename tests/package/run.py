@@ -60,6 +60,8 @@ def check_use(prefix, folder):
     program = prefix / "bin/shadowbench"
     listed = call(program, "list", "scenes", env=environment)
     expect("Of the moved prefix" in listed and "ball" not in listed, f"these are not the prefix's scenes:\n{listed}")
+    presets = call(program, "list", "presets", env=environment)
+    expect("@godot " in presets and "castano3" in presets, f"the presets are not installed:\n{presets}")
     broken = prefix / "share/shadowbench/filters/esm.glsl"
     broken.unlink()
     filters = call(program, "list", "filters", env=environment)

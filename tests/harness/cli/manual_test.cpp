@@ -78,7 +78,7 @@ TEST_F(Manual, VersionIsPrinted_AsOnThePages) {
 TEST_F(Manual, BashCompletesCommandsAndOptions) {
   EXPECT_EQ(complete("''"), commands());
   EXPECT_THAT(complete("re"), ElementsAre("regress"));
-  EXPECT_THAT(complete("list ''"), ElementsAre("filters", "scenes", "metrics", "gpus", "gl"));
+  EXPECT_THAT(complete("list ''"), ElementsAre("filters", "presets", "scenes", "metrics", "gpus", "gl"));
   EXPECT_THAT(complete("list gl --m"), ElementsAre("--measure"));
   EXPECT_THAT(complete("run --map"), ElementsAre("--map-size", "--map-format"));
   EXPECT_THAT(complete("run --no-tr"), ElementsAre("--no-truth"));

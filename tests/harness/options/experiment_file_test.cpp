@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "harness/render/bias/bias_rule.h"
 
 namespace shadowbench::options {
 namespace {
@@ -129,6 +130,24 @@ TEST_F(ExperimentFile, AreFoundByName_OrPath) {
   EXPECT_THAT(error_of([&] { find_experiment(shipped, "quik"); }).what(), HasSubstr("did you mean 'quick'"));
   EXPECT_THAT(error_of([&] { find_experiment(shipped, "xyzzy12"); }).what(),
               HasSubstr("cascades, default, golden, kinds, lights, paraboloid, quick, sweep, widths"));
+}
+
+TEST(ShippedExperiments, EnginesListsEveryPreset_WithABiasThatWeHave) {
+  const std::filesystem::path root(SHADOWBENCH_SOURCE_DIR);
+  const filters::Catalogue catalogue(root / "filters");
+  std::string told;
+  for (const ExperimentSetting& setting : read_experiment(root / "data/experiments/engines.toml").settings)
+    if (setting.option == "--filters")
+      for (const std::string& each : setting.values) told += (told.empty() ? "" : ",") + each;
+  std::vector<std::string> run, known;
+  for (const filters::FilterRequest& request : catalogue.parse_requests(told))
+    for (const filters::Preset& preset : request.presets) run.push_back(preset.name);
+  for (const filters::Preset& preset : catalogue.presets()) {
+    known.push_back(preset.name);
+    if (!preset.bias_options.empty()) EXPECT_NO_THROW(render::parse_bias(preset.bias_options)) << preset.name;
+  }
+  EXPECT_THAT(run, ::testing::UnorderedElementsAreArray(known));
+  EXPECT_EQ(catalogue.parse_requests(told).front().label(), "none");
 }
 
 }  // namespace
