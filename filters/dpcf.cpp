@@ -25,7 +25,7 @@ class Dpcf {
   T visibility(const Receiver& r, Tally& tally) const {
     const P search = disk_.radius(r, static_cast<P>(r.depth_unbiased), tally);
     if (search < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
-    const DiskTurn<T> turn(rotation_, r.pixel, seed_);
+    const DiskTurn<T> turn(rotation_, r, seed_);
     Blockers found;
     for (const glm::vec2& point : points_) add_tap(r, turn.place(search, point), found, tally);
     if (found.depths == P(0)) return T(P(1));

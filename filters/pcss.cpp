@@ -27,7 +27,7 @@ class Pcss {
   T visibility(const Receiver& r, Tally& tally) const {
     const P search = disk_.radius(r, static_cast<P>(r.depth_unbiased), tally);
     if (search < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
-    const DiskTurn<T> turn(rotation_, r.pixel, seed_);
+    const DiskTurn<T> turn(rotation_, r, seed_);
     const std::optional<P> blocker = find_blocker(r, search, turn, tally);
     if (!blocker) return T(P(1));
     const P radius = disk_.radius(r, static_cast<P>(r.depth) - *blocker, tally);

@@ -22,7 +22,7 @@ class Poisson {
   static Kernel kernel(const ParamValues& values) { return Kernel::make_disk(number(values, "radius")); }
 
   T visibility(const Receiver& r, Tally& tally) const {
-    const DiskTurn<T> turn(rotation_, r.pixel, seed_);
+    const DiskTurn<T> turn(rotation_, r, seed_);
     T sum{};
     for (std::size_t i = 0; i < points_.size(); ++i) {
       sum = sum + map_.compare_2x2(r, turn.place(radius_, points_[bail_.order(i, points_.size())]), r.depth, tally);

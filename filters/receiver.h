@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 
 namespace shadowbench::filters {
@@ -26,6 +27,7 @@ struct Receiver {
   float light_nearness = 0.0f;  ///< 1 / metres to the light, along its axis; 0 for a light at infinity
   float view_depth = 0.0f;      ///< metres from the camera, along its axis
   glm::ivec2 pixel{0};          ///< (0,0) is the lower left pixel
+  std::uint32_t frame = 0;      ///< of the frames that are accumulated; turns its taps
   float layer_share = 1.0f;     ///< of the pixel's visibility that comes from this layer; not told to filters
 };
 

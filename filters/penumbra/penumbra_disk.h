@@ -16,8 +16,8 @@ class DiskTurn {
   using P = Position<T>;
 
  public:
-  DiskTurn(const std::string& rotation, glm::ivec2 pixel, std::uint32_t seed) {
-    const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn_of(rotation, pixel, seed));
+  DiskTurn(const std::string& rotation, const Receiver& r, std::uint32_t seed) {
+    const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn_of(rotation, r.pixel, seed, r.frame));
     cosine_ = std::cos(angle);
     sine_ = std::sin(angle);
   }

@@ -157,6 +157,7 @@ std::vector<gl::Piece> filter_pieces(const FilterRequest& request) {
 void set_uniforms(gl::Program& program, const FilterRequest& request, const LightSetup& light) {
   set_light(program, light);
   program.set("run_seed", light.seed);
+  program.set("run_frame", light.frame);
   for (const ParamSpec& param : request.spec.params) {
     const ParamValue& value = request.values.at(param.name);
     if (param.is_const || std::holds_alternative<std::string>(value)) continue;

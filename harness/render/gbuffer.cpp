@@ -98,12 +98,14 @@ filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, con
   r.view_depth = plane[3];
   r.depth_range_ws = static_cast<float>(light.frustum.depth_range_ws);
   r.pixel = {static_cast<int>(i) % texels.width, static_cast<int>(i) / texels.width};
+  r.frame = light.frame;
   return r;
 }
 
 }  // namespace
 
-glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& bounds, double aspect) {
+glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& bounds, double aspect,
+                          const glm::dvec2& shift) {
   const DepthRange range = depth_range(camera, bounds);
   const glm::dvec3 eye(camera.position_ws);
   const glm::dmat4 view = glm::lookAtRH(eye, eye + glm::dvec3(camera.forward_ws), glm::dvec3(camera.up_ws));
@@ -111,7 +113,8 @@ glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& boun
   const glm::dmat4 projection =
       half > 0.0 ? glm::orthoRH_ZO(-half * aspect, half * aspect, -half, half, range.near, range.far)
                  : glm::perspectiveRH_ZO(static_cast<double>(camera.vertical_fov_rad), aspect, range.near, range.far);
-  return glm::mat4(projection * view);
+  if (shift == glm::dvec2(0.0)) return glm::mat4(projection * view);
+  return glm::mat4(glm::translate(glm::dmat4(1.0), glm::dvec3(2.0 * shift, 0.0)) * projection * view);
 }
 
 void set_geometry_state() {
@@ -141,14 +144,14 @@ GBuffer::GBuffer(int width, int height)
 }
 
 void GBuffer::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene,
-                   const scene::Camera& camera) {
+                   const scene::Camera& camera, const glm::dvec2& jitter) {
   receivers_.clear();
   framebuffer_.bind();
   set_geometry_state();
   for (int i = 0; i < 4; ++i) framebuffer_.clear_color(i, glm::vec4(0.0f));
   framebuffer_.clear_depth(1.0f);
   const double aspect = static_cast<double>(width()) / height();
-  const glm::mat4 matrix = clip_from_world(camera, scene.bounds(), aspect);
+  const glm::mat4 matrix = clip_from_world(camera, scene.bounds(), aspect, jitter / glm::dvec2(width(), height()));
   geometry.draw(shaders, "gbuffer", DrawSet::kAll, [&](gl::Program& program) {
     program.set("clip_from_world", matrix);
     program.set("camera_position_ws", camera.position_ws);

@@ -51,8 +51,9 @@ class GBuffer {
  public:
   GBuffer(int width, int height);
 
-  /// Draws the scene; near and far follow its bounds.
-  void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene, const scene::Camera& camera);
+  /// Draws the scene; near and far follow its bounds. `jitter` moves the picture to the right and up, in pixels.
+  void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene, const scene::Camera& camera,
+            const glm::dvec2& jitter = glm::dvec2(0.0));
 
   /// Replaces positions and geometric normals by those given, four floats a pixel as in position() and normal(), row 0
   /// at the bottom. Shading normals and colours stay undefined.
@@ -85,8 +86,10 @@ class GBuffer {
   mutable std::deque<ReceiverBuffer> receivers_;
 };
 
-/// The matrix from world to clip space, depth zero-to-one, of a camera that looks at these bounds.
-glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& bounds, double aspect);
+/// The matrix from world to clip space, depth zero-to-one, of a camera that looks at these bounds; `shift` moves what
+/// it sees to the right and up, in widths and heights of the picture.
+glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& bounds, double aspect,
+                          const glm::dvec2& shift = glm::dvec2(0.0));
 
 /// Sets the state that drawing opaque geometry needs; both faces are drawn.
 void set_geometry_state();

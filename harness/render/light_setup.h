@@ -20,6 +20,7 @@ struct LightSetup {
   Bias bias;
   std::uint32_t seed = 0;         ///< of the run: random rotations
   filters::RangeRule range = {};  ///< what becomes of receivers that the map does not hold
+  std::uint32_t frame = 0;        ///< of those that are accumulated
 };
 
 /// The layers of a light's map, each as the lookup sees it: one, or those that share the receivers.

@@ -18,7 +18,10 @@ struct Receiver {
   float light_nearness;
   float view_depth;
   ivec2 pixel;
+  uint frame;
 };
+
+uniform uint run_frame;  // of the frames that are accumulated; 0 where there is one
 
 // What prepare_receivers.frag found out of every pixel, once per light. A filter pays only for what it reads: the
 // compiler drops the rest.
@@ -63,5 +66,6 @@ Receiver make_receiver(ivec2 pixel, vec4 place) {
 #endif
   r.view_depth = plane.w;
   r.pixel = pixel;
+  r.frame = run_frame;
   return r;
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -74,6 +75,28 @@ TEST(Random, InterleavedGradient_FollowsItsFloatingPointForm) {
       EXPECT_LT(std::min(distance, 1.0 - distance), 2e-6) << x << "," << y;
     }
   }
+}
+
+/// The golden ratio's multiples leave no gap of twice the mean; the three-gap theorem (Swierczkowski 1958) allows 1.9.
+TEST(Random, FramesSpreadATurnEvenly_AndWhiteNoiseDrawsAnew) {
+  constexpr int kTurns = 21;
+  std::vector<float> blue, gradient, white;
+  for (std::uint32_t frame = 0; frame < kTurns; ++frame) {
+    blue.push_back(turn_of("blue-noise", {3, 5}, 1, frame));
+    gradient.push_back(turn_of("interleaved-gradient", {3, 5}, 1, frame));
+    white.push_back(turn_of("per-pixel", {3, 5}, 1, frame));
+    EXPECT_EQ(turn_of("none", {3, 5}, 1, frame), 0.0f);
+  }
+  EXPECT_EQ(blue.front(), blue_noise_turn({3, 5}, 1));
+  const auto widest = [](std::vector<float> turns) {
+    std::ranges::sort(turns);
+    float gap = 1.0f + turns.front() - turns.back();
+    for (std::size_t i = 1; i < turns.size(); ++i) gap = std::max(gap, turns[i] - turns[i - 1]);
+    return gap * static_cast<float>(turns.size());
+  };
+  EXPECT_LT(widest(blue), 2.0f);
+  EXPECT_LT(widest(gradient), 2.0f);
+  EXPECT_GT(widest(white), 2.0f);
 }
 
 TEST(StoreFormat, NamesGiveChannelsBytesAndPrecision) {

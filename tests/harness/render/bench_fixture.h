@@ -55,11 +55,15 @@ class Bench {
     map_.set_border(range.border);
   }
 
+  /// Sets the frame that is drawn, of those that are accumulated.
+  void set_frame(std::uint32_t frame) { frame_ = frame; }
+
   render::LightLayers light(const filters::FilterRequest& request, const render::BiasRule& rule = {}) const {
     render::LightLayers light;
     for (const scene::LightFrustum& layer : layers_) {
       const render::Bias bias = render::resolve_bias(rule, layer, request.spec, request.values);
       light.push_back(render::make_light_setup(layer, scene_.light, bias, 7, range_));
+      light.back().frame = frame_;
     }
     return light;
   }
@@ -107,6 +111,7 @@ class Bench {
   render::Geometry geometry_;
   std::vector<scene::LightFrustum> layers_;
   filters::RangeRule range_;
+  std::uint32_t frame_ = 0;
   render::ShadowMap map_;
   render::GBuffer gbuffer_;
   render::ImageTarget target_;

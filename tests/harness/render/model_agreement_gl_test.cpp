@@ -267,6 +267,24 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+/// Every frame turns the taps of every filter that turns them, in the GL as in its model.
+TEST(ModelFrames, GlImageEqualsModel_AndDiffersFromTheFirstFrames) {
+  const scene::Scene scene = load_builtin("stack");
+  Bench bench(shared_context(), scene, 256);
+  for (const filters::FilterSpec& spec : catalogue().filters()) {
+    if (spec.kind != filters::FilterKind::kStochastic) continue;
+    for (const char* rotation : {"none", "per-pixel", "interleaved-gradient", "blue-noise"}) {
+      SCOPED_TRACE(spec.id + ", " + rotation);
+      const filters::FilterRequest request = catalogue().parse_requests(spec.id + ":rotation=" + rotation).front();
+      bench.set_frame(0);
+      const std::vector<float> first = bench.draw(request);
+      bench.set_frame(5);
+      EXPECT_EQ(bench.draw(request) == first, rotation == std::string("none"));
+      EXPECT_LE(compare(bench, request).worst_float, pcf_tolerance());
+    }
+  }
+}
+
 /// Filters that compare tap by tap, with the receiver plane's depth at each tap.
 class ReceiverPlaneModel : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
