@@ -73,7 +73,7 @@ void add_run_options(Command& command, RunArguments& a) {
   command
       .add("--until-different", &a.until_different,
            fmt::format("A,B: two of the filters; phases are doubled until their RMSEs are told apart, or {} are done",
-                       options::kMostPhases))
+                       options::kMostAveraged))
       .never_empty("two of the run's filters, such as tent5x5,castano5");
   command.add("--strict", &a.strict,
               "exit code 1 where the finished run has a warning, or a cell that failed; the report is written all the "

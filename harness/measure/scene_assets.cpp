@@ -124,8 +124,8 @@ render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
   return kept;
 }
 
-void SceneAssets::draw_view(render::GBuffer& gbuffer, const scene::Camera& camera) {
-  gbuffer.draw(renderer_.shaders, geometry_, scene_, camera);
+void SceneAssets::draw_view(render::GBuffer& gbuffer, const scene::Camera& camera, const glm::dvec2& jitter) {
+  gbuffer.draw(renderer_.shaders, geometry_, scene_, camera, jitter);
 }
 
 const SceneTruth& SceneAssets::truth(const scene::Camera& camera) {

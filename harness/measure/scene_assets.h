@@ -54,8 +54,8 @@ class SceneAssets {
 
   render::GBuffer& gbuffer(const scene::Camera& camera);
 
-  /// Draws a view's receivers into a G-buffer of another size.
-  void draw_view(render::GBuffer& gbuffer, const scene::Camera& camera);
+  /// Draws a view's receivers into a G-buffer of any size; `jitter` moves the picture, in pixels.
+  void draw_view(render::GBuffer& gbuffer, const scene::Camera& camera, const glm::dvec2& jitter = glm::dvec2(0.0));
 
   /// The truth of a view, traced when it is first asked for.
   const SceneTruth& truth(const scene::Camera& camera);

@@ -83,8 +83,8 @@ struct Part {
   bool is_worker() const { return product == Product::kImages || product == Product::kPrograms; }
 };
 
-/// The most places of the map's grid that a run may average errors over.
-inline constexpr int kMostPhases = 64;
+/// The most places of the map's grid, and the most frames, that a run may take means over.
+inline constexpr int kMostAveraged = 64;
 
 /// All options of `shadowbench run`; the other commands that draw use some of them.
 struct RunOptions {
@@ -110,6 +110,7 @@ struct RunOptions {
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: as many as the widest kernel needs
   RoundLimits rounds;
   int phases = 8;                                       ///< places of the map's grid over which errors are averaged
+  int frames = 1;                                       ///< also accumulate visibility over so many
   std::vector<filters::FilterRequest> until_different;  ///< two: phases are added until they are told apart
   std::vector<gpu::Gpu> gpus;                           ///< also estimate costs on these, which need not be there
   std::vector<int> lights;                              ///< also time frames with these numbers of lights

@@ -33,11 +33,11 @@ void take(const char*, const T& told, T& value) {
   value = told;
 }
 
-std::uint32_t tell(int phases) { return static_cast<std::uint32_t>(phases); }
-void take(const char* name, std::uint32_t told, int& phases) {
-  if (told < 1 || told > std::uint32_t{kMostPhases})
-    fail(fmt::format("{}: {} is out of range: choose 1 .. {}", name, told, kMostPhases));
-  phases = static_cast<int>(told);
+std::uint32_t tell(int count) { return static_cast<std::uint32_t>(count); }
+void take(const char* name, std::uint32_t told, int& count) {
+  if (told < 1 || told > std::uint32_t{kMostAveraged})
+    fail(fmt::format("{}: {} is out of range: choose 1 .. {}", name, told, kMostAveraged));
+  count = static_cast<int>(told);
 }
 
 std::string tell(const std::vector<int>& counts) { return fmt::format("{}", fmt::join(counts, ",")); }
@@ -271,8 +271,11 @@ std::vector<RunOption> list_run_options() {
         &RunOptions::rounds);
   t.add("--phases",
         fmt::format("places of the map's grid, moved by parts of a texel, over which errors are averaged: 1 .. {}",
-                    kMostPhases),
+                    kMostAveraged),
         &RunOptions::phases);
+  t.add("--frames",
+        fmt::format("also accumulate visibility over so many frames: 1, which is none, .. {}", kMostAveraged),
+        &RunOptions::frames);
   t.add(
       "--precision", "for --rounds auto: how wide the ratio's 95 % interval may be, relative to the ratio",
       [](auto& o) -> auto& { return o.rounds.precision; });
@@ -301,9 +304,6 @@ std::vector<RunOption> list_run_options() {
        })
       .never_empty("names of 'list gpus', or none");
   t.add("--seed", "seed of random rotations and of the order in which filters are timed", &RunOptions::seed);
-  t.decides = Decides::kCells;
-  t.add("--cell-timeout", "seconds that a filter of your own may take on one scene", &RunOptions::cell_timeout_s);
-  t.decides = Decides::kContent;
   t.add("--truth", "trace rays, and score every filter against them (default)", &RunOptions::truth).with_opposite();
   t.add("--truth-weight",
         "what visibility is held against: 'area', the share of the light's area (of a sphere's solid angle) that is "
@@ -326,6 +326,7 @@ std::vector<RunOption> list_run_options() {
         &RunOptions::all_parts)
       .with_opposite();
   t.decides = Decides::kCells;
+  t.add("--cell-timeout", "seconds that a filter of your own may take on one scene", &RunOptions::cell_timeout_s);
   t.add_row("--grids",
             fmt::format("compare all filters of a view in one picture, and keep their float images (default up to {} "
                         "filters)",

@@ -16,6 +16,7 @@ enum class Work {
   kScores,
   kSurroundings,
   kAttribution,
+  kFrames,
   kPictures,
   kReport,
 };

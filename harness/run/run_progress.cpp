@@ -30,6 +30,7 @@ double presume_cost(const options::RunOptions& options, Work kind) {
     case Work::kScores: return options.truth ? 0.2 * megapixels : 0.0;
     case Work::kSurroundings: return options.truth ? 0.15 * megapixels : 0.0;
     case Work::kAttribution: return options.truth && options.attribution ? 0.9 * megapixels : 0.0;
+    case Work::kFrames: return options.frames > 1 ? megapixels * (4.0 + 0.2 * options.frames) : 0.0;
     case Work::kPictures: return 0.6 * megapixels;
     case Work::kReport: return 0.02;
   }

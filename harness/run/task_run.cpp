@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "harness/measure/accumulation/accumulation.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/layer_truth.h"
@@ -88,6 +89,7 @@ class TaskRun {
   std::optional<measure::CellAnalyser> analyser_;
   std::optional<measure::MapCoverage> coverage_;
   std::optional<measure::TrafficMeter> traffic_;
+  std::optional<measure::AccumulationMeter> accumulation_;
 
   measure::SceneTask task_of(const Requests& requests) const {
     return {task_.scene, task_.camera, task_.map_size, requests};
@@ -111,6 +113,7 @@ class TaskRun {
       score(measured);
       measure_coverage(measured);
     }
+    if (options_.frames > 1) accumulate(measured, built_in.size());
     if (bench_.gpus.compile(measured.cells) && !options_.part.is_worker()) count_traffic(measured);
     begin(options::Work::kPictures, measured.cells.size(), "pictures");
     bench_.gpus.add_to(measured.cells);
@@ -160,6 +163,30 @@ class TaskRun {
       measured.attribution_s += *cell.record.measured_s;
     }
     measured.masks = analyser_->masks();
+  }
+
+  /// Accumulates the first cells over frames: those that are drawn in this process.
+  void accumulate(measure::SceneMeasurement& measured, std::size_t count) {
+    const gl::Recorder::Pause pause(renderer_.recorder.get());
+    const std::string& absent = assets_.truth(*task_.camera).absent;
+    if (absent.empty() && count > 0 && !accumulation_)
+      accumulation_.emplace(measure::FrameBench{renderer_, options_, task_, assets_});
+    images::Grid grid;
+    grid.title = task_.scene->name + ": visibility accumulated over frames";
+    grid.columns = 6;
+    for (std::size_t i = 0; i < count; ++i) {
+      measure::MeasuredCell& cell = measured.cells[i];
+      begin(options::Work::kFrames, 1, "frames of " + cell.label);
+      measure::AccumulatedImages drawn;
+      if (absent.empty()) cell.record.accumulation = accumulation_->measure(cell.request, drawn);
+      if (!cell.record.accumulation) {
+        cell.record.absent["accumulation"] = absent.empty() ? "visibility is finite at no receiver" : absent;
+      } else if (options_.grids && options_.pictures) {
+        cell.record.accumulation->picture = task_stem(options_, task_) + ".frames.png";
+        std::ranges::move(accumulation_->show(cell.label, drawn), std::back_inserter(grid.tiles));
+      }
+    }
+    if (!grid.tiles.empty()) images::write_grid(options_.out / (task_stem(options_, task_) + ".frames.png"), grid);
   }
 
   /// Measures how the map's texels are spent on the view.

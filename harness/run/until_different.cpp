@@ -37,7 +37,7 @@ analysis::Estimate widen(const analysis::Estimate& gap, std::size_t groups) {
 std::string run_until_different(options::RunOptions options, options::Progress& progress) {
   const filters::FilterRequest &a = options.until_different.front(), &b = options.until_different.back();
   for (options.phases = std::max(options.phases, 8);;
-       options.phases = std::min(2 * options.phases, options::kMostPhases)) {
+       options.phases = std::min(2 * options.phases, options::kMostAveraged)) {
     run_experiment(options, progress);
     const auto cells = records::read_results(options.out / "results.json").cells;
     const auto gap = analysis::find_difference(cells, choose(a), choose(b));
@@ -45,7 +45,7 @@ std::string run_until_different(options::RunOptions options, options::Progress& 
     const auto phases = static_cast<std::size_t>(options.phases);
     const analysis::Estimate known = widen(*gap, phases / measure::count_phases_of_group(phases));
     const bool differs = known.low > 0.0 || known.high < 0.0;
-    if (!differs && options.phases < options::kMostPhases) {
+    if (!differs && options.phases < options::kMostAveraged) {
       progress.note(fmt::format("{} phases do not tell {} and {} apart", options.phases, a.label(), b.label()));
       continue;
     }

@@ -65,7 +65,8 @@ options::RunOptions make_worker_options(const options::RunOptions& options, cons
   own.sizes = {{options.width, options.height}};
   own.fits = {options.fit};
   own.pad_texels = measure::padding_texels(options);
-  own.truth = own.border_page = false;
+  own.border_page = false;
+  own.truth = own.truth && own.frames > 1;
   own.out = folder;
   return own;
 }

@@ -55,6 +55,7 @@ void link_back(const std::filesystem::path& path) {
 const std::vector<PageFile>& list_pages() {
   static const std::vector<PageFile> pages = {
       {"run", "", "index.html", "summary.md", "the run: cost, error and trade"},
+      {"frames", "", "frames.html", "frames.md", "accumulation over frames"},
       {"stress", "stress", "stress.html", "stress.md", "stress: where filters break"},
       {"flicker", "flicker", "flicker.html", "flicker.md", "flicker in motion"},
       {"bias", "bias", "bias.html", "bias.md", "depth bias"},

@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/machines/machine_kinds.h"
+#include "report/pages/frames_page.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"
 #include "report/pages/write_page.h"
@@ -45,6 +46,8 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
     write_fronts_csv(own, trade->scopes, machines, [&](std::string_view rows) { file.write(rows); });
     file.commit();
   }
+  if (std::ranges::any_of(cells, [](const records::CellRecord& cell) { return cell.accumulation.has_value(); }))
+    write_page(dir, "frames", make_frames_page(cells, run));
   write_page(dir, "run", make_run_page(run, cells, trade, machines));
   records::write_results(dir, run, cells);
 }

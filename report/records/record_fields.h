@@ -307,6 +307,8 @@ void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
                  "by i * 360 / count degrees; null or missing where that was not measured",
          .least = 1,
          .later = true});
+  visit("accumulation", cell.accumulation,
+        {.text = "visibility accumulated over frames; missing where the run has one", .may_lack = true, .later = true});
   visit("gpu", cell.gpu,
         {.text = "what the cell costs on GPUs that were not there, by name; null or missing where none was named",
          .later = true});

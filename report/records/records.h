@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reference/metrics/metric_values.h"
+#include "report/records/accumulation_record.h"
 
 namespace shadowbench::records {
 
@@ -286,6 +287,7 @@ struct CellRecord : metrics::MetricValues {
   TimeRecord time_ms;
   RatioRecord ratio_to_none;
   std::optional<std::vector<LightCountRecord>> lights;  ///< by ascending count
+  std::optional<AccumulationRecord> accumulation;       ///< over frames
   std::optional<GpuRecords> gpu;                        ///< what the cell costs on GPUs that were not there
   std::optional<ExternalRecord> external;               ///< of a row that another renderer drew
   ImagesRecord images;

@@ -108,6 +108,11 @@ TEST_F(BadInput, LightWithoutDirection) {
 TEST_F(BadInput, MapLargerThanTheGl) {
   expect_refusal("run --out out --scene cubes --filters none --map-size 1000000", 2, {"1000000", "16384"});
 }
+TEST_F(BadInput, FramesThatAreNoNumberOfThem) {
+  for (const char* frames : {"0", "100000"})
+    expect_refusal(small(std::string("--frames ") + frames), 2, {"--frames: " + std::string(frames), "choose 1 .. 64"});
+  expect_refusal(small("--frames -1"), 2, {"--frames"});
+}
 TEST_F(BadInput, MapSizeZero) { expect_refusal("run --out out --map-size 0", 2, {"--map-size", "'0'"}); }
 TEST_F(BadInput, SameMapSizeTwice) { expect_refusal("run --out out --map-size 64,64", 2, {"64 twice"}); }
 TEST_F(BadInput, PictureSizeMalformed) { expect_refusal("run --out out --size 64", 2, {"--size", "WIDTHxHEIGHT"}); }

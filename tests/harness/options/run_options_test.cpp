@@ -56,6 +56,7 @@ const std::map<std::string, std::vector<std::string>>& list_others() {
                                                                          {"bias", {"constant:depth=0.0001"}},
                                                                          {"rounds", {"7"}},
                                                                          {"phases", {"2"}},
+                                                                         {"frames", {"8"}},
                                                                          {"precision", {"0.5"}},
                                                                          {"budget", {"0.1"}},
                                                                          {"lights", {"1,4"}},

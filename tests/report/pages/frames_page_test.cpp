@@ -1,0 +1,82 @@
+// Which taps at which frame count equal 16 taps in one frame, from records made by hand.
+
+#include "report/pages/frames_page.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/records/json_io.h"
+
+namespace shadowbench::pages {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A cell whose noise, and error above 0.1, falls with the root of the frames from this value on.
+records::CellRecord make_accumulated(double taps, const std::string& rotation, double noise) {
+  records::CellRecord cell;
+  cell.key = fmt::format("{:016x}", static_cast<int>(1e6 * noise));
+  cell.scene = "ball";
+  cell.view = "main";
+  cell.filter = "poisson";
+  cell.params = {{"taps", taps}, {"rotation", rotation}};
+  cell.accumulation.emplace();
+  for (const bool jitter : {false, true}) {
+    for (const char* rule : {"newest", "mean", "exponential", "clamped"}) {
+      records::ResolveRecord& resolve = cell.accumulation->resolves.emplace_back();
+      resolve.rule = rule;
+      resolve.jitter = jitter;
+      resolve.noise.emplace();
+      for (int n = 1; n <= 8; ++n) {
+        resolve.noise->push_back(noise / std::sqrt(n));
+        resolve.rmse.push_back(0.1 + noise / std::sqrt(n));
+      }
+    }
+  }
+  return cell;
+}
+
+std::vector<records::CellRecord> make_cells() {
+  return {make_accumulated(4, "per-pixel", 0.02),  make_accumulated(16, "per-pixel", 0.0101),
+          make_accumulated(4, "blue-noise", 0.04), make_accumulated(16, "blue-noise", 0.01),
+          make_accumulated(32, "other", 0.001),    make_accumulated(16, "none", 0.0),
+          make_accumulated(4, "none", 0.0)};
+}
+
+TEST(FramesPage, CountsFramesUntilTheyEqualSixteenTaps_OfTheSameRotation) {
+  const auto groups = analysis::group_cells(make_cells());
+  ASSERT_EQ(groups.size(), 1u);
+  const std::vector<TapEquivalence> list = list_equivalences(groups.front());
+  ASSERT_EQ(list.size(), 4u) << "without 16 taps of its rotation that have noise a cell equals nothing";
+  EXPECT_EQ(list[0].taps, 4);
+  EXPECT_EQ(list[0].by_noise, 4);
+  EXPECT_EQ(list[0].by_error, 4);
+  EXPECT_EQ(list[1].by_noise, 1);
+  EXPECT_EQ(list[2].by_noise, std::nullopt) << "16 frames are needed, and there are 8";
+}
+
+TEST(FramesPage, SaysIt) {
+  const std::string text = document::write_markdown(make_frames_page(make_cells(), {}));
+  EXPECT_THAT(text, HasSubstr("4 taps have the noise of 16 taps in one frame after 4 frames, in 1 of 2 cases after "
+                              "more than 8."));
+  EXPECT_THAT(text, HasSubstr("more than 8"));
+  const std::string alone = document::write_markdown(make_frames_page({make_accumulated(4, "none", 0.1)}, {}));
+  EXPECT_THAT(alone, HasSubstr("No filter of this run has 16 taps"));
+}
+
+/// What is measured of frames is written, and read again; a cell without it says nothing of it.
+TEST(FramesPage, RecordsAreReadAgain) {
+  records::CellRecord cell = make_cells().front();
+  cell.accumulation->ghosts = {{4.0, "clamped", 7, 0.5, 3}, {4.0, "exponential", 0, {}, {}}};
+  const nlohmann::json json = records::to_json(cell);
+  EXPECT_EQ(records::to_json(records::cell_from_json(json, "here")), json);
+  cell.accumulation.reset();
+  EXPECT_FALSE(records::to_json(cell).contains("accumulation"));
+}
+
+}  // namespace
+}  // namespace shadowbench::pages
