@@ -181,7 +181,7 @@ class TaskRun {
       if (absent.empty()) cell.record.accumulation = accumulation_->measure(cell.request, drawn);
       if (!cell.record.accumulation) {
         cell.record.absent["accumulation"] = absent.empty() ? "visibility is finite at no receiver" : absent;
-      } else if (options_.grids && options_.pictures) {
+      } else if (options_.grids && options_.pictures && !options_.part.is_worker()) {
         cell.record.accumulation->picture = task_stem(options_, task_) + ".frames.png";
         std::ranges::move(accumulation_->show(cell.label, drawn), std::back_inserter(grid.tiles));
       }

@@ -110,6 +110,10 @@ document::Chart make_chart(const analysis::CellGroup& group, const std::string& 
   chart.y_name = y_name;
   std::vector<double> xs, ys;
   std::vector<std::pair<double, std::string>> weights;
+  document::ChartSeries level;
+  level.title = "one frame of 16 taps";
+  level.color = document::kInk;
+  level.line = document::LineStyle::kDashed;
   for (std::size_t i = 0; i < group.cells.size(); ++i) {
     const auto* curve = group.cells[i].accumulation ? values(*group.cells[i].accumulation) : nullptr;
     if (!curve) continue;
@@ -127,9 +131,14 @@ document::Chart make_chart(const analysis::CellGroup& group, const std::string& 
       series.points.push_back(document::exact_point(xs.back(), ys.back()));
       series.points.back().details = {name, fmt::format("{} frames: {}", n + 1, records::format_number(ys.back()))};
     }
-    weights.emplace_back(curve->front(), name);
+    const auto& noise = find_resolve(*group.cells[i].accumulation, "mean", false).noise;
+    weights.emplace_back(noise ? noise->front() : 0.0, name);  // the same ones in both charts
+    if (level.points.empty() && find_taps(group.cells[i]) == kReferenceTaps && curve->front() > 0.0)
+      level.points = {document::exact_point(1.0, curve->front()),
+                      document::exact_point(static_cast<double>(curve->size()), curve->front())};
     if (!series.points.empty()) chart.series.push_back(std::move(series));
   }
+  if (!level.points.empty()) chart.series.push_back(std::move(level));
   chart.x = document::choose_log_axis(xs, {});
   chart.y = document::choose_log_axis(ys, {});
   document::show_most_telling(chart, std::move(weights));
@@ -210,9 +219,11 @@ document::Section make_group_section(const analysis::CellGroup& group, const rec
                   records::format_number(any.accumulation->exponential_ms),
                   records::format_number(any.accumulation->clamped_ms), records::describe_clock(run.gl)),
       true});
-  if (any.accumulation->picture)
+  const auto drawn = std::ranges::find_if(
+      group.cells, [](const CellRecord& cell) { return cell.accumulation && cell.accumulation->picture; });
+  if (drawn != group.cells.end())
     section.blocks.emplace_back(
-        document::Gallery{{}, {{*any.accumulation->picture, "accumulated visibility and its error, by rule"}}});
+        document::Gallery{{}, {{*drawn->accumulation->picture, "accumulated visibility and its error, by rule"}}});
   return section;
 }
 
