@@ -47,14 +47,26 @@ OwnTime read_time(const json& part) {
   return time;
 }
 
+TimedPart read_part(const json& part) {
+  TimedPart timed{read_time(part), {}};
+  if (part.contains("queries")) timed.queries = read_time(part["queries"]);
+  return timed;
+}
+
 TimedParts read_parts(const json& cell) {
-  TimedParts parts{read_time(cell.at("map")), {}, read_time(cell.at("filter"))};
-  if (const json& prefilter = cell.at("prefilter"); !prefilter.is_null()) parts.prefilter = read_time(prefilter);
+  TimedParts parts{read_part(cell.at("map")), {}, read_part(cell.at("filter"))};
+  if (const json& prefilter = cell.at("prefilter"); !prefilter.is_null()) parts.prefilter = read_part(prefilter);
   return parts;
 }
 
 json write_time(const OwnTime& time) {
   return {{"median", time.median}, {"interval", {time.ci95.low, time.ci95.high}}, {"rounds", time.n}};
+}
+
+json write_part(const TimedPart& part) {
+  json written = write_time(part);
+  if (part.queries) written["queries"] = write_time(*part.queries);
+  return written;
 }
 
 void add(OwnTime& sum, const OwnTime& part) {
@@ -139,9 +151,9 @@ void apply_gpu_times(Results& results, const GpuTimes& times) {
 json gpu_times_json(const GpuTimes& times) {
   json cells = json::object();
   for (const auto& [key, parts] : times.cells)
-    cells[key] = {{"map", write_time(parts.map)},
-                  {"prefilter", parts.prefilter ? write_time(*parts.prefilter) : json()},
-                  {"filter", write_time(parts.filter)}};
+    cells[key] = {{"map", write_part(parts.map)},
+                  {"prefilter", parts.prefilter ? write_part(*parts.prefilter) : json()},
+                  {"filter", write_part(parts.filter)}};
   return {{"schema", kSchema}, {"renderer", times.renderer}, {"isSoftware", times.software}, {"cells", cells}};
 }
 

@@ -11,11 +11,16 @@
 
 namespace shadowbench::records {
 
-/// What a cell's parts take on a GPU, ms.
+/// What a part takes on a GPU, ms.
+struct TimedPart : OwnTime {
+  std::optional<OwnTime> queries;  ///< what the browser's timer queries say: a cross-check, which no cost is made of
+};
+
+/// What a cell's parts take on a GPU.
 struct TimedParts {
-  OwnTime map;
-  std::optional<OwnTime> prefilter;
-  OwnTime filter;  ///< the lookup less its empty one
+  TimedPart map;
+  std::optional<TimedPart> prefilter;
+  TimedPart filter;  ///< the lookup less its empty one
 };
 
 /// A file that a report's page saved, gpu-times.json: what a browser's GPU took for the run's cells.

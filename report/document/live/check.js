@@ -62,5 +62,9 @@ const subtractTimes = (lookup, empty) => {
     lookup.interval && empty.interval
       ? [lookup.interval[0] - empty.interval[1], lookup.interval[1] - empty.interval[0]]
       : null;
-  return { median: lookup.median - empty.median, interval, rounds: lookup.rounds };
+  const queries = lookup.queries && empty.queries && subtractTimes(lookup.queries, empty.queries);
+  return { median: lookup.median - empty.median, interval, rounds: lookup.rounds, ...(queries && { queries }) };
 };
+// Whether timer queries say something else, by more than both intervals.
+const areQueriesApart = ({ interval, queries }) =>
+  Boolean(interval && queries?.interval) && (queries.interval[0] > interval[1] || queries.interval[1] < interval[0]);

@@ -1,6 +1,7 @@
 // Times that a GPU took, here or elsewhere, as costs beside those of the run. A file of them, gpu-times.json, has for
 // each cell, by its key, what its parts take: `map`, `prefilter` and `filter` (the lookup less its empty one), each with
-// the median, a 95 % interval or null, and how many rounds they are of, ms.
+// the median, a 95 % interval or null, and how many rounds they are of, ms; and where the browser has timer queries, what
+// they say of it, in the same words: `queries`, a cross-check that no cost is made of.
 const kTimesSchema = "shadowbench gpu-times 1";
 const kTimedParts = ["map", "prefilter", "filter"];
 const kMostTimesBytes = 16e6;
@@ -8,10 +9,11 @@ const machines = []; // as files have them
 
 const isTime = (part) => {
   const isSound = (value) => Number.isFinite(value) && Math.abs(value) < 1e9;
-  const { median, interval, rounds } = part ?? {};
+  const { median, interval, rounds, queries } = part ?? {};
   const hasInterval =
     interval === null || (Array.isArray(interval) && interval.length === 2 && interval.every(isSound));
-  return isSound(median) && hasInterval && Number.isInteger(rounds) && rounds > 0;
+  const hasRounds = Number.isInteger(rounds) && rounds > 0;
+  return isSound(median) && hasInterval && hasRounds && (queries === undefined || isTime(queries));
 };
 // Takes a file's text apart; throws what is wrong with it.
 const readTimes = (text) => {
@@ -82,6 +84,12 @@ const addScopeTimes = (times, { id, field, isStatic, title }, scope) => {
   }
   scope.advice[id] = advice;
 };
+// Two drivers of one GPU are told apart by their own words.
+const nameMachine = (renderer) => {
+  const title = titleGpu(renderer);
+  const isTaken = machines.some((each) => each.renderer !== renderer && titleGpu(each.renderer) === title);
+  return (isTaken ? renderer : title).slice(0, 80);
+};
 // Puts a machine's times among the costs, in the place of older ones of the same renderer; gives the id of that of a
 // moving light. `file` is where a terminal finds them.
 const addMachine = (times, isHere, file = "gpu-times.json") => {
@@ -90,7 +98,7 @@ const addMachine = (times, isHere, file = "gpu-times.json") => {
   machines[at] = times;
   for (const isStatic of [false, true]) {
     const id = `machine${at}.${isStatic ? "static" : "moving"}`;
-    const name = isHere ? "this GPU" : times.renderer.slice(0, 40);
+    const name = isHere ? "this GPU" : nameMachine(times.renderer);
     const title = `${isStatic ? "static" : "moving"} light, ${name}`;
     const option = `--times ${file}${isStatic ? " --light-motion static" : ""}`;
     const choice = { id, field: id, title, unit: "ms", option, isEstimate: false };

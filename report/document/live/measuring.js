@@ -111,8 +111,19 @@ const kResultColumns = [
   "filter, ms",
   "prefilter, ms",
 ];
+const kQueryColumns = ["filter by timer queries, ms", "prefilter by timer queries, ms"];
+// What timer queries say of the times of a place, in words; they are shown, and nothing is made of them.
+const sayQueries = (times, isSoftware) => {
+  const asked = times.filter((time) => time?.queries);
+  if (!times.some(Boolean)) return "";
+  if (asked.length === 0) return " This browser has no timer queries to hold its times against.";
+  const apart = asked.filter(areQueriesApart).length;
+  const cpu = isSoftware ? " A CPU draws here, of which such queries know little." : "";
+  if (apart === 0) return ` Timer queries agree with these times.${cpu}`;
+  return ` Timer queries differ from ${apart} of ${asked.length} times by more than both intervals (\u2260).${cpu}`;
+};
 // Shows what is known of the filters of a place.
-const fillResults = (table, place, { found, samplingAt, sayReference }) => {
+const fillResults = (table, place, { found, samplingAt, sayReference }, isSoftware) => {
   const whos = listFiltersAt(place);
   const rows = whos.map((who) => [who, found.get(cellAt(who, place).key) ?? {}]);
   table.replaceChildren();
@@ -126,9 +137,12 @@ const fillResults = (table, place, { found, samplingAt, sayReference }) => {
   const [, { map } = {}] = rows.find(([, { map }]) => map) ?? [];
   const ofMap = map ? ` The map takes ${format(map.median)} ms.` : "";
   const title = `What this GPU draws on ${run.places[place].title}.`;
-  element(table, "caption", {}, `${title} ${sampling}${ofMap}${sayReference(place)}`);
+  const times = rows.flatMap(([, { filter, prefilter }]) => [filter, prefilter]);
+  const ofQueries = sayQueries(map ? [map, ...times] : times, isSoftware);
+  element(table, "caption", {}, `${title} ${sampling}${ofMap}${ofQueries}${sayReference(place)}`);
   const head = element(element(table, "thead"), "tr");
-  for (const column of kResultColumns) element(head, "th", { scope: "col" }, column);
+  const columns = [...kResultColumns, ...(times.some((time) => time?.queries) ? kQueryColumns : [])];
+  for (const column of columns) element(head, "th", { scope: "col" }, column);
   const body = element(table, "tbody");
   const say = (each) => (each ? format(each.median) : "");
   const sayInterval = (each) =>
@@ -137,7 +151,7 @@ const fillResults = (table, place, { found, samplingAt, sayReference }) => {
     const row = element(body, "tr");
     element(element(row, "th", { scope: "row" }), "bdi", {}, nameOf(who));
     if (refused) {
-      element(row, "td", { colSpan: kResultColumns.length - 1, className: "text" }, refused);
+      element(row, "td", { colSpan: columns.length - 1, className: "text" }, refused);
       continue;
     }
     const isKnown = rmse !== undefined;
@@ -145,5 +159,13 @@ const fillResults = (table, place, { found, samplingAt, sayReference }) => {
     element(row, "td", { className: isKnown && !isSame ? "bad" : "" }, verdict);
     for (const value of [worst, all]) element(row, "td", {}, isKnown ? format(value) : "");
     for (const each of [filter, prefilter]) element(row, "td", { title: sayInterval(each) }, say(each));
+    if (columns.length === kResultColumns.length) continue;
+    for (const each of [filter, prefilter])
+      element(
+        row,
+        "td",
+        { title: sayInterval(each?.queries) },
+        (each && areQueriesApart(each) ? "\u2260 " : "") + say(each?.queries),
+      );
   }
 };

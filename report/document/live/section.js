@@ -88,9 +88,9 @@ const openLive = (holder) => {
     command.hidden = code.textContent === "";
     unsaid.textContent = listUnsaid(state).join(" ");
   };
-  const fillTable = () => fillResults(results, state.place, measuring);
+  const fillTable = () => fillResults(results, state.place, measuring, engine.isSoftware);
   const sayRenderer = () =>
-    `Drawn here by ${engine.renderer}.` +
+    `Drawn here by ${titleGpu(engine.renderer)}.` +
     (engine.isSoftware ? " That is a CPU: its times are not those of a GPU." : "");
 
   const timeAll = async (onStep) => {
@@ -226,6 +226,7 @@ const openLive = (holder) => {
     changed();
   });
   status.textContent = sayRenderer();
+  status.title = engine.renderer;
   followDrags(canvas, (yaw, pitch) => {
     if (engine.isBusy) return;
     turnView(state, state.drags, yaw, pitch);

@@ -3,6 +3,7 @@
 const kLeastBatchMs = 30;
 const kGrainsInBatch = 50; // the clock's grain is 2 % of a batch at most
 const kMostDraws = 4096;
+const kMostQueryMs = 2000;
 const median = (values) => {
   const sorted = [...values].sort((a, b) => a - b);
   const middle = sorted.length >> 1;
@@ -42,7 +43,31 @@ const whenSeen = async () => {
 };
 const pause = () => new Promise((resolve) => setTimeout(resolve));
 
+// Asks the browser's own timer of the GPU: what a draw takes by it, ms; null where there is none, or it was disturbed.
+// It is a cross-check: a browser may round such times, and a CPU that draws may have done nothing yet when it ends.
+const makeQueryTimer = (gl) => {
+  const timers = gl.getExtension("EXT_disjoint_timer_query_webgl2");
+  if (!timers) return async () => null;
+  return async ({ draw, count }) => {
+    const query = gl.createQuery();
+    gl.getParameter(timers.GPU_DISJOINT_EXT); // forgets what was disturbed before
+    gl.beginQuery(timers.TIME_ELAPSED_EXT, query);
+    draw(count);
+    gl.endQuery(timers.TIME_ELAPSED_EXT);
+    gl.flush();
+    const end = performance.now() + kMostQueryMs;
+    const isThere = () => gl.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE);
+    do await pause();
+    while (!isThere() && performance.now() < end);
+    const isSound = isThere() && !gl.getParameter(timers.GPU_DISJOINT_EXT);
+    const value = isSound ? gl.getQueryParameter(query, gl.QUERY_RESULT) / 1e6 / count : null;
+    gl.deleteQuery(query);
+    return value;
+  };
+};
+
 const makeTimer = (gl) => {
+  const ask = makeQueryTimer(gl);
   const pixel = new Uint8Array(4);
   const { framebuffer } = makeTarget(gl, gl.RGBA8, 1, 1);
   // A pixel that is written after all that was drawn, and read back, comes when that is done.
@@ -67,12 +92,13 @@ const makeTimer = (gl) => {
   };
   const timeOnce = ({ draw, count }) => (timeBatch(draw, 2 * count) - timeBatch(draw, count)) / count;
 
-  // Promises what each of some functions, which draw so many times, takes for once, ms: in rounds, each in an order of its own. `isStopped` ends it early.
+  // Promises what each of some functions, which draw so many times, takes for once, ms, with what timer queries say of it:
+  // in rounds, each in an order of its own. `isStopped` ends it early.
   return async (draws, rounds, onRound, isStopped) => {
     const timed = [];
     for (const draw of draws) {
       draw(1);
-      timed.push({ draw, count: countDraws(draw), values: [] });
+      timed.push({ draw, count: countDraws(draw), values: [], queries: [] });
       await pause();
     }
     for (let round = 0; round < rounds && !isStopped(); ++round) {
@@ -80,11 +106,17 @@ const makeTimer = (gl) => {
         if (isStopped()) break;
         await whenSeen();
         const value = timeOnce(each);
-        if (!document.hidden) each.values.push(value);
-        await pause();
+        const asked = await ask(each);
+        if (document.hidden) continue;
+        each.values.push(value);
+        if (asked !== null) each.queries.push(asked);
       }
       onRound(round + 1);
     }
-    return timed.map(({ values }) => (values.length > 0 ? summarise(values) : null));
+    const sum = ({ values, queries }) => ({
+      ...summarise(values),
+      ...(queries.length > 0 && { queries: summarise(queries) }),
+    });
+    return timed.map((each) => (each.values.length > 0 ? sum(each) : null));
   };
 };

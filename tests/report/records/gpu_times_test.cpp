@@ -78,6 +78,25 @@ TEST_F(GpuTimesTest, WhatIsNoFileOfTimesIsRefused) {
   EXPECT_THAT(refusal_of(std::string(17 << 20, ' ')), HasSubstr("MiB"));
 }
 
+TEST_F(GpuTimesTest, TimerQueriesAreKept_AndNoCostIsMadeOfThem) {
+  const std::string queries = R"({"median": 50, "interval": [40, 60], "rounds": 8})";
+  const auto with = [](const std::string& asked) {
+    return R"({"median": 1, "interval": null, "rounds": 9, "queries": )" + asked + "}";
+  };
+  const GpuTimes times = read(write(with(queries), "null"));
+  Results results;
+  results.cells.resize(1);
+  results.cells[0].key = "a";
+  apply_gpu_times(results, times);
+  EXPECT_DOUBLE_EQ(results.cells[0].time_ms.moving->median, 3.0);
+  const TimedParts back = read(gpu_times_json(times).dump()).cells.at("a");
+  ASSERT_TRUE(back.map.queries);
+  EXPECT_DOUBLE_EQ(back.map.queries->ci95.high, 60.0);
+  EXPECT_EQ(back.map.queries->n, 8);
+  EXPECT_FALSE(back.filter.queries);
+  EXPECT_THAT(refusal_of(write(with("null"), "null")), HasSubstr("is no time"));
+}
+
 TEST_F(GpuTimesTest, TimesOfAnotherRunAreRefused) {
   const GpuTimes times = read(write(kFilter, "null", "elsewhere"));
   Results results;
