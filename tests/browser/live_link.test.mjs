@@ -4,7 +4,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
-import { compareShots, kMesa, openLive, withBrowser } from "./live_support.mjs";
+import { compareShots, kMesa, openLive, press, readTable, withBrowser } from "./live_support.mjs";
 import { kNarrow, linkOf, measureOverflow, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 const canvasOf = (page) => page.locator(".live-stage canvas");
@@ -125,4 +125,56 @@ test("TheCommand_MeasuresWhatIsSeen", (context) => withBrowser(kMesa, async (bro
     await close();
   }
   rmSync(folder, { recursive: true });
+}));
+
+test("MapAndBias_AreThoseThatTheProgramDraws_AndALinkHoldsThem", (context) => withBrowser(kMesa, async (browser) => {
+  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), { page, messages, shoot, close } = await openLive(pageOf("several"), browser);
+  const data = await readData(page), box = page.locator(".live details");
+  await page.locator(".live-stage input").fill("0");
+  for (const [filter, size, format, bias, kernels] of [["box4x4", 512, "d16", 0.004, 2], ["vsm", 64, "d24", 0, 0]]) {
+    const { label } = data.configurations.find((each) => each.filter === filter);
+    await pick(page, "Right", { label }, ".live");
+    await page.waitForFunction(() => document.querySelector(".live details"));
+    if (!(await box.evaluate((each) => each.open))) await box.locator("summary").click();
+    await pick(page, "Map", `${size}`, ".live");
+    await pick(page, "Format", format, ".live");
+    await setParameter(page, "constant bias", bias);
+    await setParameter(page, "plane bias", kernels);
+    const shot = await settled(page), shown = await canvasOf(page).evaluate((canvas) => canvas.toDataURL().split(",")[1]);
+    const words = splitWords(await commandOf(page)).slice(1), out = join(folder, filter);
+    const said = runProgram([...words, "--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd: pageOf("several", "..") });
+    assert.equal(said.status, 0, said.stderr);
+    const [cell] = JSON.parse(readFileSync(join(out, "results.json"), "utf8")).cells, own = data.cells.find(({ configuration, place }) => place === 0 && data.configurations[configuration].label === label);
+    assert.deepEqual([cell.filter, cell.map_size, cell.map_format], [filter, size, format]);
+    const pictures = [Buffer.from(shown, "base64"), readFileSync(pageOf("several", decodeURI(own.picture)))];
+    const [gap, moved] = await Promise.all(pictures.map((each) => compareShots(browser, [each, readFileSync(join(out, cell.images.picture))], 24)));
+    context.diagnostic(`${filter}: ${gap.share} of the values differ from the program's, and ${moved.share} from those of the run`);
+    assert.ok(gap.share < 0.01 && gap.share < moved.share / 3, JSON.stringify([gap, moved]));
+    await linkOf(page);
+    await page.reload();
+    await page.waitForSelector(".live-stage canvas");
+    assert.equal(await settled(page), shot, "reloaded");
+  }
+  await shoot("live.map");
+  // The run's own map is what is checked, and what comes back.
+  await press(page, "Check against the run");
+  for (const [filter, rmse] of await readTable(page)) assert.match(rmse, /^[\d.e-]+$/, filter);
+  await page.locator(".live").getByRole("button", { name: "As it was" }).click();
+  await settled(page);
+  assert.equal(await page.locator(".live").getByRole("combobox", { name: "Map", exact: true }).inputValue(), "128");
+  assert.deepEqual(messages, []);
+  await close();
+  rmSync(folder, { recursive: true });
+
+  // What was made for the run's size of map stays, and says why.
+  const other = await openLive(pageOf("live"), browser), sized = data.configurations.map(({ label }) => label);
+  const labels = await other.page.locator(".live select").nth(2).locator("option").allTextContents(), stays = [];
+  for (const label of labels.filter((each) => !sized.includes(each) && each !== "truth")) {
+    await pick(other.page, "Right", { label }, ".live");
+    await other.page.waitForTimeout(300);
+    if ((await other.page.locator(".live details").textContent()).includes("The map's size stays: its passes are")) stays.push(label);
+  }
+  assert.ok(stays.length > 0 && stays.length < 8, stays.join());
+  context.diagnostic(`the map's size stays for ${stays.join(", ")}`);
+  await other.close();
 }));

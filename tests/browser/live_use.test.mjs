@@ -134,6 +134,42 @@ test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () 
   await close();
 }));
 
+test("Layers_AreVisibility_ItsErrorAgainstTheTruth_AndTheMap", (context) => withBrowser(kMesa, async (browser) => {
+  const { page, messages, shoot, close } = await openLive(pageOf("several"), browser), slider = page.locator(".live-stage input");
+  const look = async (layer, split) => {
+    await pick(page, "Layer", layer, ".live");
+    await slider.fill(`${split}`);
+    await page.waitForTimeout(700);
+    return page.locator(".live-stage canvas").evaluate((canvas) => {
+      const { width, height } = canvas, context = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d");
+      context.drawImage(canvas, 0, 0);
+      return [...context.getImageData(0, 0, width, height).data];
+    });
+  };
+  await pick(page, "Right", { label: "box4x4" }, ".live");
+  const [truth, filter, errors, map] = [await look("visibility", 100), await look("visibility", 0), await look("error", 0), await look("map", 0)];
+  await shoot("live.depth");
+  let marked = 0, wrong = 0;
+  for (let i = 0; i < truth.length; i += 4) {
+    assert.ok(truth[i] === truth[i + 1] && filter[i] === filter[i + 2], "visibility is grey");
+    const gap = filter[i] - truth[i], warmth = errors[i] - errors[i + 2];
+    if (Math.abs(gap) < 8) continue;
+    ++marked;
+    if (Math.sign(gap) !== Math.sign(warmth)) ++wrong;
+  }
+  context.diagnostic(`${marked} pixels have an error, ${wrong} of them another sign than their colour`);
+  assert.ok(marked > 200 && wrong === 0);
+  assert.ok(new Set(map.filter((_, i) => i % 4 === 0)).size > 10, "depths of a map");
+  await look("error", 50);
+  await shoot("live.error");
+  await page.reload();
+  await page.waitForSelector(".live-stage canvas");
+  assert.equal(await page.locator(".live").getByRole("combobox", { name: "Layer" }).inputValue(), "error");
+  await page.waitForFunction(() => document.querySelector(".live").textContent.includes("The colours end at errors of"));
+  assert.deepEqual(messages, []);
+  await close();
+}));
+
 test("AContextThatIsLost_IsSaid_AndDrawsAgainOnceItIsBack", () => withBrowser(kMesa, async (browser) => {
   const { page, close } = await openLive(pageOf("ball"), browser, { init: keepContexts });
   await page.evaluate(() => {

@@ -2,10 +2,13 @@
 // from it. A view has an id, a place, the angles that camera and light are turned by, and a map of parameters by filter.
 const kAsRun = { id: "run", camera: [0, 0], light: [0, 0], parameters: new Map() };
 const kMapsAtOnce = 4; // of a reference, in each frame
+const kMostError = 0.5; // of visibility, has the palette's last colour
 const kGpuIsGone = "The browser has taken the GPU away from this page, and may give it back.";
 const listFiltersAt = (place) => [...run.configurations.keys()].filter((who) => cellAt(who, place)?.frames);
 const isTurned = (angles) => angles.some((angle) => angle !== 0);
 const isMoved = ({ camera, light }) => isTurned(camera) || isTurned(light);
+const posesOf = ({ camera, light, map = {} }) => JSON.stringify([camera, light, map]);
+const kNoVariant = { textures: new Map(), steps: new Map() };
 
 const makeEngine = (gl) => {
   const names = gl.getExtension("WEBGL_debug_renderer_info");
@@ -15,7 +18,8 @@ const makeEngine = (gl) => {
   const truths = new Map(); // by place
   const motions = new Map(); // by what they move
   const references = new Map(); // by view and place
-  let turn = 0; // counts the changes of camera and light
+  const varied = new Map(); // by the path of frames: the settings of their map
+  let turn = 0; // counts the changes of camera, light and map
   let posed = "";
   let display = null;
 
@@ -40,8 +44,17 @@ const makeEngine = (gl) => {
     return frames.get(key);
   };
   // Turns a frame as a view is turned, and gives it the view's parameters.
-  const pose = ({ player, motion, parameters, who }, { camera, light, parameters: own }) => {
-    const key = [...camera, ...light].join();
+  const pose = (frame, view) => {
+    const { player, motion, parameters, who, cell } = frame;
+    const { camera, light, parameters: own, map = {} } = view;
+    const settings = readSettings(cell.configuration);
+    const { size } = listFixed(frame, settings);
+    if (map.size && map.size !== settings.map_size && size && who !== kTruth)
+      throw new Error(`the map's size stays: ${size}.`);
+    if ((varied.get(cell.frames) ?? "{}") !== JSON.stringify(map))
+      player.vary(isMapChanged(map) ? varyMap(frame, settings, map) : kNoVariant);
+    varied.set(cell.frames, JSON.stringify(map));
+    const key = posesOf(view);
     if (key !== posed) ++turn;
     posed = key;
     if (motion.turn !== turn) {
@@ -70,7 +83,7 @@ const makeEngine = (gl) => {
   };
   const refine = (reference, view) => {
     pose(reference.frame, view);
-    const of = [...view.camera, ...view.light].join();
+    const of = posesOf(view);
     if (reference.of !== of) reference.restart();
     reference.of = of;
     return reference.refine(view.light, kMapsAtOnce);
@@ -87,6 +100,24 @@ const makeEngine = (gl) => {
   const truthAt = (place) => {
     if (!truths.has(place)) truths.set(place, readTruth(place));
     return truths.get(place);
+  };
+  // `visibility` stands in for the frame's own, where it is given.
+  const drawPicture = ({ player, picture }, visibility) => {
+    if (visibility) player.standIn(kVisibility, visibility);
+    try {
+      player.draw(picture);
+    } finally {
+      if (visibility) player.standIn(kVisibility, null);
+    }
+    display.show(player.textureOf(picture));
+  };
+  const drawLayer = ({ player, picture }, layer, isTruth, sharp) => {
+    const visibility = player.inputOf(picture, kVisibility);
+    if (!isTruth) player.draw(visibility);
+    const shown = player.textureOf(isTruth ? picture : visibility);
+    if (layer === "map") display.showSquares(player.mapsOf(visibility), shown);
+    else if (isTruth) display.show({ ...shown, object: sharp }, white);
+    else display.show(shown, layer === "error" ? kMostError : white, layer === "error" ? sharp : null);
   };
   const copy = ({ width, height }, canvas, [from, to]) => {
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
@@ -106,25 +137,22 @@ const makeEngine = (gl) => {
     // Draws a side of a view, and copies it, from one part of the width to another. Promises of a reference that stood in
     // for the truth how many maps it is of, and whether more would better it.
     draw: async (view, who, canvas, part = [0, 1]) => {
-      const { place } = view;
+      const { place, layer = "picture" } = view;
       const frame = await load(who, place);
-      const reference = who === kTruth ? await findReference(view, place) : null;
-      const truth = who === kTruth ? await attempt(truthAt(place)) : null;
+      const needsTruth = who === kTruth || layer === "error";
+      const reference = needsTruth ? await findReference(view, place) : null;
+      const truth = needsTruth ? await attempt(truthAt(place)) : null;
       // Nothing waits from here on: views take turns whole.
       const { player, picture } = frame;
-      const isTraced = who !== kTruth || !isMoved(view);
+      const isTraced = !needsTruth || !isMoved(view);
       if (!isTraced && !reference) throw new Error("no rays were traced there; let the scene be as it was.");
       if (isTraced && truth?.message) throw new Error(truth.message);
       const isUnfinished = !isTraced && refine(reference, view);
       pose(frame, view);
-      if (who === kTruth) player.standIn(kVisibility, isTraced ? truth.value : reference.texture());
-      try {
-        player.draw(picture);
-      } finally {
-        if (who === kTruth) player.standIn(kVisibility, null);
-      }
+      const sharp = needsTruth ? (isTraced ? truth.value : reference.texture()) : null;
       display ??= makeDisplay(gl);
-      display(player.textureOf(picture));
+      if (layer === "picture") drawPicture(frame, who === kTruth ? sharp : null);
+      else drawLayer(frame, who === kTruth ? "visibility" : layer, who === kTruth, sharp);
       copy(player.textureOf(picture), canvas, part);
       return isTraced ? {} : { maps: reference.count(), isUnfinished };
     },

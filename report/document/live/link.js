@@ -1,9 +1,11 @@
 // What the section Live shows, in the page's address; and as the command that measures its right side.
-const saveLive = ({ place, left, right, split, camera, light, parameters }) => {
+const saveLive = ({ place, left, right, split, camera, light, parameters, map, layer }) => {
   const changes = { left, ...(right !== left && { right }) };
   const own = Object.entries(changes).flatMap(([side, who]) =>
     Object.entries(parameters.get(who) ?? {}).map(([name, value]) => [side, name, value].join(":")),
   );
+  if (layer !== "picture") own.push(`layer:${layer}`);
+  own.push(...Object.entries(map).map(([name, value]) => ["map", name, value].join(":")));
   writeLink("live", [run.places[place].title, nameOf(left), nameOf(right), split, ...camera, ...light, ...own]);
 };
 // What the address says of a view, as far as this run has it; null where it says nothing.
@@ -12,7 +14,7 @@ const readLive = (places) => {
   if (!fields) return null;
   const [title, left, right, ...rest] = fields;
   const numbers = rest.splice(0, 5).map((text) => (text === "" ? NaN : Number(text)));
-  const found = { place: places.find((each) => run.places[each].title === title), parameters: new Map() };
+  const found = { place: places.find((each) => run.places[each].title === title), parameters: new Map(), map: {} };
   if (found.place === undefined) return null;
   const findWho = (name) =>
     name === nameOf(kTruth) && run.truths[found.place]
@@ -25,8 +27,11 @@ const readLive = (places) => {
     Object.assign(found, { split: clamp(split, 0, 1), camera: [yaw, clamp(pitch, -1, 1)] });
     found.light = [lightYaw, clamp(lightPitch, -1, 1)];
   }
+  const settings = readSettings(sides.right >= 0 ? sides.right : listFiltersAt(found.place)[0]);
   for (const [side, name, value] of rest.map((text) => text.split(":")))
-    if (sides[side] !== undefined && value && Number.isFinite(Number(value)))
+    if (side === "layer" && kLiveLayers.some(([layer]) => layer === name)) found.layer = name;
+    else if (side === "map") Object.assign(found.map, readMapSetting(settings, name, value));
+    else if (sides[side] !== undefined && value && Number.isFinite(Number(value)))
       found.parameters.set(sides[side], { ...found.parameters.get(sides[side]), [name]: Number(value) });
   return found;
 };
@@ -45,17 +50,32 @@ const writeChanges = (request, changes) =>
 const findSkyAngles = ([x, y, z]) =>
   [Math.atan2(-x, -z), Math.asin(clamp(-y, -1, 1))].map((angle) => Number(((180 / Math.PI) * angle).toFixed(2)));
 // Empty where it is not known how the scene, or the file of the filter, was given.
-const writeRun = ({ place, right, light, parameters }, { motion }) => {
+const writeRun = ({ place, right, light, parameters, map: changes }, { motion }) => {
   const { filter, request, map, size, surroundings } = run.configurations[right];
-  const { fit, light: given, map_format: format } = JSON.parse(surroundings);
+  const settings = JSON.parse(surroundings);
+  const { fit, light: given, map_format: format } = settings;
   const [scene, ...of] = run.places[place].view;
   const file = run.files[filter];
   if (scene === undefined || file === null) return "";
   const sky = motion.isSun && isTurned(light) ? findSkyAngles(motion.directionOf(light)).join() : given;
   const words = [
     ...["--scene", scene, ...of, ...(file ? ["--filter-file", file] : [])],
-    ...["--filters", writeChanges(request, parameters.get(right)), "--map-size", map, "--size", size.join("x")],
-    ...["--map-format", format, "--fit", fit, ...(/^-?[\d.]+,/.test(sky) ? ["--light", sky] : [])],
+    ...[
+      "--filters",
+      writeChanges(request, parameters.get(right)),
+      "--map-size",
+      changes.size ?? map,
+      "--size",
+      size.join("x"),
+    ],
+    ...[
+      "--map-format",
+      changes.format ?? format,
+      "--fit",
+      fit,
+      ...writeBias(settings, changes),
+      ...(/^-?[\d.]+,/.test(sky) ? ["--light", sky] : []),
+    ],
   ];
   return `shadowbench run ${words.map((word) => writeWord(`${word}`)).join(" ")}`;
 };

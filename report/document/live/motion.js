@@ -64,7 +64,7 @@ const kOfLight = [
 const makeMotion = (player, frames, blobs, picture) => {
   const steps = [...player.listSteps(picture)].filter((index) => frames.steps[index].op === "draw");
   const labelOf = (index) => frames.programs[frames.steps[index].program].label;
-  const uniformsOf = (index) => frames.steps[index].uniforms;
+  const uniformsOf = player.uniformsOf;
   const seen = steps.filter((index) => uniformsOf(index).camera_forward_ws);
   const lit = steps.filter((index) => uniformsOf(index).uv_depth_from_world);
   const casters = steps.filter((index) => labelOf(index).startsWith("depth"));

@@ -17,11 +17,26 @@ const startLive = (holder) => {
   shadowbench.stopTiming = () => opened?.stop();
   followLink();
 };
+const kLiveLayers = [
+  ...["picture", "visibility", "error"].map((name) => [name, layerOf(name).title]),
+  ["map", "Depth map"],
+];
 const kDrags = { camera: "the camera", light: "the sun" };
 // A view's drags turn its camera or its sun.
 const turnView = (view, drags, yaw, pitch) => {
   const [oldYaw, oldPitch] = view[drags];
   view[drags] = [oldYaw + yaw, clamp(oldPitch + pitch, -1, 1)].map((angle) => Number(angle.toFixed(4)));
+};
+const addSlider = (parent, { name, value, min, max, step, unit, text }, onChoose) => {
+  const title = element(parent, "label", { title: text }, `${name}${unit ? `, ${unit}` : ""} `);
+  const input = element(title, "input", { type: "range", min, max, step });
+  input.value = value;
+  const shown = element(title, "output", {}, format(Number(value)));
+  input.addEventListener("input", () => {
+    shown.textContent = format(Number(input.value));
+    onChoose(Number(Number(input.value).toPrecision(6)));
+  });
+  return input;
 };
 const openLive = (holder) => {
   holder.replaceChildren();
@@ -46,6 +61,7 @@ const openLive = (holder) => {
   });
   const message = element(holder, "p", { className: "note" });
   const parameters = element(holder, "div", { className: "controls" });
+  const mapBox = element(holder, "div");
   const code = addCommand(holder, "Measure the right side: ");
   const command = code.parentNode;
   command.hidden = true;
@@ -58,7 +74,7 @@ const openLive = (holder) => {
   const [first] = listFiltersAt(places[0]);
   const state = {
     ...{ id: "live", place: places[0], left: run.truths[places[0]] ? kTruth : first, right: first, split: 0.5 },
-    ...{ camera: [0, 0], light: [0, 0], parameters: new Map(), drags: "camera" },
+    ...{ camera: [0, 0], light: [0, 0], parameters: new Map(), map: {}, drags: "camera", layer: "picture" },
   };
 
   const show = async () => {
@@ -75,6 +91,10 @@ const openLive = (holder) => {
       if (value?.maps)
         messages.push(`No rays were traced there: instead of the truth this is the mean of ${value.maps} maps.`);
     }
+    if (state.layer === "error")
+      messages.push(
+        `The colours end at errors of \u2212${kMostError} (darker than the truth) and +${kMostError} (lighter).`,
+      );
     message.textContent = messages.join(" ");
     canvas.setAttribute(
       "aria-label",
@@ -154,29 +174,26 @@ const openLive = (holder) => {
     const { value: frame } = await attempt(engine.load(right, place));
     if (right !== state.right || place !== state.place) return;
     parameters.replaceChildren();
+    mapBox.replaceChildren(...(frame && right !== kTruth ? mapBox.childNodes : []));
     const own = state.parameters.get(right) ?? {};
     const known = frame?.parameters.filter(({ name }) => name in own) ?? [];
     const bounded = known.map(({ name, min, max }) => [name, clamp(own[name], min, max)]);
     state.parameters.set(right, Object.fromEntries(bounded)); // a link may say anything
     showCommand();
     if (!frame || right === kTruth) return;
-    for (const { name, value, min, max, whole, unit, text } of frame.parameters) {
-      const now = state.parameters.get(right)?.[name] ?? value;
-      const title = element(parameters, "label", { title: text }, `${name}${unit ? `, ${unit}` : ""} `);
-      const input = element(title, "input", { type: "range", min, max, step: whole ? 1 : (max - min) / 200 });
-      input.value = now;
-      const shown = element(title, "output", {}, format(now));
-      input.addEventListener("input", () => {
-        shown.textContent = format(Number(input.value));
-        const chosen = Number(Number(input.value).toPrecision(6));
-        state.parameters.set(right, { ...state.parameters.get(right), [name]: chosen });
+    for (const { value, ...each } of frame.parameters) {
+      const now = state.parameters.get(right)?.[each.name] ?? value;
+      const step = each.whole ? 1 : (each.max - each.min) / 200;
+      addSlider(parameters, { ...each, step, value: now }, (chosen) => {
+        state.parameters.set(right, { ...state.parameters.get(right), [each.name]: chosen });
         changed();
       });
     }
+    fillMapControls(mapBox, frame, state, engine.gl.getParameter(engine.gl.MAX_TEXTURE_SIZE), changed);
   };
-  // Camera, sun and parameters are the run's own again.
+  // Camera, sun, parameters and map are the run's own again.
   const restore = () => {
-    Object.assign(state, { camera: [0, 0], light: [0, 0], parameters: new Map() });
+    Object.assign(state, { camera: [0, 0], light: [0, 0], parameters: new Map(), map: {} });
     fillParameters();
     changed();
   };
@@ -197,6 +214,10 @@ const openLive = (holder) => {
     ),
     left: addChoice("Left", "left", options()),
     right: addChoice("Right", "right", options()),
+    layer: addSelect(controls, "Layer", kLiveLayers, {}, (value) => {
+      state.layer = value;
+      changed();
+    }),
   };
   const fillSides = () => {
     for (const name of ["left", "right"]) {
@@ -233,7 +254,8 @@ const openLive = (holder) => {
     changed();
   });
   const openLink = () => {
-    Object.assign(state, readLive(places) ?? {});
+    Object.assign(state, { map: {}, layer: "picture" }, readLive(places));
+    selects.layer.value = state.layer;
     selects.place.value = state.place;
     slider.value = 100 * state.split;
     fillSides();

@@ -48,30 +48,71 @@ const readValues = (gl, width, height) => {
   return values;
 };
 
-// Shows linear pictures on the canvas.
+// Shows on the canvas linear pictures, or values in a palette from -`most` or 0 to `most`, less those of another texture.
 const makeDisplay = (gl) => {
+  const colours = (palette) =>
+    kPalettes[palette].map((text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16)));
+  const list = (palette) => colours(palette).map((rgb) => `vec3(${rgb.map((each) => `${each}.0`).join()}) / 255.0`);
   const fragment = `#version 300 es
     precision highp float;
-    uniform sampler2D picture;
+    uniform sampler2D values, less;
+    uniform float most;
+    uniform vec2 corner, texels_per_pixel;
     out vec4 color;
+    vec3 show(vec4 texel, ivec2 place) {
+      if (most == 0.0) {
+        vec3 linear = clamp(texel.rgb, 0.0, 1.0);
+        vec3 curve = 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055;
+        return mix(12.92 * linear, curve, greaterThan(linear, vec3(0.0031308)));
+      }
+      if (textureSize(less, 0) == ivec2(1)) return vec3(clamp(texel.r / most, 0.0, 1.0));
+      vec3 stops[3] = vec3[](${list("diverging")});
+      float error = clamp((texel.r - texelFetch(less, place, 0).r) / most, -1.0, 1.0);
+      return mix(stops[1], error < 0.0 ? stops[0] : stops[2], abs(error));
+    }
     void main() {
-      vec3 linear = clamp(texelFetch(picture, ivec2(gl_FragCoord.xy), 0).rgb, 0.0, 1.0);
-      vec3 curve = 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055;
-      color = vec4(mix(12.92 * linear, curve, greaterThan(linear, vec3(0.0031308))), 1.0);
+      ivec2 place = ivec2((gl_FragCoord.xy - corner) * texels_per_pixel);
+      color = vec4(show(texelFetch(values, place, 0), place), 1.0);
     }`;
   const program = linkProgram(gl, "the display", kTriangle, fragment);
+  const place = (name) => gl.getUniformLocation(program, name);
   const array = gl.createVertexArray();
-  return ({ object, width, height }) => {
+  const nothing = makeTexture(gl, gl.R32F, 1, 1);
+  const begin = (width, height) => {
     if (gl.canvas.width !== width || gl.canvas.height !== height) Object.assign(gl.canvas, { width, height });
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
-    gl.viewport(0, 0, width, height);
     gl.useProgram(program);
     gl.bindVertexArray(array);
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindSampler(0, null);
-    gl.bindTexture(gl.TEXTURE_2D, object);
+  };
+  const draw = ({ object, width, height }, [x, y, wide, high], most, less) => {
+    gl.viewport(x, y, wide, high);
+    [object, less ?? nothing].forEach((texture, unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindSampler(unit, null);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.uniform1i(place(unit === 0 ? "values" : "less"), unit);
+    });
+    gl.uniform1f(place("most"), most);
+    gl.uniform2f(place("corner"), x, y);
+    gl.uniform2f(place("texels_per_pixel"), width / wide, height / high);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.activeTexture(gl.TEXTURE0);
+  };
+  return {
+    // A whole picture; `most` is 0 of linear colours.
+    show: (picture, most = 0, less = null) => {
+      begin(picture.width, picture.height);
+      draw(picture, [0, 0, picture.width, picture.height], most, less);
+    },
+    // Squares beside each other on a canvas of some size.
+    showSquares: (squares, { width, height }) => {
+      begin(width, height);
+      gl.clearColor(0.5, 0.5, 0.5, 1);
+      gl.clear(gl.COLOR_BUFFER_BIT);
+      const side = Math.floor(Math.min(height, width / squares.length));
+      squares.forEach((each, i) => draw(each, [i * side, height - side, side, side], 1));
+    },
   };
 };
 
