@@ -4,7 +4,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
-import { compareShots, kMesa, openLive, press, readTable, withBrowser } from "./live_support.mjs";
+import { compareShots, kMesa, openLive, press, readTable, splitWords, withBrowser } from "./live_support.mjs";
 import { kNarrow, linkOf, measureOverflow, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 const canvasOf = (page) => page.locator(".live-stage canvas");
@@ -25,8 +25,6 @@ const commandOf = async (page) => {
   await page.waitForFunction(() => document.querySelector(".live code")?.textContent.startsWith("shadowbench run "));
   return page.locator(".live code").textContent();
 };
-// A command's words as a shell has them.
-const splitWords = (command) => [...command.matchAll(/'((?:[^']|'\\'')*)'|(\S+)/g)].map(([, quoted, plain]) => plain ?? quoted.replaceAll("'\\''", "'"));
 const setParameter = async (page, name, value) => {
   const slider = page.locator(".live").getByLabel(name);
   return slider.evaluate((input, wanted) => {

@@ -37,6 +37,8 @@ export const withBrowser = async (args, action) => {
     await browser.close();
   }
 };
+// A command's words as a shell has them.
+export const splitWords = (command) => [...command.matchAll(/'((?:[^']|'\\'')*)'|(\S+)/g)].map(([, quoted, plain]) => plain ?? quoted.replaceAll("'\\''", "'"));
 // A copy of a run, of whose scripts of frames a function changes the JSON.
 export const changeFrames = (run, name, edit) => {
   const folder = folderOf(run) + "." + name;

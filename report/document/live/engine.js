@@ -32,7 +32,8 @@ const makeEngine = (gl) => {
     if (!graph.cells[cell.key]) throw new Error(`${cell.frames} does not hold it.`);
     const frame = { ...graph.cells[cell.key], frames: graph, player, cell, who };
     const key = `${cell.frames} ${frame.picture}`;
-    if (!motions.has(key)) motions.set(key, { ...makeMotion(player, graph, blobs, frame.picture), turn: 0 });
+    const { fit } = readSettings(cell.configuration);
+    if (!motions.has(key)) motions.set(key, { ...makeMotion(player, graph, blobs, frame.picture, fit), turn: 0 });
     const steps = [...player.listSteps(frame.picture)];
     const stepsWith = (name) => steps.filter((index) => graph.steps[index].uniforms?.[name]);
     const parameters = frame.parameters.map((each) => ({ ...each, steps: stepsWith(each.name) }));
@@ -60,7 +61,7 @@ const makeEngine = (gl) => {
     if (motion.turn !== turn) {
       motion.turn = turn;
       motion.moveCamera(camera);
-      if (motion.isSun) motion.moveLight(light);
+      motion.moveLight(light);
     }
     if (who === kTruth) return;
     for (const { name, steps, min, max } of parameters) {

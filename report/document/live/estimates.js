@@ -12,7 +12,6 @@ const correlateRanks = (a, b) => {
   if (a.length < 3) return null;
   const middle = (a.length + 1) / 2;
   const [x, y] = [a, b].map((values) => rankAll(values).map((rank) => rank - middle));
-  const dot = (u, v) => u.reduce((sum, value, i) => sum + value * v[i], 0);
   const spread = Math.sqrt(dot(x, x) * dot(y, y));
   return spread > 0 ? dot(x, y) / spread : null;
 };

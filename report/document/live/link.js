@@ -80,11 +80,14 @@ const writeRun = ({ place, right, light, parameters, map: changes }, { motion })
   return `shadowbench run ${words.map((word) => writeWord(`${word}`)).join(" ")}`;
 };
 // What the command leaves out, or makes otherwise.
-const listUnsaid = ({ place, camera, light }) => {
+const listUnsaid = ({ place, camera, light }, { motion } = {}) => {
   const { view } = run.places[place];
   const isModel = view.includes("--ground") || /\.(obj|gltf|glb)$/i.test(view[0]);
   return [
     ...(isTurned(camera) ? ["The camera that was turned is not in it: the program has the scene's own."] : []),
+    ...(isTurned(light) && motion?.isSun === false
+      ? ["The lamp that was moved is not in it: the program has the scene's own."]
+      : []),
     ...(isTurned(light) && isModel ? ["A model's camera and floor, where it has none, follow its light."] : []),
   ];
 };

@@ -1,4 +1,4 @@
-// Moves the camera and the sun of a frame: nothing is drawn but the run's own steps, with other matrices. Matrices are in
+// Moves the camera of a frame: nothing is drawn but the run's own steps, with other matrices. Matrices are in
 // columns, as uniforms have them.
 const multiply = (a, b) =>
   Array.from({ length: 16 }, (_, i) => {
@@ -57,99 +57,35 @@ const findBounds = (frames, blobs, steps) => {
 };
 
 const kOfCamera = ["clip_from_world", "camera_position_ws", "camera_forward_ws"];
-const kOfLight = [
-  ...["clip_from_world", "uv_depth_from_world", "light_direction_ws", "light_right_ws", "light_up_ws"],
-  ...["texel_size_ws", "depth_range_ws", "bias_constant", "bias_slope"],
-];
-const makeMotion = (player, frames, blobs, picture) => {
+const makeMotion = (player, frames, blobs, picture, fit) => {
   const steps = [...player.listSteps(picture)].filter((index) => frames.steps[index].op === "draw");
   const labelOf = (index) => frames.programs[frames.steps[index].program].label;
   const uniformsOf = player.uniformsOf;
   const seen = steps.filter((index) => uniformsOf(index).camera_forward_ws);
-  const lit = steps.filter((index) => uniformsOf(index).uv_depth_from_world);
   const casters = steps.filter((index) => labelOf(index).startsWith("depth"));
-  const { middle, radius } = findBounds(frames, blobs, steps);
+  const bounds = findBounds(frames, blobs, steps);
   const drawn = steps.find((index) => labelOf(index).startsWith("gbuffer"));
-  const own = lit.length > 0 ? uniformsOf(lit[0]) : null;
-  // A sun whose map has one layer and no warp: its window can be turned, and made as large as it must be.
-  const isSun =
-    own !== null &&
-    lit.every((index) => {
-      const m = uniformsOf(index).uv_depth_from_world;
-      return m[3] === 0 && m[7] === 0 && m[11] === 0 && m.every((value, i) => value === own.uv_depth_from_world[i]);
-    });
-  const direction = steps.map((index) => uniformsOf(index).light_direction_ws).find(Boolean);
+  const { camera_forward_ws: ahead, camera_position_ws: stand, clip_from_world: projection } = uniformsOf(drawn);
+  const camera = { clip: projection, position: stand, forward: ahead, isTurned: false };
 
-  // What is not turned gets the run's own numbers again, to the last bit.
-  const restore = (indices, names) => {
-    for (const index of indices) player.setUniforms(index, Object.fromEntries(names.map((name) => [name, null])));
-  };
   const moveCamera = ([yaw, pitch]) => {
-    if (yaw === 0 && pitch === 0) return restore(seen, kOfCamera);
-    const base = uniformsOf(drawn);
-    const { forth, back } = turnAround(middle, base.camera_forward_ws, yaw, pitch);
+    camera.isTurned = yaw !== 0 || pitch !== 0;
+    const { forth, back } = turnAround(bounds.middle, ahead, yaw, pitch);
+    camera.position = transform(forth, stand, 1);
+    camera.forward = transform(forth, ahead, 0);
+    // What is not turned gets the run's own numbers again, to the last bit.
+    const restored = Object.fromEntries(kOfCamera.map((name) => [name, null]));
     for (const index of seen) {
       const { clip_from_world: clip, camera_position_ws: position, camera_forward_ws: forward } = uniformsOf(index);
-      player.setUniforms(index, {
+      const turned = {
         ...(clip && { clip_from_world: multiply(clip, back) }),
         camera_position_ws: transform(forth, position, 1),
         camera_forward_ws: transform(forth, forward, 0),
-      });
-    }
-  };
-  // The window's own half-width in metres follows from the length of a row of its matrix: a metre is so much of it.
-  const growth = (row) => {
-    const m = own.uv_depth_from_world;
-    const perMetre = Math.hypot(m[row], m[4 + row], m[8 + row]);
-    const center = transform(m, middle, 1)[row];
-    return Math.max(1, 2 * (radius * perMetre + Math.abs(center - 0.5)));
-  };
-  // `tilt` turns the sun a little more, about an axis across it: the axis's angle, and that of the turn.
-  const moveLight = ([yaw, pitch], tilt = [0, 0]) => {
-    const isMoved = yaw !== 0 || pitch !== 0;
-    if (!isMoved && tilt[1] === 0)
-      return restore(
-        steps.filter((index) => !seen.includes(index) || !uniformsOf(index).clip_from_world),
-        kOfLight,
-      );
-    const [u, v, depth] = isMoved ? [0, 1, 2].map(growth) : [1, 1, 1];
-    const wide = Math.max(u, v);
-    const { forth, back } = turnAround(middle, direction, yaw, pitch);
-    const across = normalise(cross(direction, Math.abs(direction[1]) < 0.9 ? [0, 1, 0] : [1, 0, 0]));
-    const other = cross(direction, across);
-    const axis = across.map((value, i) => Math.cos(tilt[0]) * value + Math.sin(tilt[0]) * other[i]);
-    const about = (angle) =>
-      multiply(multiply(shiftBy(middle), rotateAbout(axis, angle)), shiftBy(middle.map((value) => -value)));
-    const toOwn = multiply(about(-tilt[1]), back);
-    const turned = (vector) => transform(forth, transform(about(tilt[1]), vector, 0), 0);
-    const uv = multiply(
-      shiftBy([0.5, 0.5, 0.5]),
-      multiply(scaleBy([1 / wide, 1 / wide, 1 / depth]), shiftBy([-0.5, -0.5, -0.5])),
-    );
-    const clip = multiply(
-      shiftBy([0, 0, 0.5]),
-      multiply(scaleBy([1 / wide, 1 / wide, 1 / depth]), shiftBy([0, 0, -0.5])),
-    );
-    for (const index of steps) {
-      const base = uniformsOf(index);
-      const changes = {};
-      if (base.uv_depth_from_world)
-        changes.uv_depth_from_world = multiply(uv, multiply(base.uv_depth_from_world, toOwn));
-      if (casters.includes(index)) changes.clip_from_world = multiply(clip, multiply(base.clip_from_world, toOwn));
-      for (const name of ["light_direction_ws", "light_right_ws", "light_up_ws"])
-        if (base[name]) changes[name] = turned(base[name]);
-      const factors = {
-        texel_size_ws: wide,
-        depth_range_ws: depth,
-        bias_constant: 1 / depth,
-        bias_slope: wide / depth,
       };
-      for (const [name, factor] of Object.entries(factors)) if (base[name]) changes[name] = [base[name][0] * factor];
-      player.setUniforms(index, changes);
+      player.setUniforms(index, camera.isTurned ? turned : restored);
     }
   };
-  const directionOf = ([yaw, pitch]) => transform(turnAround(middle, direction, yaw, pitch).forth, direction, 0);
-  return { isSun, moveCamera, moveLight, directionOf };
+  return { moveCamera, ...makeLightMotion(player, { steps, casters, bounds, fit, cameraNow: () => camera }) };
 };
 
 // Calls with the angles, radians, that a pointer's way over an element turns by, where it begins as `begins` says.

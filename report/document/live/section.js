@@ -21,7 +21,7 @@ const kLiveLayers = [
   ...["picture", "visibility", "error"].map((name) => [name, layerOf(name).title]),
   ["map", "Depth map"],
 ];
-const kDrags = { camera: "the camera", light: "the sun" };
+const kDrags = { camera: "the camera", light: "the light" };
 // A view's drags turn its camera or its sun.
 const turnView = (view, drags, yaw, pitch) => {
   const [oldYaw, oldPitch] = view[drags];
@@ -86,11 +86,17 @@ const openLive = (holder) => {
     const messages = [];
     for (const [who, ...part] of sides) {
       const { value, message: why } = await attempt(engine.draw(state, who, canvas, part));
-      if (why) messages.push(`${nameOf(who)} cannot be drawn: ${why}`);
+      if (why) {
+        messages.push(`${nameOf(who)} cannot be drawn: ${why}`);
+        const [from, to] = part.map((share) => Math.round(share * canvas.width));
+        canvas.getContext("2d").clearRect(from, 0, to - from, canvas.height);
+      }
       if (value?.isUnfinished) requestAnimationFrame(show);
       if (value?.maps)
         messages.push(`No rays were traced there: instead of the truth this is the mean of ${value.maps} maps.`);
     }
+    const { value: frame } = await attempt(engine.load(state.right, state.place));
+    if (frame?.motion.stays && isTurned(state.light)) messages.push(`This light stays: ${frame.motion.stays}.`);
     if (state.layer === "error")
       messages.push(
         `The colours end at errors of \u2212${kMostError} (darker than the truth) and +${kMostError} (lighter).`,
@@ -106,7 +112,7 @@ const openLive = (holder) => {
     const { value: frame } = right === kTruth ? {} : await attempt(engine.load(right, place));
     code.textContent = frame ? writeRun(state, frame) : "";
     command.hidden = code.textContent === "";
-    unsaid.textContent = listUnsaid(state).join(" ");
+    unsaid.textContent = listUnsaid(state, frame).join(" ");
   };
   const fillTable = () => fillResults(results, state.place, measuring, engine.isSoftware);
   const sayRenderer = () =>

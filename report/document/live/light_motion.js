@@ -1,0 +1,144 @@
+// Moves a light: its map is drawn by the run's own steps, with other matrices for each of its layers. A sun turns about
+// the scene's middle, and its windows become as large as they must be: around the scene, or around what the camera sees of
+// it where the run's windows follow that. A spot light goes round the middle and keeps looking at what it looked at; a
+// point light goes round it too, and the faces of its cube stay parallel to the axes.
+const kOfLight = [
+  ...["clip_from_world", "uv_depth_from_world", "light_direction_ws", "light_right_ws", "light_up_ws"],
+  ...["texel_size_ws", "depth_range_ws", "bias_constant", "bias_slope", "light_position_ws", "far_over_near"],
+];
+const kWindowMargin = 1.05; // for kernels beyond the border
+const kNearestShare = 1 / 500; // of a lamp's far plane, as the program has it
+
+const lengthOfRow = (m, row) => Math.hypot(m[row], m[4 + row], m[8 + row]);
+const setRow = (m, row, values) => m.map((value, i) => ((i & 3) === row ? values[i >> 2] : value));
+const add = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
+const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+
+// The sphere around what a camera sees between two depths: through the corners, or around the far ones alone.
+const findSlice = ({ clip, position, forward }, from, to) => {
+  const half = Math.hypot(1 / lengthOfRow(clip, 0), 1 / lengthOfRow(clip, 1));
+  const isPerspective = lengthOfRow(clip, 3) > 0;
+  const at = isPerspective ? Math.min(to, ((from + to) / 2) * (1 + half * half)) : (from + to) / 2;
+  const reachTo = (depth) => Math.hypot(depth - at, half * (isPerspective ? depth : 1));
+  return { middle: add(position, forward, at), radius: Math.max(reachTo(from), reachTo(to)) };
+};
+
+// What a sun's layer becomes that covers a sphere of a scene; `back` takes the world to where the sun was.
+const frameSun = (uv, back, cover, { middle, radius }) => {
+  const wide = 2 * cover.radius * Math.max(lengthOfRow(uv, 0), lengthOfRow(uv, 1));
+  const deep = 2 * radius * lengthOfRow(uv, 2);
+  const narrow = (own, center) => {
+    const matrix = multiply(own, back);
+    const [u, v] = transform(matrix, cover.middle, 1);
+    const toOrigin = multiply(shiftBy([-u, -v, -transform(matrix, middle, 1)[2]]), matrix);
+    return multiply(shiftBy(center), multiply(scaleBy([1 / wide, 1 / wide, 1 / deep]), toOrigin));
+  };
+  return { wide, deep, uv: narrow(uv, [0.5, 0.5, 0.5]), clipOf: (clip) => narrow(clip, [0, 0, 0.5]) };
+};
+// What a lamp's layer becomes, so far from a scene's middle; `range` is the run's own from the near to the far plane.
+const frameLamp = (uv, back, range, distance, { radius }) => {
+  const far = 1.001 * (distance + radius);
+  const near = Math.max((distance - radius) / Math.sqrt(3), kNearestShare * far);
+  const turned = multiply(uv, back);
+  const along = [0, 1, 2, 3].map((column) => turned[4 * column + 3]);
+  const past = add(along, [0, 0, 0, near], -1).map((value) => value / (far - near));
+  const clipOf = (clip) => {
+    const isReversed =
+      dot(
+        [0, 4, 8].map((i) => clip[i + 2]),
+        [0, 4, 8].map((i) => clip[i + 3]),
+      ) < 0;
+    const depth = past.map((value) => far * value);
+    return setRow(multiply(clip, back), 2, isReversed ? add(along, depth, -1) : depth);
+  };
+  return { wide: 1, deep: (far - near) / range, uv: setRow(turned, 2, past), clipOf, farOverNear: far / near };
+};
+
+// `bounds` are the scene's; `cameraNow` gives where the camera is; `fit` is the run's.
+const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => {
+  const { middle, radius } = bounds;
+  const uniformsOf = player.uniformsOf;
+  const find = (name) => steps.map((index) => uniformsOf(index)[name]).find(Boolean);
+  const followsView = /^(view|cascades)/.test(fit);
+  const layers = [];
+  for (const { uv_depth_from_world: uv, layer_slice: slice } of steps.map(uniformsOf))
+    if (uv && !layers.some((layer) => String(layer.uv) === String(uv))) layers.push({ uv, slice });
+  // A layer's casters have its window, but not its matrix.
+  const gapTo =
+    (clip) =>
+    ({ uv }) =>
+      clip.reduce((sum, value, i) => sum + ((i & 3) < 2 ? Math.abs(value - (2 * uv[i] - uv[i | 3])) : 0), 0);
+  const nearest = (clip) => layers.reduce((a, b) => (gapTo(clip)(b) < gapTo(clip)(a) ? b : a));
+  const layerOf = new Map();
+  for (const index of layers.length > 0 ? steps : []) {
+    const { uv_depth_from_world: uv, clip_from_world: clip } = uniformsOf(index);
+    const read = () => [...player.listSteps(index)].map((each) => layerOf.get(each)).find(Boolean);
+    if (uv)
+      layerOf.set(
+        index,
+        layers.find((layer) => String(layer.uv) === String(uv)),
+      );
+    else layerOf.set(index, casters.includes(index) ? nearest(clip) : read());
+  }
+  const direction = find("light_direction_ws");
+  const lamp = find("light_position_ws");
+  const isCube = find("layer_face") !== undefined;
+  const stays = layers.length === 0 || find("map_texels") ? "its map is bent for the run's own camera and light" : "";
+
+  const coverOf = ({ slice = [0, 0, Infinity, Infinity] }) => {
+    const camera = cameraNow();
+    const depth = dot(add(middle, camera.position, -1), camera.forward);
+    const [from, to] = [Math.max(0, slice[0], depth - radius), Math.min(slice[3], depth + radius)];
+    const seen = followsView && from < to ? findSlice(camera, from, to) : bounds;
+    return seen.radius < radius ? { ...seen, radius: kWindowMargin * seen.radius } : bounds;
+  };
+  const restore = () => {
+    for (const index of steps)
+      if (!uniformsOf(index).camera_forward_ws || !uniformsOf(index).clip_from_world)
+        player.setUniforms(index, Object.fromEntries(kOfLight.map((name) => [name, null])));
+  };
+  // `tilt` turns the sun a little more, about an axis across it: the axis's angle, and that of the turn.
+  const move = ([yaw, pitch], tilt = [0, 0]) => {
+    const isMoved = yaw !== 0 || pitch !== 0 || (followsView && cameraNow().isTurned);
+    if (!isMoved && tilt[1] === 0) return restore();
+    const turn = turnAround(middle, direction, yaw, pitch);
+    const across = normalise(cross(direction, Math.abs(direction[1]) < 0.9 ? [0, 1, 0] : [1, 0, 0]));
+    const axis = add(
+      across.map((value) => Math.cos(tilt[0]) * value),
+      cross(direction, across),
+      Math.sin(tilt[0]),
+    );
+    const about = (angle) =>
+      multiply(multiply(shiftBy(middle), rotateAbout(axis, angle)), shiftBy(middle.map((x) => -x)));
+    const place = lamp && transform(turn.forth, lamp, 1);
+    const back = isCube ? shiftBy(add(lamp, place, -1)) : multiply(about(-tilt[1]), turn.back);
+    const turned = (vector) => (isCube ? vector : transform(turn.forth, transform(about(tilt[1]), vector, 0), 0));
+    const distance = lamp && Math.hypot(...add(middle, lamp, -1));
+    const own = ({ uv }) => ({ wide: 1, deep: 1, uv: multiply(uv, back), clipOf: (clip) => multiply(clip, back) });
+    const frame = (layer) =>
+      lamp
+        ? frameLamp(layer.uv, back, find("depth_range_ws")[0], distance, bounds)
+        : frameSun(layer.uv, back, coverOf(layer), bounds);
+    const framed = new Map(layers.map((layer) => [layer, isMoved ? frame(layer) : own(layer)]));
+    for (const index of steps) {
+      const base = uniformsOf(index);
+      const { wide, deep, uv, clipOf, farOverNear } = framed.get(layerOf.get(index) ?? layers[0]);
+      const changes = {};
+      if (base.uv_depth_from_world) changes.uv_depth_from_world = uv;
+      if (casters.includes(index)) changes.clip_from_world = clipOf(base.clip_from_world);
+      if (base.light_position_ws) changes.light_position_ws = place;
+      if (base.far_over_near && farOverNear) changes.far_over_near = [farOverNear];
+      for (const name of ["light_direction_ws", "light_right_ws", "light_up_ws"])
+        if (base[name]) changes[name] = turned(base[name]);
+      const factors = { texel_size_ws: wide, depth_range_ws: deep, bias_constant: 1 / deep, bias_slope: wide / deep };
+      for (const [name, factor] of Object.entries(factors)) if (base[name]) changes[name] = [base[name][0] * factor];
+      player.setUniforms(index, changes);
+    }
+  };
+  return {
+    isSun: !stays && !lamp,
+    stays,
+    moveLight: stays ? () => {} : move,
+    directionOf: ([yaw, pitch]) => transform(turnAround(middle, direction, yaw, pitch).forth, direction, 0),
+  };
+};

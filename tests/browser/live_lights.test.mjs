@@ -1,0 +1,76 @@
+// Lights of every kind are moved by the page, and the program draws the same.
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import test from "node:test";
+import { compareShots, kMesa, openLive, splitWords, withBrowser } from "./live_support.mjs";
+import { pageOf, readData, runProgram } from "./support.mjs";
+
+const kScene = new URL("../../data/scenes/teaching/three_lights.toml", import.meta.url);
+const kFew = ["--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids"];
+// The right side's picture with camera and light turned so, and the page.
+const drawTurned = async (browser, run, place, filter, camera, light) => {
+  const fields = [place, filter, filter, 0.5, ...camera, ...light].map(encodeURIComponent).join();
+  const { page, messages, close } = await openLive(pageOf(run), browser, { hash: `#live=${fields}` });
+  await page.waitForFunction(() => document.querySelector(".live-stage canvas").width > 1);
+  await page.waitForTimeout(1500);
+  const picture = await page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL().split(",")[1]);
+  const said = await page.locator(".live").textContent(), command = await page.locator(".live code").textContent(), data = await readData(page);
+  assert.deepEqual(messages, []);
+  await close();
+  return { picture: Buffer.from(picture, "base64"), said, words: splitWords(command).slice(1), data };
+};
+const drawByProgram = (words, out, cwd) => {
+  const said = runProgram([...words, ...kFew, "--out", out], { cwd });
+  assert.equal(said.status, 0, said.stderr);
+  const { cells } = JSON.parse(readFileSync(join(out, "results.json"), "utf8"));
+  return readFileSync(join(out, cells[0].images.picture));
+};
+const ownPicture = (run, data, place, label) => {
+  const [at, who] = [data.places.findIndex(({ title }) => title === place), data.configurations.findIndex((each) => each.label === label)];
+  return readFileSync(pageOf(run, decodeURI(data.cells.find((cell) => cell.place === at && cell.configuration === who).picture)));
+};
+const holdAgainst = async (context, browser, name, [shown, drawn, own], most = 0.03) => {
+  const [gap, moved] = [await compareShots(browser, [shown, drawn], 24), await compareShots(browser, [own, drawn], 24)];
+  context.diagnostic(`${name}: ${gap.share} of the values differ from the program's, and ${moved.share} from those of the run's own light`);
+  assert.ok(gap.share < most && gap.share < moved.share / 3, `${name}: ${JSON.stringify([gap, moved])}`);
+};
+
+test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", (context) => withBrowser(kMesa, async (browser) => {
+  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), yaw = 0.5, [c, s] = [Math.cos(yaw), Math.sin(yaw)];
+  // Floor and posts of the scene have their middle over the origin.
+  const turn = (text, key) => text.replace(new RegExp(`^${key} = \\[(.*)\\]$`, "gm"), (_, list) => {
+    const [x, y, z] = list.split(",").map(Number);
+    return `${key} = [${c * x + s * z}, ${y}, ${c * z - s * x}]`;
+  });
+  const [head, ...lights] = readFileSync(kScene, "utf8").split("[[light]]"), moved = lights.map((light, i) => (i === 0 ? light : turn(turn(light, "position"), "target")));
+  writeFileSync(join(folder, "moved.toml"), [head, ...moved].join("[[light]]"));
+  for (const light of ["spot", "bulb"]) {
+    const place = `three_lights.${light}`, { picture, said, data } = await drawTurned(browser, "lamps", place, "tent3x3", [0, 0], [yaw, 0]);
+    assert.match(said, /The lamp that was moved is not in it/);
+    const drawn = drawByProgram(["run", "--scene", "moved.toml", "--light-name", light, "--filters", "tent3x3", "--size", "160x90", "--map-size", "128"], join(folder, light), folder);
+    await holdAgainst(context, browser, light, [picture, drawn, ownPicture("lamps", data, place, "tent3x3")]);
+  }
+  rmSync(folder, { recursive: true });
+}));
+
+test("CascadesFollowSunAndCamera_AndAWarpedMapSaysThatItStays", (context) => withBrowser(kMesa, async (browser) => {
+  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), { data } = await drawTurned(browser, "fits", "avenue", "none", [0, 0], [0, 0]);
+  const labelOf = (fit) => data.configurations.find(({ surroundings, filter }) => filter === "none" && JSON.parse(surroundings).fit.startsWith(fit)).label;
+  // One map of 128 texels over all that is seen has coarse edges, which another window puts elsewhere.
+  for (const [fit, most] of [["cascades", 0.03], ["view", 0.08]]) {
+    const label = labelOf(fit), { picture, words } = await drawTurned(browser, "fits", "avenue", label, [0, 0], [0.4, 0.1]);
+    assert.ok(words.includes("--light"));
+    const own = ownPicture("fits", data, "avenue", label);
+    await holdAgainst(context, browser, fit, [picture, drawByProgram(words, join(folder, fit), folder), own], most);
+    // A whole turn of the camera fits its windows anew, and shows what was seen before.
+    const whole = await drawTurned(browser, "fits", "avenue", label, [2 * Math.PI, 0], [0, 0]), gap = await compareShots(browser, [whole.picture, own], 24);
+    context.diagnostic(`${fit}: ${gap.share} of the values move with a whole turn`);
+    assert.ok(gap.share < most, JSON.stringify(gap));
+  }
+  const label = labelOf("lispsm"), warped = await drawTurned(browser, "fits", "avenue", label, [0, 0], [0.4, 0.1]);
+  assert.match(warped.said, /This light stays: its map is bent/);
+  assert.ok((await compareShots(browser, [warped.picture, ownPicture("fits", data, "avenue", label)])).mean < 0.5);
+  rmSync(folder, { recursive: true });
+}));
