@@ -36,19 +36,22 @@ std::string write_script(const std::filesystem::path& folder, std::span<const st
   return path;
 }
 
-/// A filter's uniforms as sliders show them.
+/// A filter's parameters as sliders show them; what is built into its shaders' texts is marked as constant.
 json list_parameters(const filters::FilterRequest& request) {
   json parameters = json::array();
   for (const filters::ParamSpec& param : request.spec.params) {
-    const double* value = std::get_if<double>(&request.values.at(param.name));
-    if (param.is_const || !value || !param.min || !param.max) continue;
-    parameters.push_back({{"name", param.name},
-                          {"value", *value},
-                          {"min", *param.min},
-                          {"max", *param.max},
-                          {"whole", param.integer},
-                          {"unit", param.unit},
-                          {"text", param.text}});
+    const filters::ParamValue& value = request.values.at(param.name);
+    const double* number = std::get_if<double>(&value);
+    const bool is_bounded = number && param.min && param.max;
+    if (!param.is_const && !is_bounded) continue;
+    json item = {{"name", param.name},
+                 {"whole", param.integer},
+                 {"constant", param.is_const},
+                 {"unit", param.unit},
+                 {"text", param.text}};
+    item["value"] = number ? json(*number) : json(filters::to_string(value));
+    if (is_bounded) item.update({{"min", *param.min}, {"max", *param.max}});
+    parameters.push_back(std::move(item));
   }
   return parameters;
 }

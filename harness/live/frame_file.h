@@ -47,7 +47,7 @@ struct Check {
 /// | `blobs` | path of the script; `rows` and `columns` of 32-bit words, which a page reads as planes of floats are read, or 0 for plain bytes |
 /// | `steps` | `draw`, `clear`, `upload`, `mipmaps`, as gl::Step has them; a step is named by its place in this list, and comes after what it needs |
 /// | `check` | the part of the picture that it is for, and the known texels, with the step that draws them |
-/// | `cells` | by the cell's key: the steps of its picture and its empty lookup, and the limits of its uniforms |
+/// | `cells` | by the cell's key: the steps of its picture and its empty lookup, and its parameters with their limits |
 ///
 /// Steps that are alike are one step: what cells share is drawn once. GL's enumerations are its numbers, which WebGL
 /// shares. Returns the script's path in the folder. Throws Error(kOutput).

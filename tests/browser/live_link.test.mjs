@@ -127,7 +127,7 @@ test("TheCommand_MeasuresWhatIsSeen", (context) => withBrowser(kMesa, async (bro
 
 test("MapAndBias_AreThoseThatTheProgramDraws_AndALinkHoldsThem", (context) => withBrowser(kMesa, async (browser) => {
   const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), { page, messages, shoot, close } = await openLive(pageOf("several"), browser);
-  const data = await readData(page), box = page.locator(".live details");
+  const data = await readData(page), box = page.locator(".live details", { hasText: "Map and bias" });
   await page.locator(".live-stage input").fill("0");
   for (const [filter, size, format, bias, kernels] of [["box4x4", 512, "d16", 0.004, 2], ["vsm", 64, "d24", 0, 0]]) {
     const { label } = data.configurations.find((each) => each.filter === filter);
@@ -170,9 +170,17 @@ test("MapAndBias_AreThoseThatTheProgramDraws_AndALinkHoldsThem", (context) => wi
   for (const label of labels.filter((each) => !sized.includes(each) && each !== "truth")) {
     await pick(other.page, "Right", { label }, ".live");
     await other.page.waitForTimeout(300);
-    if ((await other.page.locator(".live details").textContent()).includes("The map's size stays: its passes are")) stays.push(label);
+    if ((await other.page.locator(".live details", { hasText: "Map and bias" }).textContent()).includes("The map's size stays: its passes are")) stays.push(label);
   }
   assert.ok(stays.length > 0 && stays.length < 8, stays.join());
+  // So does what is built into a shader: it stands there with its value, and the command has it.
+  await pick(other.page, "Right", { label: labels.find((label) => label.startsWith("poisson")) }, ".live");
+  const constants = other.page.locator(".live details", { hasText: "Constants" }), taps = constants.getByLabel("taps");
+  await constants.locator("summary").click();
+  assert.ok(await taps.isDisabled());
+  assert.ok((await commandOf(other.page)).includes(`taps=${await taps.inputValue()}`));
+  assert.match(await constants.textContent(), /built into its shaders.*change it in the command below/);
+  await other.shoot("live.constants");
   context.diagnostic(`the map's size stays for ${stays.join(", ")}`);
   await other.close();
 }));

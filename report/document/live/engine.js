@@ -36,8 +36,14 @@ const makeEngine = (gl) => {
     if (!motions.has(key)) motions.set(key, { ...makeMotion(player, graph, blobs, frame.picture, fit), turn: 0 });
     const steps = [...player.listSteps(frame.picture)];
     const stepsWith = (name) => steps.filter((index) => graph.steps[index].uniforms?.[name]);
-    const parameters = frame.parameters.map((each) => ({ ...each, steps: stepsWith(each.name) }));
-    return { ...frame, motion: motions.get(key), parameters: parameters.filter((each) => each.steps.length > 0) };
+    const constants = frame.parameters.filter((each) => each.constant);
+    const parameters = frame.parameters.map((each) => ({ ...each, steps: each.constant ? [] : stepsWith(each.name) }));
+    return {
+      ...frame,
+      motion: motions.get(key),
+      constants,
+      parameters: parameters.filter((each) => each.steps.length > 0),
+    };
   };
   const load = (who, place) => {
     const key = `${who} ${place}`;

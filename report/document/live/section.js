@@ -38,6 +38,21 @@ const addSlider = (parent, { name, value, min, max, step, unit, text }, onChoose
   });
   return input;
 };
+// What a filter's shaders were built with cannot be changed here: another value is another text.
+const fillConstants = (box, { constants }) => {
+  box.replaceChildren();
+  if (constants.length === 0) return;
+  const details = element(box, "details");
+  element(details, "summary", {}, "Constants");
+  const row = element(details, "div", { className: "controls" });
+  for (const { name, value, min, max, unit, text } of constants) {
+    if (min !== undefined) addSlider(row, { name, value, min, max, step: "any", unit, text }, () => {}).disabled = true;
+    else addSelect(row, name, [[value, value]], { disabled: true, title: text }, () => {});
+  }
+  const why =
+    "They are built into its shaders, which were translated with the report; loops and tables are made of them.";
+  element(details, "p", { className: "note" }, `${why} For another value, change it in the command below.`);
+};
 const openLive = (holder) => {
   holder.replaceChildren();
   const status = element(holder, "p", { className: "note", role: "status" });
@@ -62,6 +77,7 @@ const openLive = (holder) => {
   const message = element(holder, "p", { className: "note" });
   const parameters = element(holder, "div", { className: "controls" });
   const mapBox = element(holder, "div");
+  const constantBox = element(holder, "div");
   const code = addCommand(holder, "Measure the right side: ");
   const command = code.parentNode;
   command.hidden = true;
@@ -180,7 +196,7 @@ const openLive = (holder) => {
     const { value: frame } = await attempt(engine.load(right, place));
     if (right !== state.right || place !== state.place) return;
     parameters.replaceChildren();
-    mapBox.replaceChildren(...(frame && right !== kTruth ? mapBox.childNodes : []));
+    if (!frame || right === kTruth) [mapBox, constantBox].forEach((box) => box.replaceChildren());
     const own = state.parameters.get(right) ?? {};
     const known = frame?.parameters.filter(({ name }) => name in own) ?? [];
     const bounded = known.map(({ name, min, max }) => [name, clamp(own[name], min, max)]);
@@ -195,6 +211,7 @@ const openLive = (holder) => {
         changed();
       });
     }
+    fillConstants(constantBox, frame);
     fillMapControls(mapBox, frame, state, engine.gl.getParameter(engine.gl.MAX_TEXTURE_SIZE), changed);
   };
   // Camera, sun, parameters and map are the run's own again.
