@@ -69,7 +69,7 @@ class FrameGraph {
   }
 
   void add(const Check& check) {
-    check_ = {{"rect", list(check.rect)}, {"known", json::array()}};
+    check_ = {{"rect", list(check.rect)}, {"known", json::array()}, {"whole", check.is_whole}};
     for (const KnownTexels& known : check.known) {
       if (!known.content.step) continue;
       check_["known"].push_back({{"texture", add_texture(known.content.texture)},

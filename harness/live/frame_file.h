@@ -32,6 +32,7 @@ struct KnownTexels {
 struct Check {
   images::Rect rect;  ///< of the picture, rows from above
   std::vector<KnownTexels> known;
+  bool is_whole = false;  ///< all of receivers and maps is known, since vertices are too many to be drawn from
 };
 
 // clang-format off
@@ -46,7 +47,7 @@ struct Check {
 /// | `programs` | label; vertex and fragment, GLSL of WebGL 2; or refused, why there is none |
 /// | `blobs` | path of the script; `rows` and `columns` of 32-bit words, which a page reads as planes of floats are read, or 0 for plain bytes |
 /// | `steps` | `draw`, `clear`, `upload`, `mipmaps`, as gl::Step has them; a step is named by its place in this list, and comes after what it needs |
-/// | `check` | the part of the picture that it is for, and the known texels, with the step that draws them |
+/// | `check` | the part of the picture that it is for, the known texels, with the step that draws them, and whether they are all |
 /// | `cells` | by the cell's key: the steps of its picture and its empty lookup, and its parameters with their limits |
 ///
 /// Steps that are alike are one step: what cells share is drawn once. GL's enumerations are its numbers, which WebGL

@@ -75,6 +75,8 @@ class GBuffer {
 
   const gl::Texture& position() const { return position_; }  ///< RGBA32F: world position, view depth (0: nothing)
   const gl::Texture& normal() const { return normal_; }      ///< RGBA32F: geometric normal
+  const gl::Texture& shading_normal() const { return shading_normal_; }  ///< RGBA16F
+  const gl::Texture& albedo() const { return albedo_; }                  ///< RGBA16F
 
  private:
   gl::Texture position_;

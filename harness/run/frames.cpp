@@ -47,22 +47,27 @@ images::Rect find_texels(const std::vector<filters::Receiver>& receivers, const 
 }
 
 live::Check make_check(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
-                       measure::SceneAssets& assets, const images::Rect& rect) {
+                       measure::SceneAssets& assets, const images::Rect& hardest) {
   const render::GBuffer& gbuffer = assets.gbuffer(*task.camera);
   const measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
-  live::Check check{rect, {}};
+  const bool is_whole = renderer.recorder->lacks_vertices();
+  const images::Rect rect = is_whole ? images::Rect{0, 0, gbuffer.width(), gbuffer.height()} : hardest;
+  live::Check check{rect, {}, is_whole};
   const images::Rect below = flip(rect, gbuffer.height());
   const auto add = [&](const gl::Texture& texture, const std::vector<float>& texels, int channels,
                        const images::Rect& part, float fill) {
     check.known.push_back(
         {renderer.recorder->content_of(texture), part, channels, fill, cut(texels, texture.width(), channels, part)});
   };
-  for (const gl::Texture* texture : {&gbuffer.position(), &gbuffer.normal()})
-    add(*texture, texture->read_floats(4), 4, below, 0.0f);
+  std::vector<const gl::Texture*> receivers = {&gbuffer.position(), &gbuffer.normal()};
+  if (is_whole) receivers.insert(receivers.end(), {&gbuffer.shading_normal(), &gbuffer.albedo()});
+  for (const gl::Texture* texture : receivers) add(*texture, texture->read_floats(4), 4, below, 0.0f);
   for (const render::LightSetup& layer : measure::make_unbiased_light(options, task.scene->light, light.layers)) {
     const int index = layer.frustum.layer;
-    const images::Rect part =
-        find_texels(render::read_receivers(renderer.shaders, gbuffer, layer), below, light.map.size());
+    const int size = light.map.size();
+    const images::Rect part = is_whole
+                                  ? images::Rect{0, 0, size, size}
+                                  : find_texels(render::read_receivers(renderer.shaders, gbuffer, layer), below, size);
     add(light.map.texture(index), light.map.read(index).stored, 1, part, light.map.settings().curve.far_plane());
   }
   return check;

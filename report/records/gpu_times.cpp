@@ -54,7 +54,8 @@ TimedPart read_part(const json& part) {
 }
 
 TimedParts read_parts(const json& cell) {
-  TimedParts parts{read_part(cell.at("map")), {}, read_part(cell.at("filter"))};
+  TimedParts parts{{}, {}, read_part(cell.at("filter"))};
+  if (const json& map = cell.at("map"); !map.is_null()) parts.map = read_part(map);
   if (const json& prefilter = cell.at("prefilter"); !prefilter.is_null()) parts.prefilter = read_part(prefilter);
   return parts;
 }
@@ -80,11 +81,12 @@ void add(OwnTime& sum, const OwnTime& part) {
 
 void set_times(CellRecord& cell, const TimedParts& parts) {
   cell.time_ms = {};
-  cell.time_ms.map = parts.map;
+  if (parts.map) cell.time_ms.map = *parts.map;
   if (parts.prefilter) cell.time_ms.prefilter = *parts.prefilter;
   cell.time_ms.lookup = parts.filter;
   cell.time_ms.static_light = parts.filter;
-  OwnTime moving = parts.map;
+  if (!parts.map) return;
+  OwnTime moving = *parts.map;
   if (parts.prefilter) add(moving, *parts.prefilter);
   add(moving, parts.filter);
   cell.time_ms.moving = moving;
@@ -151,7 +153,7 @@ void apply_gpu_times(Results& results, const GpuTimes& times) {
 json gpu_times_json(const GpuTimes& times) {
   json cells = json::object();
   for (const auto& [key, parts] : times.cells)
-    cells[key] = {{"map", write_part(parts.map)},
+    cells[key] = {{"map", parts.map ? write_part(*parts.map) : json()},
                   {"prefilter", parts.prefilter ? write_part(*parts.prefilter) : json()},
                   {"filter", write_part(parts.filter)}};
   return {{"schema", kSchema}, {"renderer", times.renderer}, {"isSoftware", times.software}, {"cells", cells}};

@@ -18,7 +18,7 @@ struct TimedPart : OwnTime {
 
 /// What a cell's parts take on a GPU.
 struct TimedParts {
-  TimedPart map;
+  std::optional<TimedPart> map;  ///< none of a scene that was too large for the page to draw its map
   std::optional<TimedPart> prefilter;
   TimedPart filter;  ///< the lookup less its empty one
 };

@@ -1,8 +1,9 @@
 // The section that draws with WebGL 2 where there is much to draw, and where something is missing.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import test from "node:test";
-import { kMesa, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { kNarrow, kWide, listViolations, measureOverflow, open, pageOf, pick, readData } from "./support.mjs";
+import { compareShots, kMesa, openLive, press, readTable, withBrowser } from "./live_support.mjs";
+import { folderOf, kNarrow, kWide, listViolations, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 const kMostSeconds = 10;
 
@@ -41,6 +42,43 @@ for (const [run, count] of [["forty", 40], ["hundreds", 400]])
     assert.deepEqual(messages, []);
     await close();
   }));
+
+test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa, async (browser) => {
+  const { page, messages, shoot, close } = await openLive(pageOf("large"), browser), label = (await readData(page)).configurations[1].label;
+  const settled = async () => {
+    await page.waitForTimeout(900);
+    return page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL());
+  };
+  await pick(page, "Right", { label }, ".live");
+  await page.locator(".live-stage input").fill("0");
+  const before = await settled(), data = await readData(page), own = data.cells.find(({ configuration }) => configuration === 1);
+  const gap = await compareShots(browser, [Buffer.from(before.split(",")[1], "base64"), readFileSync(pageOf("large", decodeURI(own.picture)))]);
+  context.diagnostic(`the picture differs from the run's by ${gap.mean} of 255`);
+  assert.ok(gap.mean < 0.1, JSON.stringify(gap));
+  // View and light stay, and so does the map; its bias and parameters do not.
+  const { x, y } = await page.locator(".live-stage canvas").boundingBox();
+  await page.mouse.move(x + 100, y + 60);
+  await page.mouse.down();
+  await page.mouse.move(x + 160, y + 60, { steps: 3 });
+  await page.mouse.up();
+  await page.waitForFunction(() => document.querySelector(".live").textContent.includes("Camera and light stay: the scene has more triangles"));
+  assert.equal(await settled(), before);
+  const box = page.locator(".live details", { hasText: "Map and bias" });
+  await box.locator("summary").click();
+  for (const name of ["Map", "Format"]) assert.ok(await page.locator(".live").getByRole("combobox", { name, exact: true }).isDisabled());
+  await box.getByLabel("constant bias").fill("0.01");
+  assert.notEqual(await settled(), before);
+  await shoot("live.large");
+  await press(page, "Time on this GPU");
+  for (const [filter, same, , all, time] of await readTable(page)) assert.ok(Number(same) < 1e-3 && same === all && time !== "", `${filter}: ${same}, ${all}, ${time}`);
+  await page.locator("select[name=cost]").selectOption({ label: "static light, this GPU" });
+  assert.ok((await page.evaluate(() => shadowbench.answer.judge().keeping.length)) > 0);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
+  const said = runProgram(["advise", folderOf("large"), "--times", await download.path(), "--light-motion", "static", "--json"]);
+  assert.equal(said.status, 0, said.stderr);
+  assert.deepEqual(messages, []);
+  await close();
+}));
 
 // In a page before its scripts: the browser draws into no floats.
 const lackFloats = () => {

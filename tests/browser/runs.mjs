@@ -11,6 +11,11 @@ mkdirSync(folder, { recursive: true });
 const kOddScene = "\u0645\u0634\u0647\u062f \"<b>bold<b>\" & 'it'.obj";
 const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => `v ${i & 1} ${(i >> 2) & 1} ${(i >> 1) & 1}`);
 writeFileSync(join(folder, kOddScene), [...corners, "f 1 2 4 3", "f 5 7 8 6", "f 1 5 6 2", "f 3 4 8 7", "f 1 3 7 5", "f 2 6 8 4", ""].join("\n"));
+// Waves of so many triangles that their vertices do not go with a page.
+const kSide = 515, grid = Array.from({ length: kSide * kSide }, (_, i) => [i % kSide, Math.floor(i / kSide)]);
+const waves = grid.map(([x, z]) => `v ${x / 20} ${(Math.sin(x / 17) + Math.cos(z / 23)).toFixed(4)} ${z / 20}`);
+const quads = grid.filter(([x, z]) => x + 1 < kSide && z + 1 < kSide).map(([x, z]) => [1, 1 + kSide, 2 + kSide, 2].map((corner) => z * kSide + x + corner));
+writeFileSync(join(folder, "waves.obj"), [...waves, ...quads.map((quad) => `f ${quad.join(" ")}`), ""].join("\n"));
 copyFileSync(join(filters, "wrong/constant.glsl"), join(folder, "constant.glsl"));
 const titled = readFileSync(join(filters, "nine_compares.glsl"), "utf8").replace(/title = .*/, 'title = "The \\"<b>ninth</b>\\" & \u0645\u0631\u0634\u062d"');
 writeFileSync(join(folder, "nine_compares.glsl"), titled);
@@ -32,6 +37,7 @@ const kRuns = {
   ball: ["run", "--scene", "ball", "--filters", "none,pcss,vsm", "--size", "240x135", "--rounds", "2", "--phases", "1", "--no-attribution", "--gpu", "none"],
   lamps: ["run", "kinds", "--filters", "none,tent3x3,vsm,pcss", ...kSmall, "--phases", "1", "--no-attribution", "--gpu", "none"],
   fits: ["run", "cascades", "--filters", "none,vsm", ...kSmall, "--phases", "1", "--no-attribution", "--gpu", "none"],
+  large: ["run", "--scene", "waves.obj", ...kSmall, "--filters", "none,tent3x3,vsm", "--phases", "1", "--no-attribution", "--no-grids", "--gpu", "none"],
   forty: ["run", ...kMany, "--filters", listMany(40)],
   hundreds: ["run", ...kMany, "--filters", listMany(400)],
   stress: ["stress", "--filters", "vsm", "--axes", "vsm-cancellation"],

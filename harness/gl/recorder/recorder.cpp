@@ -143,9 +143,9 @@ struct RecorderHooks {
     using Bytes = Hook<&glad_glNamedBufferStorage,
                        [](GLuint id, GLsizeiptr size, const void* bytes, GLbitfield) {
                          const auto count = static_cast<std::size_t>(size);
-                         const bool is_kept = bytes && count <= Recorder::kMostVertexBytes;
-                         current_recorder->buffers_[id] =
-                             std::make_shared<RecordedBuffer>(RecordedBuffer{copy_bytes(bytes, is_kept ? count : 0)});
+                         const bool is_large = Recorder::kMostVertexBytes < count;
+                         current_recorder->buffers_[id] = std::make_shared<RecordedBuffer>(
+                             RecordedBuffer{copy_bytes(bytes, bytes && !is_large ? count : 0), bytes && is_large});
                        }>;
     using DeleteTextures = Hook<&glad_glDeleteTextures,
                                 [](GLsizei count, const GLuint* ids) {
@@ -191,6 +191,11 @@ Recorder::~Recorder() {
 RecordedContent Recorder::content_of(const Texture& texture) const {
   const auto found = textures_.find(texture.id());
   return found == textures_.end() ? RecordedContent() : RecordedContent{found->second.texture, found->second.levels[0]};
+}
+
+bool Recorder::lacks_vertices() const {
+  return std::ranges::any_of(
+      buffers_, [](const auto& buffer) { return buffer.second->was_too_large; });
 }
 
 void Recorder::add_texture(GLuint id, GLenum format, int width, int height, int levels, int samples) {

@@ -18,6 +18,7 @@ namespace shadowbench::gl {
 /// A buffer of vertices, with a copy of its bytes.
 struct RecordedBuffer {
   std::vector<std::byte> bytes;
+  bool was_too_large = false;  ///< to be copied
 };
 
 /// A texture by its storage; two textures that lived one after the other under the same id are two of these.
@@ -138,6 +139,9 @@ class Recorder {
 
   /// What is in level 0 of a texture; nothing where it was made before the recorder.
   RecordedContent content_of(const Texture& texture) const;
+
+  /// Whether a buffer that lives was too large to be copied.
+  bool lacks_vertices() const;
 
   /// While one lives, what is drawn is not written down, and what it does to textures is taken to change nothing.
   class Pause {

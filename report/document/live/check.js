@@ -52,7 +52,7 @@ const stepsOf = ({ player, picture, empty, frames }) => {
   const lookup = lookupOf(visibility);
   const shared = [...map, ...lookup, ...labelled("gbuffer"), ...labelled("prepare_receivers")];
   const isOwn = (index) => frames.steps[index].op === "draw" && !shared.includes(index);
-  return { map, lookup, prefilter: all.filter(isOwn), empty: lookupOf(empty) };
+  return { map: frames.check.whole ? [] : map, lookup, prefilter: all.filter(isOwn), empty: lookupOf(empty) };
 };
 
 // The lookup less its empty one, whose intervals add up.

@@ -143,9 +143,10 @@ const makeEngine = (gl) => {
     refine,
     // Draws a side of a view, and copies it, from one part of the width to another. Promises of a reference that stood in
     // for the truth how many maps it is of, and whether more would better it.
-    draw: async (view, who, canvas, part = [0, 1]) => {
-      const { place, layer = "picture" } = view;
+    draw: async (asked, who, canvas, part = [0, 1]) => {
+      const { place, layer = "picture" } = asked;
       const frame = await load(who, place);
+      const view = frame.frames.check.whole ? { ...asked, camera: [0, 0], light: [0, 0] } : asked;
       const needsTruth = who === kTruth || layer === "error";
       const reference = needsTruth ? await findReference(view, place) : null;
       const truth = needsTruth ? await attempt(truthAt(place)) : null;

@@ -19,7 +19,9 @@ const makeLoader = (gl) => {
   const openFrames = async (path) => {
     const frames = JSON.parse(new TextDecoder().decode(await inflate(await addScript(path))));
     const blobs = await Promise.all(frames.blobs.map(unpack));
-    return { frames, blobs, player: makePlayer(gl, frames, blobs) };
+    const player = makePlayer(gl, frames, blobs);
+    if (frames.check.whole) player.keepKnown();
+    return { frames, blobs, player };
   };
   return (path) => {
     if (!players.has(path)) players.set(path, openFrames(path));

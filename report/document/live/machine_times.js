@@ -1,6 +1,6 @@
 // Times that a GPU took, here or elsewhere, as costs beside those of the run. A file of them, gpu-times.json, has for
 // each cell, by its key, what its parts take: `map`, `prefilter` and `filter` (the lookup less its empty one), each with
-// the median, a 95 % interval or null, and how many rounds they are of, ms; and where the browser has timer queries, what
+// the median, a 95 % interval or null, and how many rounds they are of, ms (the map null where it could not be drawn); and where the browser has timer queries, what
 // they say of it, in the same words: `queries`, a cross-check that no cost is made of.
 const kTimesSchema = "shadowbench gpu-times 1";
 const kTimedParts = ["map", "prefilter", "filter"];
@@ -31,7 +31,7 @@ const readTimes = (text) => {
   if (known.length === 0) throw new Error("The file has times of another run: none of its cells is one of this one.");
   for (const [key, parts] of known)
     for (const name of kTimedParts)
-      if (!(name === "prefilter" && parts?.[name] === null) && !isTime(parts?.[name]))
+      if (!(name !== "filter" && parts?.[name] === null) && !isTime(parts?.[name]))
         throw new Error(`The file's ${name} of ${key} is no time.`);
   return { ...file, cells: Object.fromEntries(known) };
 };
@@ -43,7 +43,9 @@ const sumParts = (parts) => ({
 });
 // What a cell's frame takes: of a static light its lookup alone.
 const timeOfFrame = (parts, isStatic) =>
-  parts && sumParts(isStatic ? [parts.filter] : kTimedParts.map((name) => parts[name]).filter(Boolean));
+  parts &&
+  (isStatic || parts.map) &&
+  sumParts(isStatic ? [parts.filter] : kTimedParts.map((name) => parts[name]).filter(Boolean));
 
 // The mean over the cells of a configuration that a scope counts, and its largest; null where one has no time.
 const combineTimes = (times, isStatic, index, scope) => {

@@ -7,6 +7,7 @@ const kBiases = [
   { id: "kernels", name: "plane bias", max: 4, step: 0.05, unit: "reaches", text: "Of a plane over a filter's reach" },
   { id: "normal", name: "normal offset", max: 5, step: 0.05, unit: "texels", text: "Along the receiver's normal" },
 ];
+const kTooLarge = "the scene has more triangles than go with a page, and its map is the run's";
 const readSettings = (who) => JSON.parse(run.configurations[who].surroundings);
 const isMapChanged = (settings = {}) => Object.keys(settings).length > 0;
 
@@ -21,6 +22,7 @@ const readMapSetting = ({ map_size: own }, name, value) => {
 // What cannot be changed, by the name of the setting, and why.
 const listFixed = ({ frames, player, picture }, { bias }) => {
   const fixed = {};
+  if (frames.check.whole) fixed.size = fixed.format = kTooLarge;
   const hasLevels = ({ texture }) => frames.textures[texture].levels > 1;
   const isMade = ({ targets, uniforms }) => targets.some(hasLevels) || uniforms?.pass_stride?.[0] > 1;
   if ([...player.listSteps(picture)].some((index) => isMade(frames.steps[index])))
@@ -40,8 +42,9 @@ const varyMap = ({ frames, player }, { bias, map_size: own }, { size = own, form
     for (const { sampler, levels } of inputs)
       if (/^map_/.test(sampler))
         levels.filter((level) => level !== null).forEach((level) => player.listSteps(level, ofMap));
-  const isDrawn = (index) => ofMap.has(index) && frames.steps[index].op !== "upload";
   const factor = size / own;
+  const isOther = factor !== 1 || format !== undefined;
+  const isDrawn = (index) => isOther && ofMap.has(index) && frames.steps[index].op !== "upload";
   const scale = (value) => [value[0] * factor];
   const shrink = (value) => [value[0] / factor];
   const changes = {
@@ -119,6 +122,7 @@ const fillMapControls = (box, frame, view, most, changed) => {
   const formats = kMapFormats.map((name) => [name, name]);
   const format = addSelect(row, "Format", formats, {}, (name) => choose("format", name, name === own.map_format));
   format.value = view.map.format ?? own.map_format;
+  format.disabled = Boolean(fixed.format);
   const largest = (name) => Math.max(0, ...steps.map((index) => frame.frames.steps[index].uniforms?.[name]?.[0] ?? 0));
   const steps = [...frame.player.listSteps(frame.picture)];
   const values = {
@@ -130,7 +134,7 @@ const fillMapControls = (box, frame, view, most, changed) => {
     const bounds = { ...each, min: 0, value: view.map[id] ?? values[id] };
     addSlider(row, bounds, (chosen) => choose(id, chosen, false)).disabled = Boolean(fixed[id]);
   }
-  const title = (id) => kBiases.find((each) => each.id === id)?.name ?? "map's size";
+  const title = (id) => kBiases.find((each) => each.id === id)?.name ?? `map's ${id}`;
   const said = Object.entries(fixed).map(([id, why]) => `The ${title(id)} stays: ${why}.`);
   if (said.length > 0) element(details, "p", { className: "note" }, said.join(" "));
 };

@@ -63,22 +63,27 @@ const makeMeasuring = (engine) => {
       const names = Object.keys(parts).filter((name) => parts[name].length > 0);
       const idOf = (name) => `${frame.cell.frames} ${parts[name].join()}`;
       for (const name of names) drawn.set(idOf(name), (count) => player.repeat(parts[name], count));
-      keys.push({ key: frame.cell.key, ids: Object.fromEntries(names.map((name) => [name, idOf(name)])) });
+      keys.push({
+        key: frame.cell.key,
+        isWhole: frame.frames.check.whole,
+        ids: Object.fromEntries(names.map((name) => [name, idOf(name)])),
+      });
     }
     const times = await time([...drawn.values()], kRounds, onRound, isStopped);
     const byId = new Map([...drawn.keys()].map((id, i) => [id, times[i]]));
-    for (const { key, ids } of keys) {
+    for (const { key, isWhole, ids } of keys) {
       const [map, lookup, prefilter, empty] = ["map", "lookup", "prefilter", "empty"].map((name) =>
         byId.get(ids[name]),
       );
-      if (map && lookup)
-        found.set(key, { ...found.get(key), map, prefilter: prefilter ?? null, filter: subtractTimes(lookup, empty) });
+      const filter = lookup && subtractTimes(lookup, empty);
+      if (filter && (map || isWhole))
+        found.set(key, { ...found.get(key), map: map ?? null, prefilter: prefilter ?? null, filter });
     }
   };
   // Throws why there are none that could be costs.
   const collectTimes = () => {
     if (isStopped()) throw new Error(whyStopped);
-    const timed = [...found].filter(([, { map, filter }]) => map && filter);
+    const timed = [...found].filter(([, { filter }]) => filter);
     if (timed.length === 0) throw new Error("Nothing that is drawn here agrees with the run, so nothing was timed.");
     const parts = ([key, { map, prefilter, filter }]) => [key, { map, prefilter, filter }];
     return {

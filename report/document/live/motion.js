@@ -85,6 +85,7 @@ const makeMotion = (player, frames, blobs, picture, fit) => {
       player.setUniforms(index, camera.isTurned ? turned : restored);
     }
   };
+  if (frames.check.whole) return { isSun: false, stays: kTooLarge, moveCamera: () => {}, moveLight: () => {} };
   return { moveCamera, ...makeLightMotion(player, { steps, casters, bounds, fit, cameraNow: () => camera }) };
 };
 

@@ -112,7 +112,8 @@ const openLive = (holder) => {
         messages.push(`No rays were traced there: instead of the truth this is the mean of ${value.maps} maps.`);
     }
     const { value: frame } = await attempt(engine.load(state.right, state.place));
-    if (frame?.motion.stays && isTurned(state.light)) messages.push(`This light stays: ${frame.motion.stays}.`);
+    if (frame?.frames.check.whole && isMoved(state)) messages.push(`Camera and light stay: ${kTooLarge}.`);
+    else if (frame?.motion.stays && isTurned(state.light)) messages.push(`This light stays: ${frame.motion.stays}.`);
     if (state.layer === "error")
       messages.push(
         `The colours end at errors of \u2212${kMostError} (darker than the truth) and +${kMostError} (lighter).`,

@@ -344,6 +344,7 @@ const makePlayer = (gl, frames, blobs) => {
     listSteps,
     // Acts on what the run drew of receivers and map, as far as it is known.
     withKnown: (action) => {
+      if (frames.check.whole) return action();
       frames.check.known.forEach(know);
       try {
         return action();
@@ -351,6 +352,8 @@ const makePlayer = (gl, frames, blobs) => {
         frames.check.known.forEach(forget);
       }
     },
+    // Of a scene that is too large to be drawn: receivers and map are the run's for good.
+    keepKnown: () => frames.check.known.forEach(know),
     // Gives uniforms of a step other values; null gives them the run's own again.
     setUniforms: (index, changes) => {
       ++turn;

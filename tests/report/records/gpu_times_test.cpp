@@ -71,7 +71,7 @@ TEST_F(GpuTimesTest, WhatIsNoFileOfTimesIsRefused) {
   EXPECT_THAT(refusal_of("[]"), HasSubstr("schema"));
   EXPECT_THAT(refusal_of(R"({"schema": "another"})"), HasSubstr("schema is not \"shadowbench gpu-times 1\""));
   EXPECT_THAT(refusal_of(R"({"schema": "shadowbench gpu-times 1"})"), HasSubstr("no renderer"));
-  EXPECT_THAT(refusal_of(write("null", "null")), HasSubstr("of the cell a is no time"));
+  EXPECT_THAT(refusal_of(write("7", "null")), HasSubstr("of the cell a is no time"));
   EXPECT_THAT(refusal_of(write(R"({"median": 1e10, "interval": null, "rounds": 9})", "null")), HasSubstr("is no time"));
   EXPECT_THAT(refusal_of(write(R"({"median": 1, "interval": [1], "rounds": 9})", "null")), HasSubstr("no time"));
   EXPECT_THAT(refusal_of(write(R"({"median": 1, "interval": null, "rounds": 0})", "null")), HasSubstr("is no time"));
@@ -90,11 +90,22 @@ TEST_F(GpuTimesTest, TimerQueriesAreKept_AndNoCostIsMadeOfThem) {
   apply_gpu_times(results, times);
   EXPECT_DOUBLE_EQ(results.cells[0].time_ms.moving->median, 3.0);
   const TimedParts back = read(gpu_times_json(times).dump()).cells.at("a");
-  ASSERT_TRUE(back.map.queries);
-  EXPECT_DOUBLE_EQ(back.map.queries->ci95.high, 60.0);
-  EXPECT_EQ(back.map.queries->n, 8);
+  ASSERT_TRUE(back.map && back.map->queries);
+  EXPECT_DOUBLE_EQ(back.map->queries->ci95.high, 60.0);
+  EXPECT_EQ(back.map->queries->n, 8);
   EXPECT_FALSE(back.filter.queries);
   EXPECT_THAT(refusal_of(write(with("null"), "null")), HasSubstr("is no time"));
+}
+
+TEST_F(GpuTimesTest, WhereTheMapCouldNotBeDrawn_OnlyAStaticLightHasATime) {
+  const GpuTimes times = read(write("null", kFilter));
+  Results results;
+  results.cells.resize(1);
+  results.cells[0].key = "a";
+  apply_gpu_times(results, times);
+  EXPECT_FALSE(results.cells[0].time_ms.moving || results.cells[0].time_ms.map);
+  EXPECT_DOUBLE_EQ(results.cells[0].time_ms.static_light->median, 2.0);
+  EXPECT_FALSE(read(gpu_times_json(times).dump()).cells.at("a").map);
 }
 
 TEST_F(GpuTimesTest, TimesOfAnotherRunAreRefused) {
