@@ -52,6 +52,7 @@ const kTitles = {
   // What is not known stays as it is.
   "WebKit WebGL": "WebKit WebGL",
   "ANGLE ()": "ANGLE ()",
+  "<img src=x onerror=alert(1)>": "<img src=x onerror=alert(1)>",
   "": "",
 };
 test("AGpuHasAShortTitle", () => {

@@ -3,8 +3,8 @@
 const titleGpu = (renderer) => {
   const plain = renderer.trim().replace(/\s*\((R|TM|C)\)|, or similar$/gi, "");
   const inner = /^ANGLE \((.*)\)$/.exec(plain)?.[1];
-  const nested = /(?:ANGLE|Vulkan [\d.]+) \((.*)/.exec(inner ?? plain)?.[1];
+  const nested = /(?:ANGLE|Vulkan [\d.]+) \(([^()]+)/.exec(inner ?? plain)?.[1];
   const own = nested ?? inner?.replace(/^[^,]*, /, "") ?? plain;
-  const [title] = own.replace(/^(ANGLE Metal Renderer: |Mesa (DRI )?)/, "").split(/ \(| Direct3D| OpenGL|[,/)]/);
+  const [title] = own.replace(/^(ANGLE Metal Renderer: |Mesa (DRI )?)/, "").split(/ \(| Direct3D| OpenGL|[,/]/);
   return title.replace(/^(\w+) \1\b/, "$1").trim() || renderer;
 };

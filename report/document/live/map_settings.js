@@ -135,6 +135,9 @@ const fillMapControls = (box, frame, view, most, changed) => {
     addSlider(row, bounds, (chosen) => choose(id, chosen, false)).disabled = Boolean(fixed[id]);
   }
   const title = (id) => kBiases.find((each) => each.id === id)?.name ?? `map's ${id}`;
-  const said = Object.entries(fixed).map(([id, why]) => `The ${title(id)} stays: ${why}.`);
+  const said = [...new Set(Object.values(fixed))].map((why) => {
+    const titles = Object.keys(fixed).filter((id) => fixed[id] === why);
+    return `The ${titles.map(title).join(" and the ")} ${titles.length > 1 ? "stay" : "stays"}: ${why}.`;
+  });
   if (said.length > 0) element(details, "p", { className: "note" }, said.join(" "));
 };
