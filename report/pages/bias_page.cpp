@@ -6,7 +6,6 @@
 #include <set>
 
 #include "report/analysis/extremes.h"
-#include "report/pages/engine_bias.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv_tables.h"
 

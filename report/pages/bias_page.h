@@ -28,4 +28,8 @@ document::Page make_bias_page(const records::BiasSweepRecord& sweep);
 /// Makes bias.csv (RFC 4180): one row per mode, filter and amount; what is absent is empty.
 std::string make_bias_csv(const records::BiasSweepRecord& sweep);
 
+/// The least bias without acne of each filter, in what engines call their settings, with how each was converted and
+/// from which source. Maps of suns alone: under a lamp an engine's texel is no length.
+document::Section make_engine_section(const records::BiasSweepRecord& sweep);
+
 }  // namespace shadowbench::pages

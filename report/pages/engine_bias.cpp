@@ -1,5 +1,3 @@
-#include "report/pages/engine_bias.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

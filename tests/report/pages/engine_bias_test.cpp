@@ -1,8 +1,6 @@
 // The settings of engines move a receiver, or a caster, as far above the receiver's plane as the bias that they stand
 // for.
 
-#include "report/pages/engine_bias.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <map>
 #include <numbers>
 
+#include "report/pages/bias_page.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
