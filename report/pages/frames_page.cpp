@@ -4,7 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
+#include <set>
 
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/summary.h"
@@ -71,7 +72,7 @@ document::Table make_equivalence_table(const std::vector<analysis::CellGroup>& g
   return table;
 }
 
-/// At most a sentence for the fewest taps, and one for what the mean does not mend.
+/// A sentence for the fewest taps.
 std::string summarize(const std::vector<analysis::CellGroup>& groups, std::size_t frames) {
   std::vector<TapEquivalence> all;
   for (const analysis::CellGroup& group : groups) std::ranges::copy(list_equivalences(group), std::back_inserter(all));
@@ -82,21 +83,21 @@ std::string summarize(const std::vector<analysis::CellGroup>& groups, std::size_
         frames);
   const int fewest = std::ranges::min_element(all, {}, &TapEquivalence::taps)->taps;
   std::vector<int> counts;
-  std::size_t missed = 0;
+  std::set<std::string> late;
   for (const TapEquivalence& each : all) {
     if (each.taps != fewest) continue;
     if (each.by_noise)
       counts.push_back(*each.by_noise);
     else
-      ++missed;
+      late.insert(each.filter);
   }
   std::ranges::sort(counts);
   std::string text = fmt::format("{} taps have the noise of 16 taps in one frame ", fewest);
-  if (counts.empty()) return text + fmt::format("in no {} frames.", frames);
+  if (counts.empty()) return text + fmt::format("after more than {} frames.", frames);
   text += counts.front() == counts.back()
               ? fmt::format("after {} frames", counts.front())
               : fmt::format("after {} to {} frames, by scene and rotation", counts.front(), counts.back());
-  if (missed > 0) text += fmt::format(", in {} of {} cases after more than {}", missed, missed + counts.size(), frames);
+  if (!late.empty()) text += fmt::format(", and after more than {}: {}", frames, fmt::join(late, "; "));
   return text + ".";
 }
 

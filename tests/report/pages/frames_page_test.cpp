@@ -14,7 +14,6 @@ namespace shadowbench::pages {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// A cell whose noise, and error above 0.1, falls with the root of the frames from this value on.
 records::CellRecord make_accumulated(double taps, const std::string& rotation, double noise) {
@@ -61,8 +60,8 @@ TEST(FramesPage, CountsFramesUntilTheyEqualSixteenTaps_OfTheSameRotation) {
 
 TEST(FramesPage, SaysIt) {
   const std::string text = document::write_markdown(make_frames_page(make_cells(), {}));
-  EXPECT_THAT(text, HasSubstr("4 taps have the noise of 16 taps in one frame after 4 frames, in 1 of 2 cases after "
-                              "more than 8."));
+  EXPECT_THAT(text, HasSubstr("4 taps have the noise of 16 taps in one frame after 4 frames, and after more than 8: "
+                              "poisson (rotation blue-noise, taps 4)."));
   EXPECT_THAT(text, HasSubstr("more than 8"));
   const std::string alone = document::write_markdown(make_frames_page({make_accumulated(4, "none", 0.1)}, {}));
   EXPECT_THAT(alone, HasSubstr("No filter of this run has 16 taps"));
