@@ -199,7 +199,8 @@ document::Table make_ghost_table(const analysis::CellGroup& group) {
     std::vector<std::string>& row = table.table.rows.emplace_back(std::vector{group.names.name(cell)});
     for (const records::GhostRecord& ghost : cell.accumulation->ghosts) {
       if (table.table.rows.size() == 1)
-        table.table.header.push_back(fmt::format("{:g} texels a frame, {}", ghost.texels, ghost.rule));
+        table.table.header.push_back(
+            fmt::format("{:g} {} a frame, {}", ghost.texels, ghost.texels == 1.0 ? "texel" : "texels", ghost.rule));
       row.push_back(say_ghost(ghost));
     }
   }
