@@ -38,7 +38,7 @@ class Evssm {
     const T above = depth - (T(P(0.5)) - T(P(0.5)) * logarithm(warped) / T(c_down_));
     const T radius = limit(radius_of(r, above), search);
     tally.disk_radius_texels = value_of(radius);
-    const DiskTurn<T> turn(rotation_, r.pixel, seed_);
+    const DiskTurn<T> turn(rotation_, r, seed_);
     const auto average = [&](const T& R) { return std::array{warps_.bound_light(fetch_disk(r, R, turn), depth)}; };
     const T light = change_by_radius(radius, average)[0];
     return doubt(maximum(light - T(reduction_), zero) / (one - T(reduction_)), lit);

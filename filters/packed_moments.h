@@ -116,7 +116,7 @@ struct PackedMoments {
     /// The texel of the four that blue noise chooses.
     glm::ivec2 choose(const Receiver& r, P right, P up, Tally& tally) const {
       const P tolerance = static_cast<P>(0.5 * grid_.border_tolerance());
-      P turn = static_cast<P>(blue_noise_turn(r.pixel, seed_));
+      P turn = static_cast<P>(blue_noise_turn(r.pixel, seed_, r.frame));
       const bool goes_right = turn < right;
       const P taken = goes_right ? right : P(1) - right;
       if (std::abs(turn - right) <= tolerance) tally.excused = true;

@@ -24,7 +24,7 @@ class Smrt {
   static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }
 
   T visibility(const Receiver& r, Tally& tally) const {
-    const DiskTurn<T> turn(rotation_, r.pixel, seed_);
+    const DiskTurn<T> turn(rotation_, r, seed_);
     P blocked{}, depths{};
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const P golden = (static_cast<P>(i) + P(0.5)) * P(0.61803399f), within = golden - std::floor(golden);
