@@ -47,8 +47,9 @@ const pause = () => new Promise((resolve) => setTimeout(resolve));
 // It is a cross-check: a browser may round such times, and a CPU that draws may have done nothing yet when it ends.
 const makeQueryTimer = (gl) => {
   const timers = gl.getExtension("EXT_disjoint_timer_query_webgl2");
-  if (!timers) return async () => null;
+  let isSilent = !timers; // a query that never came is the last one
   return async ({ draw, count }) => {
+    if (isSilent) return null;
     const query = gl.createQuery();
     gl.getParameter(timers.GPU_DISJOINT_EXT); // forgets what was disturbed before
     gl.beginQuery(timers.TIME_ELAPSED_EXT, query);
@@ -59,7 +60,8 @@ const makeQueryTimer = (gl) => {
     const isThere = () => gl.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE);
     do await pause();
     while (!isThere() && performance.now() < end);
-    const isSound = isThere() && !gl.getParameter(timers.GPU_DISJOINT_EXT);
+    isSilent = !isThere();
+    const isSound = !isSilent && !gl.getParameter(timers.GPU_DISJOINT_EXT);
     const value = isSound ? gl.getQueryParameter(query, gl.QUERY_RESULT) / 1e6 / count : null;
     gl.deleteQuery(query);
     return value;
