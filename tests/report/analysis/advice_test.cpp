@@ -41,7 +41,7 @@ records::CellRecord measure(const std::string& scene, const std::string& filter,
   cell.ratio_to_none.moving = records::Ratio{(1.0 + ms) / 5.0, {(1.0 + ms) / 5.0 * 0.99, (1.0 + ms) / 5.0 * 1.01}};
   cell.error.rmse = rmse;
   cell.truth.se = 0.001;
-  cell.artefact = {0.0, 0.0, 0.0, 0.0};
+  cell.artefact = {0.0, 0.0, 0.0, 0.0, {}};
   cell.absent.erase("error");
   cell.key = records::cell_key(cell);
   return cell;
@@ -110,7 +110,7 @@ TEST(Advice, FiltersForTeaching_AreLeftOut_AndNamed) {
 
 TEST(Advice, EveryLimit_IsKeptUpToItsValueAndNotBeyond) {
   std::vector<records::CellRecord> cells = {measure("cubes", "none", 2.0, 0.25)};
-  cells[0].artefact = {0.25, 0.25, 0.25, 0.25};
+  cells[0].artefact = {0.25, 0.25, 0.25, 0.25, {}};
   cells[0].error.flip = cells[0].error.flicker = 0.25;
   for (const LimitSpec& spec : limit_table()) {
     const auto value = spec.read(cells[0], LightMotion::kMoving);

@@ -74,7 +74,7 @@ CellRecord make_full_cell() {
   cell.range = {"edge", false, false};
   cell.error = {0.1, 0.05, 0.2, 1.0, -0.01, 0.3, 0.04, 0.05};
   cell.truth = {0.001, 0.9, 0.002};
-  cell.artefact = {0.1, 0.2, 0.3, 0.4};
+  cell.artefact = {0.1, 0.2, 0.3, 0.4, 0.5};
   cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
   cell.images = {"a.png", "b.png", "c.png",   "d.png", "e.exr",
                  "g.png", "h.png", "all.png", "i.png", "j.js",
