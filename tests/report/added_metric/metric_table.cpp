@@ -1,6 +1,7 @@
 // The rows of the table of metrics and one more, linked in the place of the project's own: nothing else is compiled
 // anew.
 #include "reference/metrics/metric_table.h"
+
 #include "tests/report/added_metric/added_metric.h"
 
 #define list_metric_rows list_project_rows
