@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "harness/measure/filter_setup.h"
 #include "harness/render/gbuffer.h"
@@ -42,18 +44,10 @@ metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<
        .contact_ws = metrics::kArtefactLimits.contact_texels * layers.front().frustum.texel_size_ws});
 }
 
-/// The number of the layer that has the largest share in each pixel, from 1 on; 0 where a pixel does not count.
-std::vector<std::uint8_t> find_owners(const std::vector<TracedLayer>& layers, const SceneTruth& truth) {
-  std::vector<std::uint8_t> owners(truth.mask.size());
-  for (std::size_t i = 0; i < owners.size(); ++i) {
-    float largest = 0.0f;
-    for (std::size_t layer = 0; layer < layers.size(); ++layer)
-      if (truth.mask[i] && layers[layer].shares[i] > largest) {
-        largest = layers[layer].shares[i];
-        owners[i] = static_cast<std::uint8_t>(layer + 1);
-      }
-  }
-  return owners;
+/// Whether a point falls into the map of a cascade.
+bool reaches(const scene::LightFrustum& cascade, const glm::vec3& point_ws) {
+  const glm::vec4 clip = cascade.clip_from_world * glm::vec4(point_ws, 1.0f);
+  return std::max(std::abs(clip.x), std::abs(clip.y)) <= clip.w;
 }
 
 }  // namespace
@@ -105,7 +99,6 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
                                make_unbiased_light(options, task.scene->light, light_.layers));
   around_ = trace_surroundings(assets_.tracer(), layers_, truth_, widest_kernel_texels(options_));
   masks_ = make_masks(around_, layers_, truth_);
-  if (layers_.size() > 1) owners_ = find_owners(layers_, truth_);
 }
 
 /// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
@@ -162,10 +155,13 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
        too_few("are wholly lit, with their surroundings"));
   note(record, "artefact.leak", record.artefact.leak, metrics::rate_above(image, masks_->leak, limits.leak_above),
        too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
-  const bool has_seams = layers_.size() > 1;
-  note(record, "artefact.seam", record.artefact.seam,
-       has_seams ? metrics::measure_seam(image, truth_.area.texels, owners_, options_.width) : std::nullopt,
-       has_seams ? too_few("lie on either side of a seam") : "the map has one layer");
+  const bool has_cascades = std::holds_alternative<scene::ViewSlice>(light_.frustum().share);
+  const std::string no_seam = !has_cascades            ? "the light has no cascades"
+                              : record.external        ? "what the renderer makes of each cascade is not known"
+                              : cell.request.user_file ? "a filter of a user's own is drawn by a process of its own"
+                                                       : "";
+  note(record, "artefact.seam", record.artefact.seam, no_seam.empty() ? measure_seam(cell) : std::nullopt,
+       no_seam.empty() ? too_few("lie where a cascade takes over") : no_seam);
   const auto touching = std::ranges::count(masks_->contact_gap, 1);
   note(record, "artefact.contact_gap", record.artefact.contact_gap,
        metrics::rate_contact_gap(image, cell.unbiased.texels, masks_->contact_gap),
@@ -174,6 +170,31 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
            : fmt::format("of {} receivers that touch what blocks them fewer than {} are dark without bias: the filter "
                          "lights the others itself, by its blur or by fading at contacts",
                          touching, metrics::kFewestReceivers));
+}
+
+/// Draws the filter through each cascade alone, for all receivers that fall into its map.
+std::optional<double> CellAnalyser::measure_seam(const MeasuredCell& cell) const {
+  constexpr double kNever = 1e30;  // metres from the camera
+  constexpr scene::ViewSlice kAll{-1.0, -1.0, kNever, kNever}, kNone{kNever, kNever, kNever, kNever};
+  render::ImageTarget target("visibility of a cascade", GL_R32F, options_.width, options_.height);
+  std::vector<images::Image> drawn;
+  for (std::size_t i = 0; i < light_.layers.size(); ++i) {
+    std::vector<scene::LightFrustum> alone = light_.layers;
+    for (std::size_t other = 0; other < alone.size(); ++other) alone[other].share = other == i ? kAll : kNone;
+    render::FilterPasses passes(renderer_.shaders, cell.request, light_.map,
+                                make_filter_light(options_, task_.scene->light, alone, cell.request));
+    images::Image& image =
+        drawn.emplace_back(draw_visibility(passes, light_.map, assets_.gbuffer(*task_.camera), target));
+    for (std::size_t pixel = 0; pixel < image.texels.size(); ++pixel)
+      if (!reaches(alone[i], truth_.receivers.image.points[pixel].position_ws))
+        image.texels[pixel] = std::numeric_limits<float>::quiet_NaN();
+  }
+  std::vector<metrics::LayerImage> layers;
+  for (std::size_t i = 0; i < drawn.size(); ++i) layers.push_back({drawn[i].texels, layers_[i].shares});
+  const std::vector<truth::ReceiverPoint>& points = truth_.receivers.image.points;
+  return metrics::measure_seam(layers, options_.width, [&](std::size_t a, std::size_t b) {
+    return points[b].counts && lie_on_one_surface(points[a], points[b]);
+  });
 }
 
 ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const {

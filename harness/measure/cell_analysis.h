@@ -68,6 +68,7 @@ class CellAnalyser {
   std::vector<float> disks_truth(const std::vector<std::vector<float>>& radii_texels);
   ModelLayer read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const;
   void count_artefacts(MeasuredCell& cell) const;
+  std::optional<double> measure_seam(const MeasuredCell& cell) const;
   ModelImages evaluate(const MeasuredCell& cell) const;
   void attribute(MeasuredCell& cell);
 };

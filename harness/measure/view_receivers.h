@@ -24,6 +24,9 @@ struct ViewReceivers {
   std::vector<std::uint8_t> mask() const;
 };
 
+/// Whether two receivers close by lie on one surface, which is nearly flat between them.
+bool lie_on_one_surface(const truth::ReceiverPoint& a, const truth::ReceiverPoint& b);
+
 /// The surfaces that a view's pixels show, as a G-buffer holds them: four channels, rows top to bottom.
 struct ViewSurfaces {
   images::Image positions;  ///< world space; the fourth channel is 0 on the background

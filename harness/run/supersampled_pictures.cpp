@@ -19,9 +19,7 @@ namespace {
 
 constexpr int kMostSamples = 1 << 23;  // of a whole picture: their G-buffer takes 268 MB
 constexpr double kStandardError =
-    0.02;                             // of the truth at a sample; that of a pixel's 16 is as small as it was measured
-constexpr float kSamePlane = 0.05f;   // how far off its pixel's plane a sample may lie, by its distance in the plane
-constexpr float kSameNormal = 0.99f;  // cosine
+    0.02;  // of the truth at a sample; that of a pixel's 16 is as small as it was measured
 
 /// Samples of a pixel along each axis; 1 where more would not fit.
 int choose_side(int width, int height) {
@@ -38,12 +36,6 @@ images::Image reduce(const images::Image& samples, int side) {
     for (int x = 0; x < samples.width; ++x)
       for (int c = 0; c < samples.channels; ++c) picture.at(x / side, y / side)[c] += weight * samples.at(x, y)[c];
   return picture;
-}
-
-bool is_same_surface(const truth::ReceiverPoint& pixel, const truth::ReceiverPoint& sample) {
-  const glm::vec3 way = sample.position_ws - pixel.position_ws;
-  return pixel.counts && glm::dot(pixel.normal_ws, sample.normal_ws) > kSameNormal &&
-         std::abs(glm::dot(way, pixel.normal_ws)) <= kSamePlane * glm::length(way);
 }
 
 /// One view through one map, drawn with many samples.
@@ -97,7 +89,7 @@ class SampledView {
       truth::ReceiverPoint& sample = samples.image.points[i];
       const std::size_t pixel = pixel_of(i);
       const bool is_known = truth.rays.area.rays[pixel] == truth::kRaysOfSettledPixel &&
-                            is_same_surface(truth.receivers.image.points[pixel], sample);
+                            measure::lie_on_one_surface(truth.receivers.image.points[pixel], sample);
       traced[i] = sample.counts && !is_known ? 1 : 0;
     }
     ContentHash hash;

@@ -1,10 +1,8 @@
 #include "reference/metrics/artefacts.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <glm/glm.hpp>
 
 namespace shadowbench::metrics {
 namespace {
@@ -93,45 +91,34 @@ std::optional<double> rate_noise(std::span<const float> image, std::span<const d
   return noisy / count;
 }
 
-std::optional<double> measure_seam(std::span<const float> image, std::span<const float> truth,
-                                   std::span<const std::uint8_t> layers, int width) {
-  const int height = static_cast<int>(image.size()) / width;
-  const auto index = [&](int x, int y) { return static_cast<std::size_t>(y * width + x); };
-  /// Visits pairs of neighbours that count: the first pixel, both indices, and whether one lies below the other.
-  const auto visit_pairs = [&](auto&& visit) {
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        for (const int below : {0, 1}) {
-          if (x + 1 - below >= width || y + below >= height) continue;
-          const std::size_t a = index(x, y), b = index(x + 1 - below, y + below);
-          if (layers[a] != 0 && layers[b] != 0) visit(glm::ivec2(x, y), a, b, below);
-        }
+std::optional<double> measure_seam(std::span<const LayerImage> layers, int width,
+                                   const std::function<bool(std::size_t, std::size_t)>& is_one_surface) {
+  double squares = 0.0, pairs = 0.0;
+  /// What taking over from `a` to `b` changes at a pixel of the two; NaN where a layer that does does not reach it.
+  const auto find_change = [&](std::size_t a, std::size_t b, std::size_t at) {
+    double change = 0.0;
+    for (const LayerImage& layer : layers)
+      if (const float moved = layer.shares[b] - layer.shares[a]; moved != 0.0f)
+        change += static_cast<double>(moved) * static_cast<double>(layer.visibility[at]);
+    return change;
   };
-  std::vector<std::uint8_t> is_near(image.size());
-  visit_pairs([&](const glm::ivec2& at, std::size_t a, std::size_t b, int) {
-    if (layers[a] == layers[b]) return;
-    for (int y = std::max(0, at.y - kSeamPixels); y <= std::min(height - 1, at.y + kSeamPixels); ++y)
-      for (int x = std::max(0, at.x - kSeamPixels); x <= std::min(width - 1, at.x + kSeamPixels); ++x)
-        is_near[index(x, y)] = 1;
-  });
-  struct Changes {
-    double squares = 0.0, count = 0.0;
+  const auto add = [&](std::size_t a, std::size_t b) {
+    if (std::ranges::all_of(layers, [&](const LayerImage& each) { return each.shares[a] == each.shares[b]; })) return;
+    if (!is_one_surface(a, b)) return;
+    for (const std::size_t at : {a, b}) {
+      const double change = find_change(a, b, at);
+      if (!std::isfinite(change)) continue;
+      squares += change * change;
+      pairs += 1.0;
+    }
   };
-  std::array<Changes, 2> across, beside;  // of pairs side by side, and of pairs below each other
-  visit_pairs([&](const glm::ivec2&, std::size_t a, std::size_t b, int below) {
-    if (!is_near[a] || !is_near[b]) return;
-    const double change = static_cast<double>(image[a]) - static_cast<double>(truth[a]) -
-                          (static_cast<double>(image[b]) - static_cast<double>(truth[b]));
-    Changes& changes = (layers[a] == layers[b] ? beside : across)[static_cast<std::size_t>(below)];
-    changes.squares += change * change;
-    changes.count += 1.0;
-  });
-  const double pairs = across[0].count + across[1].count;
-  if (pairs < kFewestReceivers || beside[0].count < kFewestReceivers || beside[1].count < kFewestReceivers)
-    return std::nullopt;
-  double expected = 0.0;
-  for (std::size_t d = 0; d < 2; ++d) expected += across[d].count / pairs * beside[d].squares / beside[d].count;
-  return std::sqrt((across[0].squares + across[1].squares) / pairs) - std::sqrt(expected);
+  const auto across = static_cast<std::size_t>(width), pixels = layers.front().shares.size();
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if ((i + 1) % across != 0) add(i, i + 1);
+    if (i + across < pixels) add(i, i + across);
+  }
+  if (pairs < kFewestReceivers) return std::nullopt;
+  return std::sqrt(squares / pairs);
 }
 
 }  // namespace shadowbench::metrics

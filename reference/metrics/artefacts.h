@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -68,14 +69,19 @@ std::optional<double> rate_contact_gap(std::span<const float> image, std::span<c
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,
                                  std::span<const float> kernel, std::span<const std::uint8_t> counts, int width);
 
-/// How much more the error of an image, which is image less truth, changes across a seam between two layers of a map
-/// than beside it: the root mean square of its change from pixel to pixel over pairs of neighbours that different
-/// layers serve, less that over pairs of one layer, at most kSeamPixels off a seam, as often side by side or below each
-/// other as those. `layers` has the number of the
-/// layer with the largest share in each pixel, and 0 where a pixel does not count. Gives nothing where there are fewer
-/// than kFewestReceivers of either kind of pairs.
-inline constexpr int kSeamPixels = 8;
-std::optional<double> measure_seam(std::span<const float> image, std::span<const float> truth,
-                                   std::span<const std::uint8_t> layers, int width);
+/// One layer of a map: what the image would be, had it no other, NaN where the layer does not reach; and its share of
+/// each pixel.
+struct LayerImage {
+  std::span<const float> visibility;
+  std::span<const float> shares;
+};
+
+/// How much an image changes from pixel to pixel because layers of a map, such as cascades, take over from each other:
+/// the root mean square, over neighbours on one surface that layers share differently, of the sum of what each of these
+/// layers shows at one of the two times the change of its share. 0 where layers agree; where they do not, the wider
+/// they are blended the smaller it is. Gives nothing where there are fewer than kFewestReceivers such places, all of
+/// whose layers reach them.
+std::optional<double> measure_seam(std::span<const LayerImage> layers, int width,
+                                   const std::function<bool(std::size_t, std::size_t)>& is_one_surface);
 
 }  // namespace shadowbench::metrics

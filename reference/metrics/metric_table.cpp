@@ -122,11 +122,11 @@ std::vector<Metric> list_artefacts() {
                    "from its mean over the 3x3 neighbourhood; for filters of the kind 'stochastic' only",
                    limits.noise_above),
        kRate, kTabled},
-      {"artefact.seam", at<&V::artefact, &ArtefactRecord::seam>, "visibility", kAny, kLess, "seam",
-       fmt::format("how much more the error (image less truth) changes across the seams of a map's layers, such as "
-                   "cascades, than beside them: root mean square of its change between neighbouring pixels that "
-                   "different layers serve, less that of pairs of one layer within {} pixels of a seam",
-                   kSeamPixels),
+      {"artefact.seam", at<&V::artefact, &ArtefactRecord::seam>, "visibility", kPositive, kLess, "seam",
+       "how much the image changes from pixel to pixel because cascades take over from each other: root mean square, "
+       "over neighbours on one surface that cascades share differently, of the sum of what each cascade alone shows "
+       "there "
+       "times the change of its share",
        kNotKept, kUntabled, "", kRun, nullptr, true},
   };
 }

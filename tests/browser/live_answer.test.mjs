@@ -104,6 +104,8 @@ const splitOf = (page) => page.locator(".stage input").inputValue();
 test("ThePictureOfTheAnswer_IsTheStillOne_UntilItIsTurned", (context) => withBrowser(kMesa, async (browser) => {
   for (const viewport of [undefined, kNarrow]) {
     const { page, messages, shoot, close } = await open(pageOf("ball"), { browser, ...(viewport && { viewport }) });
+    // What is drawn here has one sample a pixel.
+    await page.locator(".answer").getByRole("button", { name: "16 samples a pixel" }).click();
     const requests = [], bottom = () => page.locator(".answer").evaluate((each) => each.getBoundingClientRect().bottom + scrollY);
     page.on("request", (request) => requests.push(request.url()));
     const [still, before] = [await stageOf(page).screenshot(), await bottom()];

@@ -23,7 +23,7 @@ test("FirstPaint_ShowsTheTruthAndAFilter_Silently", async () => {
 test("EveryLayerInEveryMode_IsShownOrExplained", async () => {
   const { page, messages, shoot, close } = await openViewer(kPage, { hash: "#view=cubes,none,vsm%20(radius%201),picture,side,0,0,1" });
   await settle(page);
-  const layers = await page.getByRole("combobox", { name: "Layer", exact: true }).locator("option:not([disabled])").evaluateAll((all) => all.map((each) => each.value));
+  const layers = await page.locator(".viewer").getByRole("combobox", { name: "Layer", exact: true }).locator("option:not([disabled])").evaluateAll((all) => all.map((each) => each.value));
   for (const name of ["picture", "visibility", "error", "numeric", "estimator", "discretisation", "model", "flip", "stability.half_difference", "uncertainty"])
     assert.ok(layers.includes(name), name + " is among " + layers);
   for (const mode of ["Side by side", "Slider", "Flip", "Difference"]) {

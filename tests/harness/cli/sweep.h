@@ -22,6 +22,8 @@ inline constexpr std::size_t kCells = 2 * 2 * (1 + 3 + 2 * 4);
 inline json without_times(json cell) {
   for (const char* name : {"time_ms", "ratio_to_none", "measured_s"}) cell.erase(name);
   cell["images"].erase("frames");  // a file of frames is named for the cells that were drawn together
+  // What a page shows first depends on all of its cells' times.
+  for (const char* name : {"supersampled", "truth_supersampled", "samples"}) cell["images"].erase(name);
   return cell;
 }
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <algorithm>
 #include <limits>
 
 namespace shadowbench::metrics {
@@ -121,31 +121,31 @@ TEST(NoiseRate, WithoutPenumbra_IsAbsent) {
   EXPECT_FALSE(rate_noise(lit, std::vector<double>(1600, 1.0), lit, std::vector<std::uint8_t>(1600, 1), 40));
 }
 
-/// A picture of two layers, left and right, whose error is `error(x, layer)`; its last column does not count.
-std::optional<double> measure_two_layers(const std::function<double(int, int)>& error) {
+/// Two layers that show 0.75 and `second`, of which the second takes over from column 16 on, over so many columns.
+std::optional<double> measure_two_layers(float second, int columns) {
   constexpr int kWidth = 64, kHeight = 128;
-  std::vector<float> image, truth;
-  std::vector<std::uint8_t> layers;
+  std::vector<float> shares[2];
   for (int i = 0; i < kWidth * kHeight; ++i) {
-    const int x = i % kWidth, layer = x < kWidth / 2 ? 1 : 2;
-    truth.push_back(x % 2 == 0 ? 0.25f : 0.75f);
-    image.push_back(truth.back() + static_cast<float>(error(x, layer)));
-    layers.push_back(x == kWidth - 1 ? 0 : static_cast<std::uint8_t>(layer));
+    const int x = i % kWidth;
+    shares[1].push_back(std::clamp(static_cast<float>(x - 15) / static_cast<float>(columns), 0.0f, 1.0f));
+    shares[0].push_back(1.0f - shares[1].back());
   }
-  return measure_seam(image, truth, layers, kWidth);
+  const std::vector<float> images[] = {std::vector<float>(kWidth * kHeight, 0.75f),
+                                       std::vector<float>(kWidth * kHeight, second)};
+  const LayerImage layers[] = {{images[0], shares[0]}, {images[1], shares[1]}};
+  return measure_seam(layers, kWidth, [](std::size_t, std::size_t) { return true; });
 }
 
-TEST(Seam, IsWhatTheErrorChangesBetweenLayers_MoreThanWithinThem) {
-  EXPECT_NEAR(measure_two_layers([](int, int layer) { return layer == 1 ? 0.0 : 0.125; }).value(), 0.125, 1e-6);
-  EXPECT_NEAR(measure_two_layers([](int x, int) { return 0.01 * x; }).value(), 0.0, 1e-6)
-      << "a change that goes on is beside the seam too, though not along it";
-  EXPECT_NEAR(measure_two_layers([](int x, int) { return x == 0 || x == 63 ? 0.5 : 0.0; }).value(), 0.0, 1e-6)
-      << "what is far off, or does not count, plays no part";
+TEST(Seam, IsTheStepBetweenLayers_SmallerTheWiderTheyAreBlended) {
+  EXPECT_NEAR(measure_two_layers(0.25f, 1).value(), 0.5, 1e-6);
+  EXPECT_NEAR(measure_two_layers(0.25f, 20).value(), 0.5 / 20.0, 1e-6);
+  EXPECT_NEAR(measure_two_layers(0.75f, 1).value(), 0.0, 1e-6) << "layers that agree have no seam";
 }
 
-TEST(Seam, IsAbsentWithoutTwoLayers) {
-  const std::vector<float> image(4096, 0.5f);
-  EXPECT_FALSE(measure_seam(image, image, std::vector<std::uint8_t>(4096, 1), 64));
+TEST(Seam, IsAbsent_WhereNoLayerTakesOver) {
+  const std::vector<float> image(4096, 0.5f), whole(4096, 1.0f), none(4096, 0.0f);
+  const LayerImage layers[] = {{image, whole}, {image, none}};
+  EXPECT_FALSE(measure_seam(layers, 64, [](std::size_t, std::size_t) { return true; }));
 }
 
 }  // namespace
