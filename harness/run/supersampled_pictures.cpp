@@ -106,12 +106,11 @@ class SampledView {
   }
 };
 
-/// The cells of a task among those that are shown, with their requests.
+/// The cells that this run measured for a task, among those that are shown, with their requests.
 std::vector<std::pair<records::CellRecord, filters::FilterRequest>> list_shown(
-    const options::RunOptions& options, const PlannedScene& planned, const PlannedTask& task,
-    const std::vector<const records::CellRecord*>& shown) {
+    const PlannedScene& planned, const PlannedTask& task, const std::vector<const records::CellRecord*>& shown) {
   std::vector<std::pair<records::CellRecord, filters::FilterRequest>> cells;
-  for (const filters::FilterRequest& request : options.filters) {
+  for (const filters::FilterRequest& request : task.task.filters) {
     if (request.user_file) continue;  // drawn by a process of its own
     const std::string key = measure::make_record(planned.options, task.task, request).key;
     for (const records::CellRecord* cell : shown)
@@ -132,7 +131,7 @@ void draw_supersampled_pictures(measure::Renderer& renderer, const options::RunO
   for (const PlannedTask& task : plan.tasks) {
     const PlannedScene& planned = plan.scenes[task.scene];
     const int side = choose_side(planned.options.width, planned.options.height);
-    auto drawn = list_shown(options, planned, task, shown);
+    auto drawn = list_shown(planned, task, shown);
     if (side == 1 || drawn.empty()) continue;
     measure::SceneAssets assets(renderer, planned.options, planned.scene, cache, measure::padding_texels(options));
     SampledView view(renderer, planned, task.task, assets, side);
