@@ -100,7 +100,7 @@ struct PackedMoments {
 
    private:
     using Stored = std::array<double, 4>;
-    static constexpr double kSafety = 2.0;
+    static constexpr double kSafety = 4.0;   // of the largest difference found: up to 2.8 times it was seen
     static constexpr double kSeen = 0.0625;  // of the moments' bounds: roundings were never seen to reach further
     static constexpr double kTie = 1e-3;     // of light: what a step that rounding decides about may change
 
@@ -167,8 +167,8 @@ struct PackedMoments {
     }
 
     /// How far the light of the packed moments is from that of the moments, where these and the depth are off by a
-    /// quarter and by half of their bounds, all ways round: the largest difference, doubled, as of moments that are not
-    /// packed. Where small parts of the bounds decide to which step a number is rounded, and that is seen, it excuses.
+    /// quarter and by half of their bounds, all ways round: the largest difference times kSafety. Where small parts of
+    /// the bounds decide to which step a number is rounded, and that is seen, it excuses.
     T bound(const std::array<T, 4>& texel, const Tracked& depth, Tally& tally) const {
       const double bias = static_cast<double>(bias_);
       Stored stored{};

@@ -1,6 +1,6 @@
 /*+++
 title = "Shadow map ray tracing"
-source = "Epic Games 2022, Virtual Shadow Maps, Unreal Engine 5 documentation: its numbers of rays and of steps; in one map, and from the receiver to the light, with steps that grow with the height, as penumbrae do"
+source = "Epic Games 2022, Unreal Engine 5, the console variables r.Shadow.Virtual.SMRT.*: its numbers of rays and of steps; in one map, and from the receiver to the light, with steps that grow with the height, as penumbrae do"
 kind = "stochastic"
 claims = "contact-hardening"
 radius_texels = "max_radius"

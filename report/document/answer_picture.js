@@ -55,7 +55,7 @@ const startPicture = (holder) => {
     caption.replaceChildren();
     for (const text of hasBoth ? ["truth", name] : [truth ? "truth" : name]) element(caption, "bdi", {}, text);
     message.textContent = truth || picture ? "" : "This run stored no pictures.";
-    live.show(index, place, Boolean(hasBoth && cell.frames && run.truths[place].values));
+    live.show(index, place, Boolean(hasBoth && cell.frames && run.truths[place]?.values));
   };
   images.forEach((image) =>
     image.addEventListener("error", () => {

@@ -30,7 +30,8 @@ class FaultCache : public FaultTest {
 
   std::vector<std::filesystem::path> files() const {
     std::vector<std::filesystem::path> found = list_files("cache");
-    std::erase_if(found, [](const auto& path) { return path.extension() != ".truth"; });
+    // The one of a single layer is of the supersampled picture, which the run's work does not count.
+    std::erase_if(found, [](const auto& path) { return path.extension() != ".truth" || count_layers(path) == "1"; });
     std::sort(found.begin(), found.end());
     return found;
   }
