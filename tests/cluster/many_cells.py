@@ -91,8 +91,8 @@ def list_cells(base, arguments):
                 cell["cost"]["map_bytes"] = cell["cost"]["map_bytes"] * map_size ** 2 // real["map_size"] ** 2
                 stem = f"images/{cell['scene']}.map{map_size}.light{light}"
                 links = {}
-                for name in ("supersampled", "truth_supersampled", "samples"):  # of what the page of `real` shows first
-                    cell["images"].pop(name, None)
+                for gone in ("supersampled", "truth_supersampled", "samples"):  # of what the page of `real` shows first
+                    cell["images"].pop(gone, None)
                 for image in OWN_IMAGES + SHARED_IMAGES:
                     if arguments.no_pictures or not real["images"][image]:
                         cell["images"][image] = None
