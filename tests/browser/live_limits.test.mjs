@@ -44,7 +44,7 @@ for (const [run, count] of [["forty", 40], ["hundreds", 400]])
   }));
 
 test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa, async (browser) => {
-  const { page, messages, shoot, close } = await openLive(pageOf("large"), browser), label = (await readData(page)).configurations[1].label;
+  const { page, messages, shoot, close } = await openLive(pageOf("waves"), browser), label = (await readData(page)).configurations[1].label;
   const settled = async () => {
     await page.waitForTimeout(900);
     return page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL());
@@ -52,7 +52,7 @@ test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa,
   await pick(page, "Right", { label }, ".live");
   await page.locator(".live-stage input").fill("0");
   const before = await settled(), data = await readData(page), own = data.cells.find(({ configuration }) => configuration === 1);
-  const gap = await compareShots(browser, [Buffer.from(before.split(",")[1], "base64"), readFileSync(pageOf("large", decodeURI(own.picture)))]);
+  const gap = await compareShots(browser, [Buffer.from(before.split(",")[1], "base64"), readFileSync(pageOf("waves", decodeURI(own.picture)))]);
   context.diagnostic(`the picture differs from the run's by ${gap.mean} of 255`);
   assert.ok(gap.mean < 0.1, JSON.stringify(gap));
   // View and light stay, and so does the map; its bias and parameters do not.
@@ -74,7 +74,7 @@ test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa,
   await page.locator("select[name=cost]").selectOption({ label: "static light, this GPU" });
   assert.ok((await page.evaluate(() => shadowbench.answer.judge().keeping.length)) > 0);
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
-  const said = runProgram(["advise", folderOf("large"), "--times", await download.path(), "--light-motion", "static", "--json"]);
+  const said = runProgram(["advise", folderOf("waves"), "--times", await download.path(), "--light-motion", "static", "--json"]);
   assert.equal(said.status, 0, said.stderr);
   assert.deepEqual(messages, []);
   await close();

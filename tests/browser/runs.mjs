@@ -37,7 +37,7 @@ const kRuns = {
   ball: ["run", "--scene", "ball", "--filters", "none,pcss,vsm", "--size", "240x135", "--rounds", "2", "--phases", "1", "--no-attribution", "--gpu", "none"],
   lamps: ["run", "kinds", "--filters", "none,tent3x3,vsm,pcss", ...kSmall, "--phases", "1", "--no-attribution", "--gpu", "none"],
   fits: ["run", "cascades", "--filters", "none,vsm", ...kSmall, "--phases", "1", "--no-attribution", "--gpu", "none"],
-  large: ["run", "--scene", "waves.obj", ...kSmall, "--filters", "none,tent3x3,vsm", "--phases", "1", "--no-attribution", "--no-grids", "--gpu", "none"],
+  waves: ["run", "--scene", "waves.obj", ...kSmall, "--filters", "none,tent3x3,vsm", "--phases", "1", "--no-attribution", "--no-grids", "--gpu", "none"],
   forty: ["run", ...kMany, "--filters", listMany(40)],
   hundreds: ["run", ...kMany, "--filters", listMany(400)],
   stress: ["stress", "--filters", "vsm", "--axes", "vsm-cancellation"],
