@@ -13,10 +13,11 @@ const startPicture = (holder) => {
   let shown = null;
   const button = addButton(figure, "Look closer", () => shadowbench.openViewer(shown));
   let isSmooth = true;
-  const smooth = addButton(figure, "", () => {
+  const toggle = () => {
     isSmooth = !isSmooth;
     show(shown.right, shown.place);
-  });
+  };
+  const smooth = addButton(figure, "", toggle, "The errors are of one sample a pixel");
   const say = (text) => (message.textContent = text);
   const sayTruth = (text) => shown && shown.left === kTruth && (caption.firstChild.textContent = text);
   const live = startLivePicture({ figure, stage, slider, line, sayTruth, say });
@@ -28,7 +29,6 @@ const startPicture = (holder) => {
     const { picture, truth } = cell.smooth && isSmooth ? cell.smooth : measured;
     smooth.hidden = !cell.smooth;
     smooth.textContent = `${cell.smooth?.samples} samples a pixel`;
-    smooth.title = "The errors are of one sample a pixel";
     smooth.setAttribute("aria-pressed", isSmooth);
     const [wholeWidth] = run.configurations[index].size;
     const [x, y, width, height] = cell.part;

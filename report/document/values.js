@@ -107,8 +107,9 @@ const kPalettes = {
   heat: ["#440154", "#3b528b", "#21918c", "#5ec962", "#fde725"],
 };
 const pack = ([red, green, blue]) => ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
+const readColours = (colours) => colours.map((text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16)));
 const makeTable = (colours) => {
-  const stops = colours.map((colour) => [1, 3, 5].map((i) => parseInt(colour.slice(i, i + 2), 16)));
+  const stops = readColours(colours);
   return Uint32Array.from({ length: 256 }, (_, i) => {
     const at = (i / 255) * (stops.length - 1);
     const from = Math.min(Math.floor(at), stops.length - 2);

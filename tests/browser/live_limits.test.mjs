@@ -69,6 +69,11 @@ test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa,
   await box.getByLabel("constant bias").fill("0.01");
   assert.notEqual(await settled(), before);
   await shoot("live.large");
+  // A link that asks for what stays is heeded as far as it can be, and the map is the run's afterwards too.
+  await page.evaluate((hash) => (location.hash = hash), `#live=${["waves", label, label, 0, 0, 0, 0, 0, "map:format:d16", "map:size:64"].map(encodeURIComponent).join()}`);
+  assert.equal(await settled(), before);
+  await page.locator(".live").getByRole("button", { name: "As it was" }).click();
+  assert.equal(await settled(), before);
   await press(page, "Time on this GPU");
   for (const [filter, same, , all, time] of await readTable(page)) assert.ok(Number(same) < 1e-3 && same === all && time !== "", `${filter}: ${same}, ${all}, ${time}`);
   await page.locator("select[name=cost]").selectOption({ label: "static light, this GPU" });

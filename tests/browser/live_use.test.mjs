@@ -166,6 +166,14 @@ test("Layers_AreVisibility_ItsErrorAgainstTheTruth_AndTheMap", (context) => with
   await page.waitForSelector(".live-stage canvas");
   assert.equal(await page.locator(".live").getByRole("combobox", { name: "Layer" }).inputValue(), "error");
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("The colours end at errors of"));
+  // Where the camera was turned both sides are held against one mean of maps, which is said once.
+  const { x, y } = await page.locator(".live-stage canvas").boundingBox();
+  await page.mouse.move(x + 60, y + 60);
+  await page.mouse.down();
+  await page.mouse.move(x + 90, y + 60, { steps: 3 });
+  await page.mouse.up();
+  await page.waitForFunction(() => document.querySelector(".live").textContent.includes("mean of 256 maps"), null, { timeout: 120000 });
+  assert.equal((await page.locator(".live > p.note", { hasText: "mean of" }).textContent()).match(/No rays were traced there/g).length, 1);
   assert.deepEqual(messages, []);
   await close();
 }));

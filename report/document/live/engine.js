@@ -1,5 +1,6 @@
 // Draws the run's filters with WebGL 2 on a canvas that nobody sees: the section Live and the picture of the answer copy
-// from it. A view has an id, a place, the angles that camera and light are turned by, and a map of parameters by filter.
+// from it. A view has an id, a place, the angles that camera and light are turned by, a map of parameters by filter, the
+// settings of its map and a layer.
 const kAsRun = { id: "run", camera: [0, 0], light: [0, 0], parameters: new Map() };
 const kMapsAtOnce = 4; // of a reference, in each frame
 const kMostError = 0.5; // of visibility, has the palette's last colour
@@ -8,7 +9,6 @@ const listFiltersAt = (place) => [...run.configurations.keys()].filter((who) => 
 const isTurned = (angles) => angles.some((angle) => angle !== 0);
 const isMoved = ({ camera, light }) => isTurned(camera) || isTurned(light);
 const posesOf = ({ camera, light, map = {} }) => JSON.stringify([camera, light, map]);
-const kNoVariant = { textures: new Map(), steps: new Map() };
 
 const makeEngine = (gl) => {
   const names = gl.getExtension("WEBGL_debug_renderer_info");
@@ -32,14 +32,17 @@ const makeEngine = (gl) => {
     if (!graph.cells[cell.key]) throw new Error(`${cell.frames} does not hold it.`);
     const frame = { ...graph.cells[cell.key], frames: graph, player, cell, who };
     const key = `${cell.frames} ${frame.picture}`;
-    const { fit } = readSettings(cell.configuration);
-    if (!motions.has(key)) motions.set(key, { ...makeMotion(player, graph, blobs, frame.picture, fit), turn: 0 });
+    const settings = readSettings(cell.configuration);
+    if (!motions.has(key))
+      motions.set(key, { ...makeMotion(player, graph, blobs, frame.picture, settings.fit), turn: 0 });
     const steps = [...player.listSteps(frame.picture)];
     const stepsWith = (name) => steps.filter((index) => graph.steps[index].uniforms?.[name]);
     const constants = frame.parameters.filter((each) => each.constant);
-    const parameters = frame.parameters.map((each) => ({ ...each, steps: each.constant ? [] : stepsWith(each.name) }));
+    const parameters = frame.parameters.map((each) => ({ ...each, steps: stepsWith(each.name) }));
     return {
       ...frame,
+      settings,
+      fixed: listFixed(frame, settings),
       motion: motions.get(key),
       constants,
       parameters: parameters.filter((each) => each.steps.length > 0),
@@ -50,16 +53,15 @@ const makeEngine = (gl) => {
     if (!frames.has(key)) frames.set(key, readFrame(who, place));
     return frames.get(key);
   };
-  // Turns a frame as a view is turned, and gives it the view's parameters.
+  // Turns a frame as a view is turned, and gives it the view's parameters and map.
   const pose = (frame, view) => {
-    const { player, motion, parameters, who, cell } = frame;
-    const { camera, light, parameters: own, map = {} } = view;
-    const settings = readSettings(cell.configuration);
-    const { size } = listFixed(frame, settings);
-    if (map.size && map.size !== settings.map_size && size && who !== kTruth)
-      throw new Error(`the map's size stays: ${size}.`);
+    const { player, motion, parameters, who, cell, settings, fixed } = frame;
+    const { camera, light, parameters: own } = view;
+    const map = dropFixed(frame, view.map);
+    if (map.size && map.size !== settings.map_size && fixed.size && who !== kTruth)
+      throw new Error(`the map's size stays: ${fixed.size}.`);
     if ((varied.get(cell.frames) ?? "{}") !== JSON.stringify(map))
-      player.vary(isMapChanged(map) ? varyMap(frame, settings, map) : kNoVariant);
+      player.vary(isMapChanged(map) ? varyMap(frame, map) : kNoVariant);
     varied.set(cell.frames, JSON.stringify(map));
     const key = posesOf(view);
     if (key !== posed) ++turn;
@@ -121,7 +123,7 @@ const makeEngine = (gl) => {
   const drawLayer = ({ player, picture }, layer, isTruth, sharp) => {
     const visibility = player.inputOf(picture, kVisibility);
     if (!isTruth) player.draw(visibility);
-    const shown = player.textureOf(isTruth ? picture : visibility);
+    const shown = player.textureOf(visibility);
     if (layer === "map") display.showSquares(player.mapsOf(visibility), shown);
     else if (isTruth) display.show({ ...shown, object: sharp }, white);
     else display.show(shown, layer === "error" ? kMostError : white, layer === "error" ? sharp : null);
@@ -146,7 +148,12 @@ const makeEngine = (gl) => {
     draw: async (asked, who, canvas, part = [0, 1]) => {
       const { place, layer = "picture" } = asked;
       const frame = await load(who, place);
-      const view = frame.frames.check.whole ? { ...asked, camera: [0, 0], light: [0, 0] } : asked;
+      const { stays } = frame.motion;
+      const view = {
+        ...asked,
+        ...(frame.frames.check.whole && { camera: [0, 0] }),
+        ...(stays && { light: [0, 0] }),
+      };
       const needsTruth = who === kTruth || layer === "error";
       const reference = needsTruth ? await findReference(view, place) : null;
       const truth = needsTruth ? await attempt(truthAt(place)) : null;

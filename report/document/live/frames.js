@@ -19,9 +19,7 @@ const makeLoader = (gl) => {
   const openFrames = async (path) => {
     const frames = JSON.parse(new TextDecoder().decode(await inflate(await addScript(path))));
     const blobs = await Promise.all(frames.blobs.map(unpack));
-    const player = makePlayer(gl, frames, blobs);
-    if (frames.check.whole) player.keepKnown();
-    return { frames, blobs, player };
+    return { frames, blobs, player: makePlayer(gl, frames, blobs) };
   };
   return (path) => {
     if (!players.has(path)) players.set(path, openFrames(path));

@@ -60,9 +60,10 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
   const uniformsOf = player.uniformsOf;
   const find = (name) => steps.map((index) => uniformsOf(index)[name]).find(Boolean);
   const followsView = /^(view|cascades)/.test(fit);
-  const layers = [];
+  const byMatrix = new Map();
   for (const { uv_depth_from_world: uv, layer_slice: slice } of steps.map(uniformsOf))
-    if (uv && !layers.some((layer) => String(layer.uv) === String(uv))) layers.push({ uv, slice });
+    if (uv && !byMatrix.has(String(uv))) byMatrix.set(String(uv), { uv, slice });
+  const layers = [...byMatrix.values()];
   // A layer's casters have its window, but not its matrix.
   const gapTo =
     (clip) =>
@@ -73,12 +74,7 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
   for (const index of layers.length > 0 ? steps : []) {
     const { uv_depth_from_world: uv, clip_from_world: clip } = uniformsOf(index);
     const read = () => [...player.listSteps(index)].map((each) => layerOf.get(each)).find(Boolean);
-    if (uv)
-      layerOf.set(
-        index,
-        layers.find((layer) => String(layer.uv) === String(uv)),
-      );
-    else layerOf.set(index, casters.includes(index) ? nearest(clip) : read());
+    layerOf.set(index, uv ? byMatrix.get(String(uv)) : casters.includes(index) ? nearest(clip) : read());
   }
   const direction = find("light_direction_ws");
   const lamp = find("light_position_ws");
@@ -108,8 +104,7 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
       cross(direction, across),
       Math.sin(tilt[0]),
     );
-    const about = (angle) =>
-      multiply(multiply(shiftBy(middle), rotateAbout(axis, angle)), shiftBy(middle.map((x) => -x)));
+    const about = (angle) => turnAt(middle, rotateAbout(axis, angle));
     const place = lamp && transform(turn.forth, lamp, 1);
     const back = isCube ? shiftBy(add(lamp, place, -1)) : multiply(about(-tilt[1]), turn.back);
     const turned = (vector) => (isCube ? vector : transform(turn.forth, transform(about(tilt[1]), vector, 0), 0));

@@ -50,32 +50,18 @@ const writeChanges = (request, changes) =>
 const findSkyAngles = ([x, y, z]) =>
   [Math.atan2(-x, -z), Math.asin(clamp(-y, -1, 1))].map((angle) => Number(((180 / Math.PI) * angle).toFixed(2)));
 // Empty where it is not known how the scene, or the file of the filter, was given.
-const writeRun = ({ place, right, light, parameters, map: changes }, { motion }) => {
-  const { filter, request, map, size, surroundings } = run.configurations[right];
-  const settings = JSON.parse(surroundings);
-  const { fit, light: given, map_format: format } = settings;
+const writeRun = ({ place, right, light, parameters, map: changes }, { motion, settings }) => {
+  const { filter, request, map, size } = run.configurations[right];
   const [scene, ...of] = run.places[place].view;
   const file = run.files[filter];
   if (scene === undefined || file === null) return "";
-  const sky = motion.isSun && isTurned(light) ? findSkyAngles(motion.directionOf(light)).join() : given;
+  const sky = motion.isSun && isTurned(light) ? findSkyAngles(motion.directionOf(light)).join() : settings.light;
   const words = [
     ...["--scene", scene, ...of, ...(file ? ["--filter-file", file] : [])],
-    ...[
-      "--filters",
-      writeChanges(request, parameters.get(right)),
-      "--map-size",
-      changes.size ?? map,
-      "--size",
-      size.join("x"),
-    ],
-    ...[
-      "--map-format",
-      changes.format ?? format,
-      "--fit",
-      fit,
-      ...writeBias(settings, changes),
-      ...(/^-?[\d.]+,/.test(sky) ? ["--light", sky] : []),
-    ],
+    ...["--filters", writeChanges(request, parameters.get(right)), "--map-size", changes.size ?? map],
+    ...["--size", size.join("x"), "--map-format", changes.format ?? settings.map_format, "--fit", settings.fit],
+    ...writeBias(settings, changes),
+    ...(/^-?[\d.]+,/.test(sky) ? ["--light", sky] : []),
   ];
   return `shadowbench run ${words.map((word) => writeWord(`${word}`)).join(" ")}`;
 };
@@ -85,7 +71,7 @@ const listUnsaid = ({ place, camera, light }, { motion } = {}) => {
   const isModel = view.includes("--ground") || /\.(obj|gltf|glb)$/i.test(view[0]);
   return [
     ...(isTurned(camera) ? ["The camera that was turned is not in it: the program has the scene's own."] : []),
-    ...(isTurned(light) && motion?.isSun === false
+    ...(isTurned(light) && motion && !motion.isSun && !motion.stays
       ? ["The lamp that was moved is not in it: the program has the scene's own."]
       : []),
     ...(isTurned(light) && isModel ? ["A model's camera and floor, where it has none, follow its light."] : []),

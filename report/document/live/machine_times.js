@@ -1,7 +1,8 @@
 // Times that a GPU took, here or elsewhere, as costs beside those of the run. A file of them, gpu-times.json, has for
 // each cell, by its key, what its parts take: `map`, `prefilter` and `filter` (the lookup less its empty one), each with
-// the median, a 95 % interval or null, and how many rounds they are of, ms (the map null where it could not be drawn); and where the browser has timer queries, what
-// they say of it, in the same words: `queries`, a cross-check that no cost is made of.
+// the median, a 95 % interval or null, and how many rounds they are of, ms (the map null where it could not be drawn);
+// and where the browser has timer queries, what they say of it, in the same words: `queries`, a cross-check that no cost
+// is made of.
 const kTimesSchema = "shadowbench gpu-times 1";
 const kTimedParts = ["map", "prefilter", "filter"];
 const kMostTimesBytes = 16e6;

@@ -35,23 +35,30 @@ const listFixed = ({ frames, player, picture }, { bias }) => {
   return fixed;
 };
 
+// A view's settings without those that stay. The size does for the frames of some filters alone, which share a player.
+const dropFixed = ({ fixed, frames }, map = {}) =>
+  Object.fromEntries(Object.entries(map).filter(([name]) => !fixed[name] || (name === "size" && !frames.check.whole)));
+
 // What player.vary() takes.
-const varyMap = ({ frames, player }, { bias, map_size: own }, { size = own, format, constant, kernels, normal }) => {
+const varyMap = ({ frames, player, settings }, { size, format, constant, kernels, normal }) => {
+  const { bias } = settings;
   const ofMap = new Set();
   for (const { inputs = [] } of frames.steps)
     for (const { sampler, levels } of inputs)
       if (/^map_/.test(sampler))
         levels.filter((level) => level !== null).forEach((level) => player.listSteps(level, ofMap));
-  const factor = size / own;
+  const factor = (size ?? settings.map_size) / settings.map_size;
   const isOther = factor !== 1 || format !== undefined;
   const isDrawn = (index) => isOther && ofMap.has(index) && frames.steps[index].op !== "upload";
   const scale = (value) => [value[0] * factor];
   const shrink = (value) => [value[0] / factor];
   const changes = {
-    map_texel_uv: shrink,
-    texel_size_ws: shrink,
-    map_texels: scale,
-    pass_size: (value) => value.map((each) => each * factor),
+    ...(factor !== 1 && {
+      map_texel_uv: shrink,
+      texel_size_ws: shrink,
+      map_texels: scale,
+      pass_size: (value) => value.map((each) => each * factor),
+    }),
     ...(constant !== undefined && { bias_constant: () => [constant] }),
     ...(normal !== undefined && { bias_normal_texels: () => [normal] }),
     ...(kernels !== undefined && {
@@ -102,13 +109,12 @@ const writeBias = ({ bias: rule }, { constant, kernels, normal }) => {
 
 // Fills a box with the controls of a view's map, as its right side's frame has it; `most` texels a side can be drawn.
 const fillMapControls = (box, frame, view, most, changed) => {
-  const own = readSettings(view.right);
+  const { settings: own, fixed } = frame;
   const wasOpen = box.querySelector("details")?.open ?? isMapChanged(view.map);
   box.replaceChildren();
   const details = element(box, "details", { open: wasOpen });
   element(details, "summary", {}, "Map and bias");
   const row = element(details, "div", { className: "controls" });
-  const fixed = listFixed(frame, own);
   const choose = (name, value, isOwn) => {
     const { [name]: old, ...rest } = view.map;
     view.map = isOwn ? rest : { ...rest, [name]: value };

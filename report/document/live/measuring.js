@@ -63,20 +63,16 @@ const makeMeasuring = (engine) => {
       const names = Object.keys(parts).filter((name) => parts[name].length > 0);
       const idOf = (name) => `${frame.cell.frames} ${parts[name].join()}`;
       for (const name of names) drawn.set(idOf(name), (count) => player.repeat(parts[name], count));
-      keys.push({
-        key: frame.cell.key,
-        isWhole: frame.frames.check.whole,
-        ids: Object.fromEntries(names.map((name) => [name, idOf(name)])),
-      });
+      keys.push({ key: frame.cell.key, ids: Object.fromEntries(names.map((name) => [name, idOf(name)])) });
     }
     const times = await time([...drawn.values()], kRounds, onRound, isStopped);
     const byId = new Map([...drawn.keys()].map((id, i) => [id, times[i]]));
-    for (const { key, isWhole, ids } of keys) {
+    for (const { key, ids } of keys) {
       const [map, lookup, prefilter, empty] = ["map", "lookup", "prefilter", "empty"].map((name) =>
         byId.get(ids[name]),
       );
       const filter = lookup && subtractTimes(lookup, empty);
-      if (filter && (map || isWhole))
+      if (filter && (map || !ids.map))
         found.set(key, { ...found.get(key), map: map ?? null, prefilter: prefilter ?? null, filter });
     }
   };
@@ -119,8 +115,9 @@ const kResultColumns = [
 const kQueryColumns = ["filter by timer queries, ms", "prefilter by timer queries, ms"];
 // What timer queries say of the times of a place, in words; they are shown, and nothing is made of them.
 const sayQueries = (times, isSoftware) => {
-  const asked = times.filter((time) => time?.queries);
+  const asked = times.filter((time) => time?.interval && time.queries?.interval);
   if (!times.some(Boolean)) return "";
+  if (asked.length === 0 && times.some((time) => time?.queries)) return ""; // too few to hold against each other
   if (asked.length === 0) return " This browser has no timer queries to hold its times against.";
   const apart = asked.filter(areQueriesApart).length;
   const cpu = isSoftware ? " A CPU draws here, of which such queries know little." : "";

@@ -22,14 +22,14 @@ const rotateAbout = (axis, angle) => {
     ...[0, 0, 0, 1],
   ];
 };
+const turnAt = (pivot, turn) => multiply(multiply(shiftBy(pivot), turn), shiftBy(pivot.map((value) => -value)));
 // A turn about the vertical, and before that one about what lies across a direction; and the same backwards.
 const turnAround = (pivot, direction, yaw, pitch) => {
   const across = normalise(cross(direction, [0, 1, 0]));
   const up = [0, 1, 0];
-  const about = (turn) => multiply(multiply(shiftBy(pivot), turn), shiftBy(pivot.map((value) => -value)));
   return {
-    forth: about(multiply(rotateAbout(up, yaw), rotateAbout(across, pitch))),
-    back: about(multiply(rotateAbout(across, -pitch), rotateAbout(up, -yaw))),
+    forth: turnAt(pivot, multiply(rotateAbout(up, yaw), rotateAbout(across, pitch))),
+    back: turnAt(pivot, multiply(rotateAbout(across, -pitch), rotateAbout(up, -yaw))),
   };
 };
 
@@ -58,6 +58,7 @@ const findBounds = (frames, blobs, steps) => {
 
 const kOfCamera = ["clip_from_world", "camera_position_ws", "camera_forward_ws"];
 const makeMotion = (player, frames, blobs, picture, fit) => {
+  if (frames.check.whole) return { isSun: false, stays: kTooLarge, moveCamera: () => {}, moveLight: () => {} };
   const steps = [...player.listSteps(picture)].filter((index) => frames.steps[index].op === "draw");
   const labelOf = (index) => frames.programs[frames.steps[index].program].label;
   const uniformsOf = player.uniformsOf;
@@ -85,7 +86,6 @@ const makeMotion = (player, frames, blobs, picture, fit) => {
       player.setUniforms(index, camera.isTurned ? turned : restored);
     }
   };
-  if (frames.check.whole) return { isSun: false, stays: kTooLarge, moveCamera: () => {}, moveLight: () => {} };
   return { moveCamera, ...makeLightMotion(player, { steps, casters, bounds, fit, cameraNow: () => camera }) };
 };
 

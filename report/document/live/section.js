@@ -22,7 +22,7 @@ const kLiveLayers = [
   ["map", "Depth map"],
 ];
 const kDrags = { camera: "the camera", light: "the light" };
-// A view's drags turn its camera or its sun.
+// A view's drags turn its camera or its light.
 const turnView = (view, drags, yaw, pitch) => {
   const [oldYaw, oldPitch] = view[drags];
   view[drags] = [oldYaw + yaw, clamp(oldPitch + pitch, -1, 1)].map((angle) => Number(angle.toFixed(4)));
@@ -100,6 +100,7 @@ const openLive = (holder) => {
       [state.right, state.split, 1],
     ];
     const messages = [];
+    const drawn = [];
     for (const [who, ...part] of sides) {
       const { value, message: why } = await attempt(engine.draw(state, who, canvas, part));
       if (why) {
@@ -107,10 +108,11 @@ const openLive = (holder) => {
         const [from, to] = part.map((share) => Math.round(share * canvas.width));
         canvas.getContext("2d").clearRect(from, 0, to - from, canvas.height);
       }
-      if (value?.isUnfinished) requestAnimationFrame(show);
-      if (value?.maps)
-        messages.push(`No rays were traced there: instead of the truth this is the mean of ${value.maps} maps.`);
+      if (value) drawn.push(value);
     }
+    if (drawn.some(({ isUnfinished }) => isUnfinished)) requestAnimationFrame(show);
+    const maps = drawn.findLast((each) => each.maps)?.maps;
+    if (maps) messages.push(`No rays were traced there: instead of the truth this is the mean of ${maps} maps.`);
     const { value: frame } = await attempt(engine.load(state.right, state.place));
     if (frame?.frames.check.whole && isMoved(state)) messages.push(`Camera and light stay: ${kTooLarge}.`);
     else if (frame?.motion.stays && isTurned(state.light)) messages.push(`This light stays: ${frame.motion.stays}.`);
@@ -197,13 +199,13 @@ const openLive = (holder) => {
     const { value: frame } = await attempt(engine.load(right, place));
     if (right !== state.right || place !== state.place) return;
     parameters.replaceChildren();
-    if (!frame || right === kTruth) [mapBox, constantBox].forEach((box) => box.replaceChildren());
     const own = state.parameters.get(right) ?? {};
     const known = frame?.parameters.filter(({ name }) => name in own) ?? [];
     const bounded = known.map(({ name, min, max }) => [name, clamp(own[name], min, max)]);
     state.parameters.set(right, Object.fromEntries(bounded)); // a link may say anything
+    if (frame) state.map = dropFixed(frame, state.map);
     showCommand();
-    if (!frame || right === kTruth) return;
+    if (!frame || right === kTruth) return [mapBox, constantBox].forEach((box) => box.replaceChildren());
     for (const { value, ...each } of frame.parameters) {
       const now = state.parameters.get(right)?.[each.name] ?? value;
       const step = each.whole ? 1 : (each.max - each.min) / 200;

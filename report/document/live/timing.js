@@ -108,10 +108,10 @@ const makeTimer = (gl) => {
         if (isStopped()) break;
         await whenSeen();
         const value = timeOnce(each);
+        if (!document.hidden) each.values.push(value);
         const asked = await ask(each);
-        if (document.hidden) continue;
-        each.values.push(value);
-        if (asked !== null) each.queries.push(asked);
+        if (!document.hidden && asked !== null) each.queries.push(asked);
+        await pause();
       }
       onRound(round + 1);
     }

@@ -38,6 +38,7 @@ const kSetters = {
   [kGl.UNSIGNED_INT]: "uniform1uiv",
 };
 
+const kNoVariant = { textures: new Map(), steps: new Map() };
 const makePlayer = (gl, frames, blobs) => {
   const textures = frames.textures.map(() => null);
   const programs = frames.programs.map(() => null);
@@ -48,7 +49,7 @@ const makePlayer = (gl, frames, blobs) => {
   const overrides = new Map(); // uniforms that are not the run's, by step and name, with the turn of their change
   const standIns = new Map(); // textures that stand in for a sampler's, by its name, with the turn of their change
   const varied = new Map(); // steps that were ever others than the run's, with the turn of their change
-  let variant = { textures: new Map(), steps: new Map() }; // what stands for the run's own
+  let variant = kNoVariant; // what stands for the run's own
   const known = new Map(); // steps whose textures hold what the run drew, with the turn of that
   let turn = 0;
 
@@ -328,6 +329,8 @@ const makePlayer = (gl, frames, blobs) => {
   };
   const inputOf = (index, name) =>
     frames.steps[index].inputs.find(({ sampler }) => sampler === name)?.levels[0] ?? null;
+  // Of a scene that is too large to be drawn, receivers and map are the run's for good.
+  if (frames.check.whole) frames.check.known.forEach(know);
   return {
     // Draws a step, and what it needs of others.
     draw: (index) => ensure(index, new Map()),
@@ -352,8 +355,6 @@ const makePlayer = (gl, frames, blobs) => {
         frames.check.known.forEach(forget);
       }
     },
-    // Of a scene that is too large to be drawn: receivers and map are the run's for good.
-    keepKnown: () => frames.check.known.forEach(know),
     // Gives uniforms of a step other values; null gives them the run's own again.
     setUniforms: (index, changes) => {
       ++turn;
@@ -371,10 +372,9 @@ const makePlayer = (gl, frames, blobs) => {
     },
     // The depth maps, one for each layer of the light, that what leads to a step drew.
     mapsOf: (index) => {
-      const isDepth = (texture) => /^d/.test(frames.textures[texture].format);
       const inputs = [...listSteps(index)].flatMap((each) => frames.steps[each].inputs ?? []);
       const read = inputs.filter(({ sampler }) => sampler.startsWith("map_")).map(({ texture }) => texture);
-      return [...new Set(read.filter(isDepth))].map(textureOf);
+      return [...new Set(read)].map(textureOf).filter(({ isDepth }) => isDepth);
     },
     uniformsOf: (index) => stepAt(index).uniforms,
     // Lets some textures and steps be others than the run's, which have the same targets and sources.

@@ -50,9 +50,8 @@ const readValues = (gl, width, height) => {
 
 // Shows on the canvas linear pictures, or values in a palette from -`most` or 0 to `most`, less those of another texture.
 const makeDisplay = (gl) => {
-  const colours = (palette) =>
-    kPalettes[palette].map((text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16)));
-  const list = (palette) => colours(palette).map((rgb) => `vec3(${rgb.map((each) => `${each}.0`).join()}) / 255.0`);
+  const list = (palette) =>
+    readColours(kPalettes[palette]).map((rgb) => `vec3(${rgb.map((each) => `${each}.0`).join()}) / 255.0`);
   const fragment = `#version 300 es
     precision highp float;
     uniform sampler2D values, less;
