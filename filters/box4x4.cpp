@@ -15,10 +15,10 @@ class Box4x4 {
   T visibility(const Receiver& r, Tally& tally) const {
     const Pair x = place(r.uv.x), y = place(r.uv.y);
     const auto row = [&](P offset) {
-      return map_.mix(map_.compare_2x2(r, {x.low, offset}, r.depth, tally),
-                      map_.compare_2x2(r, {x.high, offset}, r.depth, tally), x.share);
+      return mix(map_.compare_2x2(r, {x.low, offset}, r.depth, tally),
+                 map_.compare_2x2(r, {x.high, offset}, r.depth, tally), x.share);
     };
-    return map_.mix(row(y.low), row(y.high), y.share) + make_uncertain<T>(0, bound_placement());
+    return mix(row(y.low), row(y.high), y.share) + make_uncertain<T>(0, bound_placement());
   }
 
  private:

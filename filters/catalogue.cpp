@@ -60,16 +60,14 @@ void assign_value(FilterRequest& request, const std::string& assignment) {
   if (equals == std::string::npos)
     fail(fmt::format("'{}' after '{}:' must be PARAM=VALUE", assignment, request.spec.id));
   const std::string name = assignment.substr(0, equals);
-  const auto is_given = [&](const std::string& given) { return given == name; };
-  if (std::ranges::any_of(request.set_by_user, is_given) ||
-      (asks_for_width(request.spec, name) && !request.width.empty()))
+  if (request.set_by_user.contains(name) || (asks_for_width(request.spec, name) && !request.width.empty()))
     fail(fmt::format("{}: '{}' is given twice", request.spec.id, name));
   if (asks_for_width(request.spec, name)) {
     request.width = assignment.substr(equals + 1);
     return;
   }
   request.values[name] = parse_value(request.spec, name, assignment.substr(equals + 1));
-  request.set_by_user.push_back(name);
+  request.set_by_user.insert(name);
 }
 
 /// Puts the radius in place of the width that was asked for.
@@ -77,10 +75,10 @@ void apply_width(FilterRequest& request) {
   if (request.width.empty() || !request.presets.empty()) return;  // of a preset it was put there
   const double radius = solve_radius(request.spec, request.values, request.width);
   const auto& name = std::get<std::string>(request.spec.radius_texels);
-  if (std::ranges::count(request.set_by_user, name) > 0)
+  if (request.set_by_user.contains(name))
     fail(fmt::format("{} sets '{}' and 'width', which says the same: leave one out", request.spec.id, name));
   request.values[name] = radius;
-  request.set_by_user.push_back(name);
+  request.set_by_user.insert(name);
 }
 
 /// Makes one request of those that are the same, where a preset is among them.
@@ -223,14 +221,16 @@ FilterRequest Catalogue::make_request(const Preset& preset) const {
   }
 }
 
-void Catalogue::add_requests(std::vector<FilterRequest>& requests, const std::string& item) const {
+void Catalogue::add_requests(std::vector<FilterRequest>& requests, std::optional<std::vector<Preset>>& known,
+                             const std::string& item) const {
   const std::size_t colon = item.find(':');
   const bool has_value = item.find('=') != std::string::npos;
   if (item == kAll || item == kTeaching) {
     for (const FilterSpec& spec : filters_)
       if (spec.teaching == (item == kTeaching)) requests.push_back(make_request(spec.id));
   } else if (item.starts_with(kPresetMark) && colon == std::string::npos && !has_value) {
-    for (const Preset& preset : choose_presets(presets(), item.substr(1))) requests.push_back(make_request(preset));
+    if (!known) known = presets();
+    for (const Preset& preset : choose_presets(*known, item.substr(1))) requests.push_back(make_request(preset));
   } else if (item.starts_with(kPresetMark) ||
              (colon == std::string::npos && has_value && !requests.empty() && !requests.back().presets.empty())) {
     fail(
@@ -248,9 +248,10 @@ void Catalogue::add_requests(std::vector<FilterRequest>& requests, const std::st
 
 std::vector<FilterRequest> Catalogue::parse_requests(const std::string& text) const {
   std::vector<FilterRequest> requests;
+  std::optional<std::vector<Preset>> known;  // read for the first that is asked for
   for (const std::string& item : split_list(text.empty() ? std::string(kAll) : text)) {
     if (item.empty()) fail(fmt::format("empty filter name in '{}'", text));
-    add_requests(requests, item);
+    add_requests(requests, known, item);
   }
   for (FilterRequest& request : requests) apply_width(request);
   return merge_presets(std::move(requests));

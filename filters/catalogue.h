@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,11 +14,11 @@ namespace shadowbench::filters {
 /// A filter and the parameter values it is to run with.
 struct FilterRequest {
   FilterSpec spec;
-  ParamValues values;                    ///< complete: every parameter has a value
-  std::vector<std::string> set_by_user;  ///< names of the parameters that were asked for
-  std::string width;                     ///< asked for in place of a radius, as in solve_radius(); empty: was not
-  bool user_file = false;                ///< given by its path; it runs in a process of its own
-  std::vector<Preset> presets;           ///< that were asked for, and are this
+  ParamValues values;                 ///< complete: every parameter has a value
+  std::set<std::string> set_by_user;  ///< names of the parameters that were asked for
+  std::string width;                  ///< asked for in place of a radius, as in solve_radius(); empty: was not
+  bool user_file = false;             ///< given by its path; it runs in a process of its own
+  std::vector<Preset> presets;        ///< that were asked for, and are this
 
   /// The id, with the asked-for parameters in parentheses; what tables and grids print.
   std::string label() const;
@@ -61,7 +63,8 @@ class Catalogue {
 
   FilterRequest make_request(const std::string& id) const;
   FilterRequest make_request(const Preset& preset) const;
-  void add_requests(std::vector<FilterRequest>& requests, const std::string& item) const;
+  void add_requests(std::vector<FilterRequest>& requests, std::optional<std::vector<Preset>>& known,
+                    const std::string& item) const;
 };
 
 /// Every parameter its default.

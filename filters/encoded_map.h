@@ -18,6 +18,14 @@ struct EncodeInput {
   std::array<T, 2> slope{};  ///< |depth per texel| along u and v: of both sides of the texel the smaller
 };
 
+/// mix() of each of several numbers.
+template <class T, std::size_t N>
+std::array<T, N> mix(const std::array<T, N>& a, const std::array<T, N>& b, const T& share) {
+  std::array<T, N> result;
+  for (std::size_t i = 0; i < N; ++i) result[i] = mix(a[i], b[i], share);
+  return result;
+}
+
 /// The scalar model of the `encode` and `blur` passes: a map that a filter's encode() wrote, then prefiltered.
 ///
 /// It has `N` channels of type T. Outside the map it holds what the map's border says: if that is depth 1, then depth 1
@@ -158,12 +166,6 @@ class EncodedMap {
   Texel stored(Texel texel) const {
     for (T& channel : texel) channel = round_to_store(channel, store_);
     return texel;
-  }
-
-  static Texel mix(const Texel& a, const Texel& b, T s) {
-    Texel result;
-    for (std::size_t i = 0; i < N; ++i) result[i] = a[i] + s * (b[i] - a[i]);
-    return result;
   }
 
   std::vector<Texel> blurred(const std::vector<float>& weights, int dx, int dy) const {

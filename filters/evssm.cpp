@@ -13,13 +13,11 @@ class Evssm {
 
  public:
   explicit Evssm(const ModelInput& input)
-      : c_down_(Warps<T>::read(input.values, "c_down")),
-        warps_(input, Warps<T>::read(input.values, "c"), c_down_),
+      : warps_(input, Warps<T>::read(input.values, "c"), Warps<T>::read(input.values, "c_down")),
         levels_(input, [this](const EncodeInput<T>& e) { return warps_.encode(e.depth); }),
         points_(generate_disk_points(input.spec, input.values, "disk_points")),
         widest_(std::max(P(0.5) * Warps<T>::read(input.values, "max_radius"), kLeastRadius)),
         reduction_(Warps<T>::read(input.values, "bleed_reduction")),
-        accuracy_(input.accuracy),
         rotation_(text_or(input.values, "rotation", "none")),
         seed_(input.seed) {}
 
@@ -30,13 +28,10 @@ class Evssm {
     const T zero(P(0)), one(P(1)), depth(static_cast<P>(r.depth));
     if (r.depth > 1.0f) return zero;
     if (r.uv != glm::clamp(r.uv, 0.0f, 1.0f)) return one;
-    const T search = limit(radius_of(r, T(static_cast<P>(r.depth_unbiased))), widest_);
+    const T search = radius_of(r, T(static_cast<P>(r.depth_unbiased)), widest_);
     const auto [lit, nearness] = change_by_radius(search, [&](const T& R) { return look_around(r, R); });
     if (is_sure(lit, tally)) return doubt(value_of(lit) > 0.5 ? one : zero, lit);
-    const T down = warps_.down(depth), blockers = down - (down - nearness) / (one - lit);
-    const T warped = minimum(maximum(-blockers, -down), exponential(T(c_down_), accuracy_));
-    const T above = depth - (T(P(0.5)) - T(P(0.5)) * logarithm(warped) / T(c_down_));
-    const T radius = limit(radius_of(r, above), search);
+    const T radius = radius_of(r, depth - warps_.depth_of_blockers(depth, nearness, lit), search);
     tally.disk_radius_texels = value_of(radius);
     const DiskTurn<T> turn(rotation_, r, seed_);
     const auto average = [&](const T& R) { return std::array{warps_.bound_light(fetch_disk(r, R, turn), depth)}; };
@@ -50,22 +45,17 @@ class Evssm {
   static constexpr double kTie = 2e-5;
   static constexpr double kUncertain = 0.5;  // texels: a disk of a radius so far off says nothing
 
-  P c_down_;
   Warps<T> warps_;
   MipLevels<T, 4> levels_;
   std::vector<glm::vec2> points_;
   P widest_;
   P reduction_;
-  GlAccuracy accuracy_;
   std::string rotation_;
   std::uint32_t seed_;
 
-  static T limit(const T& radius, const T& widest) { return minimum(maximum(radius, T(kLeastRadius)), widest); }
-
-  static T radius_of(const Receiver& r, const T& above) {
-    const P widening =
-        P(0.5) * static_cast<P>(r.light_size) * static_cast<P>(r.depth_range_ws) / static_cast<P>(r.texel_size_ws);
-    return T(widening) * above / T(PenumbraDisk<T>::shrink(r, static_cast<P>(value_of(above))));
+  /// The radius of the penumbra that a blocker so far above the receiver makes, within its limits.
+  static T radius_of(const Receiver& r, const T& above, const T& widest) {
+    return minimum(maximum(PenumbraDisk<T>::widen(r, above, P(1)), T(kLeastRadius)), widest);
   }
 
   static double beyond_sure(const T& lit) { return std::min(value_of(lit), 1.0 - value_of(lit)) - kSure; }
@@ -86,7 +76,7 @@ class Evssm {
   Moments fetch_wide(const Receiver& r, const Offset<T>& offset, const T& side) const {
     const int level = static_cast<int>(std::floor(std::log2(value_of(side))));
     const T coarser = (side * side * T(std::exp2(P(-2) * static_cast<P>(level))) - T(P(1))) / T(P(3));
-    return MipLevels<T, 4>::mix(levels_.fetch(r, offset, level), levels_.fetch(r, offset, level + 1), coarser);
+    return mix(levels_.fetch(r, offset, level), levels_.fetch(r, offset, level + 1), coarser);
   }
 
   Moments fetch_disk(const Receiver& r, const T& radius, const DiskTurn<T>& turn) const {
@@ -119,12 +109,10 @@ class Evssm {
         return found;
       }
       const double off = radius.bound + PenumbraDisk<T>::kRounding;
-      const auto narrower = find(T(std::max(radius.value - off, 1.0))), wider = find(T(radius.value + off));
-      for (std::size_t i = 0; i < found.size(); ++i)
-        found[i].bound +=
-            std::max(std::abs(narrower[i].value - found[i].value), std::abs(wider[i].value - found[i].value));
+      return widen_bounds(found, find(T(std::max(radius.value - off, 1.0))), find(T(radius.value + off)));
+    } else {
+      return found;
     }
-    return found;
   }
 };
 

@@ -97,9 +97,23 @@ S find_share(Depths depths, const Moments<S>& b, S x) {
 }
 
 template <class S>
+S unbias_share(S share, S bias) {
+  return std::clamp((share - bias) / (S(1) - bias), S(0), S(1));
+}
+
+template <class S>
 S find_light(Depths depths, const std::array<S, 4>& stored, S depth, S bias) {
   const S share = find_share(depths, decode(stored, bias), S(2) * depth - S(1));
-  return S(1) - std::clamp((share - bias) / (S(1) - bias), S(0), S(1));
+  return S(1) - unbias_share(share, bias);
+}
+
+/// The values of moments, without what tracks their rounding.
+inline std::array<double, 4> values_of(const std::array<Tracked, 4>& stored) {
+  return {stored[0].value, stored[1].value, stored[2].value, stored[3].value};
+}
+template <class S>
+std::array<S, 4> values_of(const std::array<S, 4>& stored) {
+  return stored;
 }
 
 inline constexpr double kEvaluation = 16.0 * kUnitRoundoff;  // of a lookup, as an error of the moments
@@ -163,19 +177,13 @@ struct FourMoments {
       return four_moments::find_light(kDepths, stored, static_cast<double>(r.depth), static_cast<double>(bias_));
     }
 
-    /// How much the light changes where the place in the map is off.
-    double change_by_place(const Stored& stored, const Receiver& r) const {
-      const double seen = light(stored, r), step = map_.placement();
+    /// How much the light changes from what is seen where the place in the map is off.
+    double change_by_place(const Receiver& r, double seen) const {
+      const double step = map_.placement();
       double largest = 0.0;
       for (const Offset<T>& shift : {Offset<T>{step, step}, {step, -step}, {-step, step}, {-step, -step}})
-        largest = std::max(largest, std::abs(light(values_of(map_.fetch_between(r, shift)), r) - seen));
+        largest = std::max(largest, std::abs(light(four_moments::values_of(map_.fetch_between(r, shift)), r) - seen));
       return largest;
-    }
-
-    static Stored values_of(const std::array<T, 4>& texel) {
-      Stored values{};
-      for (std::size_t i = 0; i < 4; ++i) values[i] = value_of(texel[i]);
-      return values;
     }
 
     /// A bound that is carried through the solution of the moments would say nothing: their errors cancel there. So the
@@ -184,10 +192,10 @@ struct FourMoments {
     T bound(const Receiver& r, Tally& tally) const {
       map_.fetch(r, tally);
       const auto middle = map_.fetch_between(r, {});
-      const Stored stored = values_of(middle);
-      const double by_rounding = four_moments::change_by_rounding(middle, static_cast<double>(bias_), light(stored, r),
+      const double seen = light(four_moments::values_of(middle), r);
+      const double by_rounding = four_moments::change_by_rounding(middle, static_cast<double>(bias_), seen,
                                                                   [&](const Stored& moved) { return light(moved, r); });
-      return {light(stored, r), kSafety * (by_rounding + change_by_place(stored, r))};
+      return {seen, kSafety * (by_rounding + change_by_place(r, seen))};
     }
   };
 };

@@ -238,8 +238,6 @@ class DepthReader {
     return plane_.depth(r, grid_.size(), glm::dvec2(lower_left(r, offset, tally)) + 1.0, 0.5, z);
   }
 
-  static T mix(T a, T b, T s) { return a + s * (b - a); }
-
  private:
   inline static const std::array<glm::ivec2, 4> kGathered{glm::ivec2(0, 1), {1, 1}, {1, 0}, {0, 0}};
 

@@ -19,55 +19,44 @@ class MipLevels {
   MipLevels(const ModelInput& input, Encode encode) : grid_(input.map.size), accuracy_(input.accuracy) {
     const EncodedMap<T, N> map(input, 0, encode);
     const int side = static_cast<int>(std::bit_ceil(static_cast<unsigned>(grid_.size()))), last = grid_.size() - 1;
-    levels_.push_back({{side, store_bytes(input.spec.passes.back().store)}, {}});
+    const int texel_bytes = store_bytes(input.spec.passes.back().store);
+    levels_.push_back({TexelGrid<T>(side, Border::kEdge, texel_bytes), {}});
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) levels_.back().texels.push_back(map.texel(std::min(x, last), std::min(y, last)));
-    while (levels_.back().memory.size > 1) levels_.push_back(halve(levels_.back()));
+    while (levels_.back().grid.size() > 1) levels_.push_back(halve(levels_.back(), texel_bytes));
   }
 
   /// What lies at a receiver's place, moved by an offset, between the texels of a level; the coarsest stands for those
   /// beyond.
   Texel fetch(const Receiver& r, const Offset<T>& offset, int level) const {
     const Level& from = levels_[static_cast<std::size_t>(std::min(level, static_cast<int>(levels_.size()) - 1))];
-    const P texels = std::exp2(static_cast<P>(std::countr_zero(static_cast<unsigned>(levels_[0].memory.size)) -
-                                              std::countr_zero(static_cast<unsigned>(from.memory.size))));
+    const P texels = std::exp2(static_cast<P>(std::countr_zero(static_cast<unsigned>(levels_[0].grid.size())) -
+                                              std::countr_zero(static_cast<unsigned>(from.grid.size()))));
     const P px = grid_.position(r.uv.x, offset.x) / texels - P(0.5);
     const P py = grid_.position(r.uv.y, offset.y) / texels - P(0.5);
     const P left = std::floor(px), low = std::floor(py);
-    const T sx = sampler_weight<T>(px, left, accuracy_, from.memory.size);
-    const T sy = sampler_weight<T>(py, low, accuracy_, from.memory.size);
+    const T sx = sampler_weight<T>(px, left, accuracy_, from.grid.size());
+    const T sy = sampler_weight<T>(py, low, accuracy_, from.grid.size());
     const int x = static_cast<int>(left), y = static_cast<int>(low);
     return mix(mix(from.read(x, y), from.read(x + 1, y), sx), mix(from.read(x, y + 1), from.read(x + 1, y + 1), sx),
                sy);
   }
 
-  static Texel mix(const Texel& a, const Texel& b, const T& s) {
-    Texel result;
-    for (std::size_t i = 0; i < N; ++i) result[i] = a[i] + s * (b[i] - a[i]);
-    return result;
-  }
-
  private:
   struct Level {
-    MapMemory memory;
+    TexelGrid<T> grid;
     std::vector<Texel> texels;
 
-    const Texel& read(int x, int y) const {
-      const std::size_t side = static_cast<std::size_t>(memory.size);
-      const std::size_t texel = static_cast<std::size_t>(std::clamp(y, 0, memory.size - 1)) * side +
-                                static_cast<std::size_t>(std::clamp(x, 0, memory.size - 1));
-      if constexpr (ReadLog::hears<T>) ReadLog::note({&memory, texel});
-      return texels[texel];
-    }
+    const Texel& read(int x, int y) const { return texels[*grid.read(x, y)]; }
   };
 
   TexelGrid<T> grid_;
   GlAccuracy accuracy_;
   std::vector<Level> levels_;
 
-  static Level halve(const Level& finer) {
-    const auto side = static_cast<std::size_t>(finer.memory.size);
-    Level level{{finer.memory.size / 2, finer.memory.texel_bytes}, {}};
+  static Level halve(const Level& finer, int texel_bytes) {
+    const auto side = static_cast<std::size_t>(finer.grid.size());
+    Level level{TexelGrid<T>(finer.grid.size() / 2, Border::kEdge, texel_bytes), {}};
     for (std::size_t y = 0; y < side; y += 2) {
       for (std::size_t x = 0; x < side; x += 2) {
         const Texel* const four[] = {&finer.texels[y * side + x], &finer.texels[y * side + x + 1],

@@ -80,17 +80,10 @@ class MsmSoft {
     return S(0.5) * four_moments::distance_to_blockers(moments, x, four_moments::solve(moments, x));
   }
 
-  static Stored values_of(const std::array<T, 4>& stored) {
-    if constexpr (std::is_same_v<T, Tracked>)
-      return {stored[0].value, stored[1].value, stored[2].value, stored[3].value};
-    else
-      return stored;
-  }
-
   /// What a function makes of moments, and by how much more than that their roundings may change it.
   template <class Function>
   T track(const std::array<T, 4>& stored, const Function& function) const {
-    const S seen = function(values_of(stored));
+    const S seen = function(four_moments::values_of(stored));
     if constexpr (std::is_same_v<T, Tracked>)
       return {seen, kSafety * four_moments::change_by_rounding(stored, static_cast<double>(bias_), seen, function)};
     else

@@ -110,7 +110,6 @@ struct PackedMoments {
     bool mean_of_four_;
     std::uint32_t seed_;
 
-    static T mix(const T& a, const T& b, const T& s) { return a + s * (b - a); }
     T weight(P part) const { return make_uncertain<T>(part, 0.5 * grid_.border_tolerance()); }
 
     /// The texel of the four that blue noise chooses.
@@ -152,7 +151,7 @@ struct PackedMoments {
     S light_of(const packed_moments::Packed<S>& p, S depth) const {
       const S margin = S(1.25) / static_cast<S>(kLevels[0] - 1), bias = S(bias_) + packed_moments::kLeastShare<S>;
       const S share = packed_moments::find_share(p, S(2) * depth - S(1), margin);
-      return S(1) - std::clamp((share - bias) / (S(1) - bias), S(0), S(1));
+      return S(1) - four_moments::unbias_share(share, bias);
     }
 
     struct Light {
@@ -171,8 +170,7 @@ struct PackedMoments {
     /// the bounds decide to which step a number is rounded, and that is seen, it excuses.
     T bound(const std::array<T, 4>& texel, const Tracked& depth, Tally& tally) const {
       const double bias = static_cast<double>(bias_);
-      Stored stored{};
-      for (std::size_t i = 0; i < 4; ++i) stored[i] = value_of(texel[i]);
+      const Stored stored = four_moments::values_of(texel);
       const Light here = both(four_moments::decode(stored, bias), depth.value);
       double largest = std::abs(here.step());
       for (const double part : {kSeen, 0.25, 0.5}) {

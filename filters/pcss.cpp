@@ -14,9 +14,9 @@ class Pcss {
  public:
   explicit Pcss(const ModelInput& input)
       : map_(input),
-        points_(generate_disk_points(input.spec, input.values, "disk_points")),
         bail_(input.values),
-        search_points_(generate_disk_points(input.spec, input.values, "search_points")),
+        points_(bail_.order(generate_disk_points(input.spec, input.values, "disk_points"))),
+        search_points_(bail_.order(generate_disk_points(input.spec, input.values, "search_points"))),
         disk_(input.values),
         rotation_(text_or(input.values, "rotation", "none")),
         seed_(input.seed) {}
@@ -33,19 +33,16 @@ class Pcss {
     const P radius = disk_.radius(r, static_cast<P>(r.depth) - *blocker, tally);
     if (radius < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
     tally.disk_radius_texels = static_cast<double>(radius);
-    T sum{};
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const Offset<T> offset = turn.place(radius, points_[bail_.order(i, points_.size())]);
-      sum = sum + map_.compare_2x2(r, offset, Disk::biased(r, offset), tally);
-      if (bail_.agrees(i, value_of(sum), tally)) return T(value_of(sum) > 0.0 ? P(1) : P(0));
-    }
-    return sum / T(static_cast<P>(points_.size()));
+    return bail_.template average<T>(points_, tally, [&](const glm::vec2& point) {
+      const Offset<T> offset = turn.place(radius, point);
+      return map_.compare_2x2(r, offset, Disk::biased(r, offset), tally);
+    });
   }
 
  private:
   DepthReader<T> map_;
-  std::vector<glm::vec2> points_;
   EarlyBail bail_;
+  std::vector<glm::vec2> points_;
   std::vector<glm::vec2> search_points_;
   Disk disk_;
   std::string rotation_;
@@ -55,7 +52,7 @@ class Pcss {
   std::optional<P> find_blocker(const Receiver& r, P search, const DiskTurn<T>& turn, Tally& tally) const {
     P depths{}, blockers{};
     for (std::size_t i = 0; i < search_points_.size(); ++i) {
-      const Offset<T> offset = turn.place(search, search_points_[bail_.order(i, search_points_.size())]);
+      const Offset<T> offset = turn.place(search, search_points_[i]);
       const std::optional<P> depth = find_blocker_at(r, offset, tally);
       if (depth) {
         depths += *depth;

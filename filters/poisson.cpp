@@ -13,8 +13,8 @@ class Poisson {
  public:
   explicit Poisson(const ModelInput& input)
       : map_(input),
-        points_(generate_disk_points(input.spec, input.values, "disk_points")),
         bail_(input.values),
+        points_(bail_.order(generate_disk_points(input.spec, input.values, "disk_points"))),
         radius_(static_cast<P>(number(input.values, "radius"))),
         rotation_(text_or(input.values, "rotation", "none")),
         seed_(input.seed) {}
@@ -23,18 +23,15 @@ class Poisson {
 
   T visibility(const Receiver& r, Tally& tally) const {
     const DiskTurn<T> turn(rotation_, r, seed_);
-    T sum{};
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      sum = sum + map_.compare_2x2(r, turn.place(radius_, points_[bail_.order(i, points_.size())]), r.depth, tally);
-      if (bail_.agrees(i, value_of(sum), tally)) return T(value_of(sum) > 0.0 ? P(1) : P(0));
-    }
-    return sum / T(static_cast<P>(points_.size()));
+    return bail_.template average<T>(points_, tally, [&](const glm::vec2& point) {
+      return map_.compare_2x2(r, turn.place(radius_, point), r.depth, tally);
+    });
   }
 
  private:
   DepthReader<T> map_;
-  std::vector<glm::vec2> points_;
   EarlyBail bail_;
+  std::vector<glm::vec2> points_;
   P radius_;
   std::string rotation_;
   std::uint32_t seed_;

@@ -26,7 +26,7 @@ text = "how points are spread: vogel on a sunflower's spiral, stratified one any
 [param.bail]
 default = "none"
 choices = ["none", "agree"]
-text = "agree ends the lookup where the four taps nearest the rim are all lit or all blocked (Calinou 2021, Godot's pull request 54160); faster, and shadows thinner than the disk get holes"
+text = "agree ends the lookup where the pattern's last four taps, with vogel those nearest the rim, are all lit or all blocked (Calinou 2021, Godot's pull request 54160); faster, and shadows thinner than the disk get holes"
 [disk.disk_points]
 count = "taps"
 seed = 1

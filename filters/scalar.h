@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <type_traits>
 
 namespace shadowbench::filters {
@@ -52,6 +54,15 @@ inline Tracked operator/(Tracked a, Tracked b) {
 inline Tracked max(Tracked a, Tracked b) { return {std::max(a.value, b.value), std::max(a.bound, b.bound)}; }
 inline Tracked min(Tracked a, Tracked b) { return {std::min(a.value, b.value), std::max(a.bound, b.bound)}; }
 
+/// Adds to the bounds of what was found by how far off it is at both ends of what it may have been found for.
+template <std::size_t N>
+std::array<Tracked, N> widen_bounds(std::array<Tracked, N> found, const std::array<Tracked, N>& low,
+                                    const std::array<Tracked, N>& high) {
+  for (std::size_t i = 0; i < N; ++i)
+    found[i].bound += std::max(std::abs(low[i].value - found[i].value), std::abs(high[i].value - found[i].value));
+  return found;
+}
+
 /// The type that texel positions are computed in. Their rounding is not tracked; it is excused at texel borders.
 template <class T>
 using Position = std::conditional_t<std::is_same_v<T, float>, float, double>;
@@ -75,6 +86,12 @@ T minimum(T a, T b) {
 template <class T>
 T absolute(T a) {
   return maximum(a, -a);
+}
+
+/// What lies at a share of the way from one number to another.
+template <class T>
+T mix(T a, T b, T share) {
+  return a + share * (b - a);
 }
 
 /// e^x with the accuracy of the GL at hand.

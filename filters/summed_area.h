@@ -31,12 +31,30 @@ class SummedMoments {
       : size_(input.map.size),
         memory_{size_, store_bytes(input.spec.passes.back().store)},
         steps_(count_moment_steps<P>(side)),
+        outside_(encode(EncodeInput<T>{T(P(1)), {}})),
         table_(static_cast<std::size_t>(size_ * size_)) {
-    outside_ = encode(EncodeInput<T>{T(P(1)), {}});
     const EncodedMap<T, N> map(input, 0, encode);
     for (int y = 0; y < size_; ++y)
       for (int x = 0; x < size_; ++x) table_[index(x, y)] = add(map.texel(x, y), x, y);
   }
+
+  /// The moments of the box that reaches so many texels to each side of a receiver.
+  Moments around(const Receiver& r, P reach) const {
+    const P x = static_cast<P>(r.uv.x) * size(), y = static_cast<P>(r.uv.y) * size();
+    return mean({x - reach, y - reach}, {x + reach, y + reach});
+  }
+
+ private:
+  struct Sums {
+    std::array<double, N> values{};
+    std::array<double, N> bounds{};  ///< of single precision
+  };
+
+  int size_;
+  MapMemory memory_;  ///< of the table
+  P steps_;
+  Moments outside_;
+  std::vector<Sums> table_;
 
   P size() const { return static_cast<P>(size_); }
 
@@ -51,18 +69,6 @@ class SummedMoments {
     }
     return moments;
   }
-
- private:
-  struct Sums {
-    std::array<double, N> values{};
-    std::array<double, N> bounds{};  ///< of single precision
-  };
-
-  int size_;
-  MapMemory memory_;  ///< of the table
-  P steps_;
-  Moments outside_;
-  std::vector<Sums> table_;
 
   /// What the table counts 1 as.
   P unit() const { return std::is_same_v<T, float> ? steps_ : P(1); }

@@ -20,9 +20,7 @@ class VsmSat {
   }
 
   T visibility(const Receiver& r, Tally&) const {
-    const P reach = static_cast<P>(radius_) + P(0.5);
-    const P x = static_cast<P>(r.uv.x) * moments_.size(), y = static_cast<P>(r.uv.y) * moments_.size();
-    return variance_.visibility(moments_.mean({x - reach, y - reach}, {x + reach, y + reach}), r.depth);
+    return variance_.visibility(moments_.around(r, static_cast<P>(radius_) + P(0.5)), r.depth);
   }
 
  private:

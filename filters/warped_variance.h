@@ -28,7 +28,7 @@ class Warps {
 
   /// The light that both warps allow. Light is not negative, so that the tighter bound speaks for both.
   T bound_light(const std::array<T, 4>& moments, const T& depth) const {
-    const T above = bound_above(moments[0], moments[1], depth),
+    const T above = bound_light(std::array{moments[0], moments[1]}, depth),
             below = bound(moments[2], moments[3], down(depth), c_down_);
     T light = minimum(above, below);
     if constexpr (std::is_same_v<T, Tracked>)
@@ -36,7 +36,18 @@ class Warps {
     return light;
   }
 
-  T bound_above(const T& first, const T& second, const T& depth) const { return bound(first, second, up(depth), c_); }
+  /// The same of the positive warp alone.
+  T bound_light(const std::array<T, 2>& moments, const T& depth) const {
+    return bound(moments[0], moments[1], up(depth), c_);
+  }
+
+  /// The mean depth of blockers, where the share `lit` of the depths around is the receiver's `depth`, and `mean` the
+  /// mean of the negative warp of all.
+  T depth_of_blockers(const T& depth, const T& mean, const T& lit) const {
+    const T own = down(depth), blockers = own - (own - mean) / (T(P(1)) - lit);
+    const T warped = minimum(maximum(-blockers, -own), exponential(T(c_down_), accuracy_));
+    return T(P(0.5)) - T(P(0.5)) * logarithm(warped) / T(c_down_);
+  }
 
  private:
   GlAccuracy accuracy_;
@@ -77,13 +88,7 @@ struct WarpedVariance {
     static Kernel kernel(const ParamValues& values) { return EncodedMap<T, kChannels>::kernel(values); }
 
     T visibility(const Receiver& r, Tally& tally) const {
-      const auto moments = map_.fetch(r, tally);
-      const T depth(static_cast<P>(r.depth));
-      T light;
-      if constexpr (kWarps == 2)
-        light = warps_.bound_light(moments, depth);
-      else
-        light = warps_.bound_above(moments[0], moments[1], depth);
+      const T light = warps_.bound_light(map_.fetch(r, tally), T(static_cast<P>(r.depth)));
       return maximum(light - T(reduction_), T(P(0))) / (T(P(1)) - T(reduction_));
     }
 

@@ -18,7 +18,7 @@ vec2 pixel_at(mat4 clip, vec3 position) {
   return (0.5 * place.xy / place.w + 0.5) * vec2(textureSize(history, 0));
 }
 
-// What lies `offset` pixels off, or at the picture's edge.
+// The pixel that lies x and y pixels off, or the one at the picture's edge.
 ivec2 neighbour(ivec2 pixel, int x, int y) {
   return clamp(pixel + ivec2(x, y), ivec2(0), textureSize(history, 0) - 1);
 }

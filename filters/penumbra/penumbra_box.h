@@ -24,10 +24,7 @@ class PenumbraBox {
 
   /// That of the box for a blocker so far above the receiver, in depth; no wider than `widest`.
   T half_width(const Receiver& r, const T& above, const T& widest) const {
-    const T widening(kBoxOfDisk * P(0.5) * static_cast<P>(r.light_size) * static_cast<P>(r.depth_range_ws) /
-                     static_cast<P>(r.texel_size_ws));
-    const T width = widening * above / T(PenumbraDisk<T>::shrink(r, static_cast<P>(value_of(above))));
-    return minimum(maximum(width, T(kLeastHalfWidth)), widest);
+    return minimum(maximum(PenumbraDisk<T>::widen(r, above, kBoxOfDisk), T(kLeastHalfWidth)), widest);
   }
 
   /// The radius of the disk with the box's standard deviation.
@@ -35,21 +32,15 @@ class PenumbraBox {
 
   /// The moments of a box, and, in tracked precision, how much they change where its width is as far off as it may be.
   std::array<T, N> moments(const Receiver& r, const T& half_width, Tally& tally) const {
-    const P x = static_cast<P>(r.uv.x) * moments_.size(), y = static_cast<P>(r.uv.y) * moments_.size();
-    const auto mean = [&](double w) {
-      const P reach = static_cast<P>(w);
-      return moments_.mean({x - reach, y - reach}, {x + reach, y + reach});
-    };
-    auto moments = mean(value_of(half_width));
+    const auto around = [&](double reach) { return moments_.around(r, static_cast<P>(reach)); };
+    const auto moments = around(value_of(half_width));
     if constexpr (std::is_same_v<T, Tracked>) {
       const double off = std::min(half_width.bound, kUncertain);
       if (half_width.bound > kUncertain) tally.excused = true;
-      const auto narrower = mean(half_width.value - off), wider = mean(half_width.value + off);
-      for (std::size_t c = 0; c < N; ++c)
-        moments[c].bound +=
-            std::max(std::abs(narrower[c].value - moments[c].value), std::abs(wider[c].value - moments[c].value));
+      return widen_bounds(moments, around(half_width.value - off), around(half_width.value + off));
+    } else {
+      return moments;
     }
-    return moments;
   }
 
  private:

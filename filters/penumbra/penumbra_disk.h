@@ -52,6 +52,13 @@ class PenumbraDisk {
     return limited;
   }
 
+  /// That radius times a scale, without its limit; the rounding of the blocker's depth is tracked.
+  static T widen(const Receiver& r, const T& above, P scale) {
+    const P per_depth = scale * P(0.5) * static_cast<P>(r.light_size) * static_cast<P>(r.depth_range_ws) /
+                        static_cast<P>(r.texel_size_ws);
+    return T(per_depth) * above / T(shrink(r, static_cast<P>(value_of(above))));
+  }
+
   /// The share of the light's distance at which a blocker so far above the receiver is; 1 for a light at infinity.
   static P shrink(const Receiver& r, P depth_above) {
     return std::max(P(1) - depth_above * static_cast<P>(r.depth_range_ws) * static_cast<P>(r.light_nearness), P(1e-4));

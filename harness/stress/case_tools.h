@@ -15,8 +15,6 @@ inline constexpr double kVisibleError = 0.02;
 /// Names the exponent of a filter that stores exponentials and no moments of them.
 std::string find_exponent(const filters::FilterSpec& spec);
 
-bool is_set_by_user(const filters::FilterRequest& request, const std::string& param);
-
 /// Lists the values of a filter's text parameter, such as `store`, that get a case each: the chosen value alone where
 /// the user set it, all otherwise; none where the filter has no such parameter.
 std::vector<std::string> list_choices(const filters::FilterRequest& request, const std::string& param);

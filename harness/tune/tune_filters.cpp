@@ -293,7 +293,7 @@ class Tuner {
 std::vector<SearchedParam> list_searched_params(const filters::FilterRequest& request) {
   std::vector<SearchedParam> params;
   for (const filters::ParamSpec& param : request.spec.params) {
-    const bool fixed = std::ranges::find(request.set_by_user, param.name) != request.set_by_user.end();
+    const bool fixed = request.set_by_user.contains(param.name);
     if (fixed || param.is_const || !param.choices.empty() || !param.min || !param.max || !(*param.min < *param.max))
       continue;
     params.push_back({param.name, *param.min, *param.max, std::get<double>(param.default_value), param.integer});

@@ -36,13 +36,12 @@ filters::ParamValues read_values(const filters::FilterSpec& spec, const records:
 void take_values(filters::FilterRequest& request, const filters::ParamValues& values) {
   const filters::ParamValues defaults = filters::default_values(request.spec);
   for (const auto& [name, value] : values) {
-    auto& shown = request.set_by_user;  // in labels
-    const bool is_set = std::ranges::find(shown, name) != shown.end();
+    const bool is_set = request.set_by_user.contains(name);
     // A radius that a width asked for is no wish for this very radius.
     const bool by_width = !request.width.empty() && std::get<std::string>(request.spec.radius_texels) == name;
     if (is_set && !by_width) continue;
     request.values[name] = value;
-    if (!is_set && value != defaults.at(name)) shown.push_back(name);
+    if (value != defaults.at(name)) request.set_by_user.insert(name);  // labels have it
   }
 }
 
@@ -61,6 +60,7 @@ std::vector<std::string> apply_tuned(std::vector<filters::FilterRequest>& reques
   }
   std::vector<std::string> notes;
   for (filters::FilterRequest& request : requests) {
+    if (!request.presets.empty()) continue;  // what an engine ships has the engine's parameters, those unsaid too
     const auto values = found.find(request.spec.id);
     if (values != found.end())
       take_values(request, values->second);

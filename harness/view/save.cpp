@@ -68,7 +68,7 @@ std::string write_experiment(const ViewState& state, options::RunOptions options
   options.filter_files.clear();
   for (filters::FilterRequest& request : options.filters) {
     request.set_by_user.clear();
-    for (const auto& [name, value] : request.values) request.set_by_user.push_back(name);
+    for (const auto& [name, value] : request.values) request.set_by_user.insert(name);
     if (!request.user_file) continue;
     const std::string name = scene::name_from(request.spec.path, file);
     if (std::ranges::count(options.filter_files, name) == 0) options.filter_files.push_back(name);

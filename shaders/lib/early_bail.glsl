@@ -3,8 +3,8 @@
 
 const int first_taps = 4;
 
-// The tap of so many that comes i-th: with a bail the rim first, where all that differs within the disk is likely to
-// show. The points of a spiral come from its centre outwards.
+// The tap of so many that comes i-th: with a bail the last first. Those of a spiral lie at its rim, where all that
+// differs within the disk is likely to show; those of other patterns need not.
 int order_tap(int i, int count) { return bail == BAIL_AGREE ? count - 1 - i : i; }
 
 // Whether the first taps, of which i is the last so far, are all lit or all blocked.

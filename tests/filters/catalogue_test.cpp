@@ -80,9 +80,9 @@ TEST(Requests, ParametersBelongToTheFilterBefore) {
   EXPECT_EQ(number(requests[1].values, "radius"), 8.0);
   EXPECT_EQ(number(requests[1].values, "min_variance"), 1e-4);
   EXPECT_EQ(number(requests[1].values, "bleed_reduction"), 0.3);
-  EXPECT_EQ(requests[1].label(), "vsm (radius=8, min_variance=0.0001)");
+  EXPECT_EQ(requests[1].label(), "vsm (min_variance=0.0001, radius=8)");
   EXPECT_EQ(text_or(requests[2].values, "combine", ""), "log");
-  EXPECT_THAT(requests[1].set_by_user, ElementsAre("radius", "min_variance"));
+  EXPECT_THAT(requests[1].set_by_user, ElementsAre("min_variance", "radius"));
 }
 
 TEST(Requests, Mistakes_AreNamed) {

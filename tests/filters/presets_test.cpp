@@ -63,10 +63,10 @@ TEST(ShippedPresets, AreFiltersOfOurs_WithSourceAndVersion) {
 
 TEST(Presets, StandAmongFilters_ABeginningForAll) {
   EXPECT_THAT(labels_of("none,@unity-hdrp,vsm:radius=2"),
-              ElementsAre("none", "tent5x5", "tent7x7", "pcss (taps=16, search_taps=32, rotation=interleaved-gradient)",
+              ElementsAre("none", "tent5x5", "tent7x7", "pcss (rotation=interleaved-gradient, search_taps=32, taps=16)",
                           "vsm (radius=2)"));
   EXPECT_THAT(labels_of("@three.js"),
-              ElementsAre("poisson (taps=5, radius=1, pattern=vogel, rotation=interleaved-gradient)"));
+              ElementsAre("poisson (pattern=vogel, radius=1, rotation=interleaved-gradient, taps=5)"));
   EXPECT_THAT(labels_of("@unity-hdrp-medium"), ElementsAre("tent7x7"));
   EXPECT_EQ(labels_of("@unity"), labels_of("@unity-hdrp"));
 }

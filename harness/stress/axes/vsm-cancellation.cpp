@@ -203,7 +203,7 @@ std::vector<Setting> list_settings(const filters::FilterRequest& request) {
   std::vector<Setting> settings;
   for (const std::string& store : list_choices(request, "store")) {
     settings.push_back({store, minimum});
-    if (minimum != 0.0 && !is_set_by_user(request, param)) settings.push_back({store, 0.0});
+    if (minimum != 0.0 && !request.set_by_user.contains(param)) settings.push_back({store, 0.0});
   }
   return settings;
 }

@@ -89,7 +89,7 @@ void SettingsPanel::show_side(std::size_t side) {
       bench_.change(changes, [&](ViewSettings& settings) {
         filters::FilterRequest& filter = settings.sides[side].filter;
         filter.values[spec.name] = value;
-        if (std::ranges::count(filter.set_by_user, spec.name) == 0) filter.set_by_user.push_back(spec.name);
+        filter.set_by_user.insert(spec.name);
       });
     }
   }

@@ -78,6 +78,13 @@ TEST_F(TunedParameters, TakeThePlaceOfAWidthsRadius) {
   EXPECT_EQ(request.label(), "vsm (radius=2)");
 }
 
+TEST_F(TunedParameters, LeaveAPresetTheParametersOfItsEngine) {
+  const auto file = write_filters(R"({"id": "poisson", "params": {"bail": "agree"}})");
+  EXPECT_EQ(apply("@godot", file).values, catalogue_.parse_requests("@godot").front().values);
+  EXPECT_TRUE(notes_.empty());
+  EXPECT_EQ(filters::text_or(apply("poisson", file).values, "bail", ""), "agree");
+}
+
 TEST_F(TunedParameters, OfOtherFilters_LeaveTheDefaults_WithANote) {
   const filters::FilterRequest request = apply("esm,none", write_filters(R"({"id": "vsm", "params": {"radius": 2}})"));
   EXPECT_EQ(request.values, filters::default_values(request.spec));
