@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <map>
 #include <vector>
 
@@ -43,11 +44,8 @@ std::vector<std::size_t> choose_channels(const images::StoredPicture& stored, co
   const std::vector<std::string> wanted =
       layer == "depth" ? std::vector<std::string>{"z", "depth"} : std::vector<std::string>{"r", "g", "b", "y"};
   std::vector<std::size_t> chosen, others;
-  const auto is_own = [&](const std::string& channel) { return channel.starts_with(layer + "."); };
-  const bool has_own = std::ranges::any_of(stored.channel_names, is_own);
   for (std::size_t c = 0; c < stored.channel_names.size(); ++c) {
     if (static_cast<int>(c) == stored.alpha_channel && stored.image.channels > 1) continue;
-    if (has_own && !is_own(stored.channel_names[c])) continue;  // of a file with several layers
     (std::ranges::count(wanted, ending(stored.channel_names[c])) > 0 ? chosen : others).push_back(c);
   }
   if (!chosen.empty()) return chosen;
@@ -75,6 +73,13 @@ images::Image to_grey(const images::StoredPicture& stored, const std::string& la
     grey.texels[i] = sum / static_cast<float>(channels.size());
   }
   return grey;
+}
+
+/// A file's layer or part of that name, where it has one; else what the name says: FILE, or FILE#PART.
+images::StoredPicture read_layer(const std::string& file, const std::string& layer) {
+  if (std::filesystem::is_regular_file(file))
+    if (auto layers = images::read_layers(file); layers.contains(layer)) return std::move(layers.at(layer));
+  return images::read_stored_picture(file);
 }
 
 void require_whole(const ExternalImages& read, const std::vector<std::string>& found) {
@@ -112,7 +117,7 @@ ExternalImages read_external_images(const ExternalFiles& files) {
   for (const Layer& layer : list_layers()) {
     const std::string& file = files.*(layer.file);
     if (!file.empty()) {
-      read.*(layer.image) = to_grey(images::read_stored_picture(file), layer.name, file);
+      read.*(layer.image) = to_grey(read_layer(file, layer.name), layer.name, file);
       names.push_back(file);
     } else if (stored.contains(layer.name)) {
       read.*(layer.image) = to_grey(stored.at(layer.name), layer.name, files.layers + "#" + layer.name);

@@ -58,8 +58,7 @@ std::vector<Frame> make_frames(Motion motion, const scene::Scene& scene, double 
   for (int i = 1; i < count; ++i) {
     Frame& frame = frames[static_cast<std::size_t>(i)];
     if (motion == Motion::kLight)
-      frame.light = scene::turn_light(
-          scene.light, [&](const glm::vec3& v) { return glm::vec3(glm::rotateY(glm::dvec3(v), i * step)); });
+      frame.light = scene::turn_about_vertical(scene.light, i * step);
     else
       frame.camera.position_ws = glm::vec3(glm::dvec3(camera.position_ws) + i * step * right);
   }

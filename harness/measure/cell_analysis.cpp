@@ -156,10 +156,9 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
   note(record, "artefact.leak", record.artefact.leak, metrics::rate_above(image, masks_->leak, limits.leak_above),
        too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
   const bool has_cascades = std::holds_alternative<scene::ViewSlice>(light_.frustum().share);
-  const std::string no_seam = !has_cascades            ? "the light has no cascades"
-                              : record.external        ? "what the renderer makes of each cascade is not known"
-                              : cell.request.user_file ? "a filter of a user's own is drawn by a process of its own"
-                                                       : "";
+  const std::string no_seam = !has_cascades           ? "the light has no cascades"
+                              : cell.cascades.empty() ? "what the renderer makes of each cascade is not known"
+                                                      : "";
   note(record, "artefact.seam", record.artefact.seam, no_seam.empty() ? measure_seam(cell) : std::nullopt,
        no_seam.empty() ? too_few("lie where a cascade takes over") : no_seam);
   const auto touching = std::ranges::count(masks_->contact_gap, 1);
@@ -172,29 +171,19 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
                          touching, metrics::kFewestReceivers));
 }
 
-/// Draws the filter through each cascade alone, for all receivers that fall into its map.
-std::optional<double> CellAnalyser::measure_seam(const MeasuredCell& cell) const {
-  constexpr double kNever = 1e30;  // metres from the camera
-  constexpr scene::ViewSlice kAll{-1.0, -1.0, kNever, kNever}, kNone{kNever, kNever, kNever, kNever};
-  render::ImageTarget target("visibility of a cascade", GL_R32F, options_.width, options_.height);
-  std::vector<images::Image> drawn;
-  for (std::size_t i = 0; i < light_.layers.size(); ++i) {
-    std::vector<scene::LightFrustum> alone = light_.layers;
-    for (std::size_t other = 0; other < alone.size(); ++other) alone[other].share = other == i ? kAll : kNone;
-    render::FilterPasses passes(renderer_.shaders, cell.request, light_.map,
-                                make_filter_light(options_, task_.scene->light, alone, cell.request));
-    images::Image& image =
-        drawn.emplace_back(draw_visibility(passes, light_.map, assets_.gbuffer(*task_.camera), target));
-    for (std::size_t pixel = 0; pixel < image.texels.size(); ++pixel)
-      if (!reaches(alone[i], truth_.receivers.image.points[pixel].position_ws))
-        image.texels[pixel] = std::numeric_limits<float>::quiet_NaN();
-  }
-  std::vector<metrics::LayerImage> layers;
-  for (std::size_t i = 0; i < drawn.size(); ++i) layers.push_back({drawn[i].texels, layers_[i].shares});
+/// Compares what the cascades draw alone, for the receivers that fall into their maps.
+std::optional<double> CellAnalyser::measure_seam(MeasuredCell& cell) const {
   const std::vector<truth::ReceiverPoint>& points = truth_.receivers.image.points;
-  return metrics::measure_seam(layers, options_.width, [&](std::size_t a, std::size_t b) {
-    return points[b].counts && lie_on_one_surface(points[a], points[b]);
-  });
+  std::vector<metrics::LayerImage> layers;
+  for (std::size_t i = 0; i < cell.cascades.size(); ++i) {
+    std::vector<float>& texels = cell.cascades[i].texels;
+    for (std::size_t pixel = 0; pixel < texels.size(); ++pixel)
+      if (!reaches(light_.layers[i], points[pixel].position_ws))
+        texels[pixel] = std::numeric_limits<float>::quiet_NaN();
+    layers.push_back({texels, layers_[i].shares});
+  }
+  return metrics::measure_seam(layers, options_.width,
+                               [&](std::size_t a, std::size_t b) { return lie_on_one_surface(points[a], points[b]); });
 }
 
 ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const {

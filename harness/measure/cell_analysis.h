@@ -60,7 +60,6 @@ class CellAnalyser {
   std::vector<TracedLayer> layers_;
   Surroundings around_;
   std::optional<metrics::ArtefactMasks> masks_;
-  std::vector<std::uint8_t> owners_;                   ///< see measure_seam(); empty where the map has one layer
   std::map<std::string, std::vector<float>> kernels_;  ///< by name
 
   std::vector<float> trace_unsettled(double half_width_texels, const LayerTrace& trace);
@@ -68,7 +67,7 @@ class CellAnalyser {
   std::vector<float> disks_truth(const std::vector<std::vector<float>>& radii_texels);
   ModelLayer read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const;
   void count_artefacts(MeasuredCell& cell) const;
-  std::optional<double> measure_seam(const MeasuredCell& cell) const;
+  std::optional<double> measure_seam(MeasuredCell& cell) const;
   ModelImages evaluate(const MeasuredCell& cell) const;
   void attribute(MeasuredCell& cell);
 };

@@ -52,7 +52,9 @@ class SceneBench {
       stability.warn(result.cells.back(), *filter);
       if (options_.stability) stability.measure(result.cells.back(), *filter);
       if (options_.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filter);
-      if (options_.truth || options_.part.is_worker()) result.cells.back().unbiased = draw_unbiased(*filter);
+      if (!options_.truth && !options_.part.is_worker()) continue;
+      result.cells.back().cascades = draw_cascades(*filter);
+      result.cells.back().unbiased = draw_unbiased(*filter);
     }
     time(result, filters);
     draw_phases(result, filters);
@@ -118,6 +120,25 @@ class SceneBench {
     if (!cell.cost.fetches) cell.record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
     check_drawing(cell, *renderer_.context);
     return cell;
+  }
+
+  /// Draws the filter by each cascade alone, as if the view had no other. Requires that the filter's map was made.
+  std::vector<images::Image> draw_cascades(render::FilterPasses& filter) {
+    if (!std::holds_alternative<scene::ViewSlice>(light_.frustum().share)) return {};
+    constexpr double kNever = 1e30;  // metres from the camera
+    constexpr scene::ViewSlice kAll{-1.0, -1.0, kNever, kNever}, kNone{kNever, kNever, kNever, kNever};
+    const gl::Recorder::Pause pause(renderer_.recorder.get());
+    const render::LightLayers own = filter.light();
+    std::vector<images::Image> drawn;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      render::LightLayers alone = own;
+      for (std::size_t other = 0; other < alone.size(); ++other) alone[other].frustum.share = other == i ? kAll : kNone;
+      filter.retune(renderer_.shaders, filter.request().values, alone);
+      filter.lookup(gbuffer_, light_.map, target_);
+      drawn.push_back(render::read_image(target_.texture(), 1));
+    }
+    filter.retune(renderer_.shaders, filter.request().values, own);
+    return drawn;
   }
 
   /// Draws a filter without bias, in the receivers and in the map; its light and the map are as before afterwards.

@@ -34,6 +34,8 @@ struct MeasuredCell {
   images::Image visibility;               ///< 1 lit .. 0 blocked
   std::vector<images::Image> phases;      ///< the same, with the map's grid moved to each of the other phases
   images::Image unbiased;                 ///< visibility without any depth bias; empty where no truth is wanted
+  std::vector<images::Image> cascades;    ///< visibility by each cascade alone, also beyond its slice of the view;
+                                          ///< none without cascades, or where no truth is wanted
   images::StabilityImages stability;      ///< where its numbers break; empty unless the run asks for it
   images::UncertaintyImages
       uncertainty;     ///< how far rounding and other seeds can move its pixels; empty unless the run asks for it

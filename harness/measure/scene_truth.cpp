@@ -63,9 +63,14 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
 
 images::Image make_error_image(const images::Image& visibility, const SceneTruth& truth) {
   if (!truth.absent.empty() || visibility.empty()) return {};
+  return make_error_image(visibility, truth.area, truth.mask);
+}
+
+images::Image make_error_image(const images::Image& visibility, const images::Image& truth,
+                               const std::vector<std::uint8_t>& mask) {
   images::Image error(visibility.width, visibility.height, 1);
   for (std::size_t i = 0; i < error.texels.size(); ++i)
-    if (truth.mask[i]) error.texels[i] = visibility.texels[i] - truth.area.texels[i];
+    if (mask[i]) error.texels[i] = visibility.texels[i] - truth.texels[i];
   return error;
 }
 

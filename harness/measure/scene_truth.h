@@ -49,4 +49,8 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
 /// Visibility less area truth where pixels count, 0 elsewhere; empty where there is no truth or no visibility.
 images::Image make_error_image(const images::Image& visibility, const SceneTruth& truth);
 
+/// The same to another image of truth, where the mask is 1.
+images::Image make_error_image(const images::Image& visibility, const images::Image& truth,
+                               const std::vector<std::uint8_t>& mask);
+
 }  // namespace shadowbench::measure

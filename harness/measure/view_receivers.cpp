@@ -27,7 +27,7 @@ std::vector<std::uint8_t> ViewReceivers::mask() const {
 bool lie_on_one_surface(const truth::ReceiverPoint& a, const truth::ReceiverPoint& b) {
   constexpr float kOffPlane = 0.05f, kCosine = 0.99f;
   const glm::vec3 way = b.position_ws - a.position_ws;
-  return a.counts && glm::dot(a.normal_ws, b.normal_ws) > kCosine &&
+  return a.counts && b.counts && glm::dot(a.normal_ws, b.normal_ws) > kCosine &&
          std::abs(glm::dot(way, a.normal_ws)) <= kOffPlane * glm::length(way);
 }
 

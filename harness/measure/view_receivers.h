@@ -24,7 +24,7 @@ struct ViewReceivers {
   std::vector<std::uint8_t> mask() const;
 };
 
-/// Whether two receivers close by lie on one surface, which is nearly flat between them.
+/// Whether two receivers close by count, and lie on one surface, which is nearly flat between them.
 bool lie_on_one_surface(const truth::ReceiverPoint& a, const truth::ReceiverPoint& b);
 
 /// The surfaces that a view's pixels show, as a G-buffer holds them: four channels, rows top to bottom.

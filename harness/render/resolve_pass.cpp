@@ -18,11 +18,6 @@ ResolvePass::ResolvePass(ResolveRule rule, int width, int height)
     : rule_(rule),
       targets_{ImageTarget("resolved visibility", GL_RGBA32F, width, height),
                ImageTarget("resolved visibility", GL_RGBA32F, width, height)} {
-  restart();
-}
-
-void ResolvePass::restart() {
-  before_.reset();
   targets_[newest_].clear(glm::vec4(0.0f));
 }
 

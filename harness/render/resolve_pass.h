@@ -33,21 +33,14 @@ class ResolvePass {
   /// Adds a frame. Cost: one pass over the picture.
   void add(ShaderLibrary& shaders, const scene::Scene& scene, const ResolvedFrame& frame);
 
-  /// Forgets all frames.
-  void restart();
-
-  const ResolveRule& rule() const { return rule_; }
-
   /// The resolved visibility, its first channel; of the others none is for reading.
-  const gl::Texture& texture() const { return newest().texture(); }
+  const gl::Texture& texture() const { return targets_[newest_].texture(); }
 
  private:
   ResolveRule rule_;
   std::array<ImageTarget, 2> targets_;
   std::size_t newest_ = 0;
   std::optional<scene::Camera> before_;
-
-  const ImageTarget& newest() const { return targets_[newest_]; }
 };
 
 }  // namespace shadowbench::render

@@ -51,7 +51,7 @@ std::vector<std::vector<Lit>> group_lights(const RunPlan& plan) {
 /// Whether all that was measured and drawn of a light could be read.
 bool read(Lit& lit, const options::RunOptions& options) {
   try {
-    for (const std::string& key : lit.task->keys) lit.cells.push_back(records::read_cell(options.out, key));
+    lit.cells = records::read_cells(options.out, lit.task->keys);
     lit.file = images::read_exr(options.out / exr_name(lit.scene->options, lit.task->task));
     return true;
   } catch (const Error&) {

@@ -56,7 +56,7 @@ struct KeptParts {
   bool picture = true;
   bool error = true;
   bool receivers = true;  ///< with the map: what a filter reads
-  bool unbiased = true;   ///< which a worker hands to the run
+  bool for_run = true;    ///< what a worker hands to the run, without bias and by each cascade
 };
 
 /// Most of it takes much room for few readers. All lights at once are added up from pictures.
@@ -71,7 +71,9 @@ template <class Cell, class Visit>
 void visit_drawn(Cell& cell, const KeptParts& kept, const Visit& visit) {
   visit(cell.label + ".visibility", cell.visibility);
   if (kept.picture) visit(picture_part(cell.label), cell.picture);
-  if (kept.unbiased) visit(cell.label + ".unbiased", cell.unbiased);
+  if (kept.for_run) visit(cell.label + ".unbiased", cell.unbiased);
+  for (std::size_t i = 0; kept.for_run && i < cell.cascades.size(); ++i)
+    visit(fmt::format("{}.cascade.{}", cell.label, i), cell.cascades[i]);
   for (std::size_t p = 0; kept.error && p < cell.error_parts.size(); ++p)
     visit(error_part(cell.label, records::list_error_parts()[p]), cell.error_parts[p]);
 }
@@ -191,6 +193,9 @@ void take_float_images(measure::MeasuredCell& cell, std::vector<images::Part>& p
       image = std::move(part->image);
   };
   cell.error_parts.resize(records::list_error_parts().size());
+  const auto cascades = std::ranges::count_if(
+      parts, [&](const images::Part& part) { return part.name.starts_with(cell.label + ".cascade."); });
+  cell.cascades.resize(static_cast<std::size_t>(cascades));
   visit_drawn(cell, {}, take);
   visit_known(cell, take);
   if (std::ranges::all_of(cell.error_parts, &images::Image::empty)) cell.error_parts.clear();

@@ -107,6 +107,7 @@ std::vector<std::string> list_files(const records::CellRecord& cell) {
         &records::ImagesRecord::texel_density, &records::ImagesRecord::texel_grid, &records::ImagesRecord::all_lights,
         &records::ImagesRecord::stability})
     if (cell.images.*member) files.push_back(*(cell.images.*member));
+  if (cell.accumulation && cell.accumulation->picture) files.push_back(*cell.accumulation->picture);
   return files;
 }
 

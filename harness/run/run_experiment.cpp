@@ -137,13 +137,16 @@ class Experiment {
   }
 
   void finish(const RunPlan& plan, const std::vector<records::CellRecord>& replaced) {
-    cache_.prune(truth::kMaxCacheBytes);
     steps_.begin_report();
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
-    if (options_.part.is_worker()) return;
-    if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, options_, plan, cache_);
-    pages::write_report(options_.out, run_, keep_rows(plan));
+    if (!options_.part.is_worker()) {
+      std::vector<records::CellRecord> cells = records::read_cells(options_.out, keep_rows(plan));
+      if (options_.pictures && options_.truth)
+        draw_supersampled_pictures(renderer_, plan, cache_, measure::padding_texels(options_), cells);
+      pages::write_report(options_.out, run_, cells);
+    }
+    cache_.prune(truth::kMaxCacheBytes);
   }
 
   void count(const measure::SceneMeasurement& measured) {
@@ -203,9 +206,7 @@ class Experiment {
   }
 
   void compare_with(const std::vector<records::CellRecord>& replaced, const std::vector<std::string>& keys) {
-    std::vector<records::CellRecord> cells;
-    for (const std::string& key : keys) cells.push_back(records::read_cell(options_.out, key));
-    run_.repeat = analysis::compare_runs(replaced, cells).record;
+    run_.repeat = analysis::compare_runs(replaced, records::read_cells(options_.out, keys)).record;
     if (run_.repeat.of == 0) return;
     progress_.note(analysis::describe_overlap(run_.repeat) + " those of the run that this one replaces");
   }

@@ -1,6 +1,8 @@
 #include "harness/run/supersampled_pictures.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "base/content_hash.h"
@@ -10,6 +12,7 @@
 #include "harness/render/shade_pass.h"
 #include "harness/run/task_images.h"
 #include "report/files/file_name.h"
+#include "report/images/canvas.h"
 #include "report/images/picture_io.h"
 #include "report/pages/answer.h"
 #include "report/records/json_io.h"
@@ -17,25 +20,16 @@
 namespace shadowbench::run {
 namespace {
 
-constexpr int kMostSamples = 1 << 23;  // of a whole picture: their G-buffer takes 268 MB
-constexpr double kStandardError =
-    0.02;  // of the truth at a sample; that of a pixel's 16 is as small as it was measured
+/// Samples of a whole picture: their G-buffer takes 268 MB.
+constexpr int kMostSamples = 1 << 23;
+/// Of the truth at a sample; that of a pixel's 16 is as small as it was measured.
+constexpr double kStandardError = 0.02;
 
 /// Samples of a pixel along each axis; 1 where more would not fit.
 int choose_side(int width, int height) {
   for (const int side : {4, 2})
     if (std::int64_t{width} * height * side * side <= kMostSamples) return side;
   return 1;
-}
-
-/// Means of squares of samples.
-images::Image reduce(const images::Image& samples, int side) {
-  images::Image picture(samples.width / side, samples.height / side, samples.channels);
-  const float weight = 1.0f / static_cast<float>(side * side);
-  for (int y = 0; y < samples.height; ++y)
-    for (int x = 0; x < samples.width; ++x)
-      for (int c = 0; c < samples.channels; ++c) picture.at(x / side, y / side)[c] += weight * samples.at(x, y)[c];
-  return picture;
 }
 
 /// One view through one map, drawn with many samples.
@@ -47,7 +41,6 @@ class SampledView {
         planned_(planned),
         task_(task),
         assets_(assets),
-        side_(side),
         gbuffer_(side * planned.options.width, side * planned.options.height) {
     assets.draw_view(gbuffer_, *task.camera);
   }
@@ -68,11 +61,12 @@ class SampledView {
   const PlannedScene& planned_;
   const measure::SceneTask& task_;
   measure::SceneAssets& assets_;
-  int side_;
   render::GBuffer gbuffer_;
 
   images::Image shade(const gl::Texture& visibility, const filters::RangeRule& range) {
-    return reduce(render::shade(renderer_.shaders, gbuffer_, visibility, planned_.scene, *task_.camera, range), side_);
+    return images::fit_image(
+        render::shade(renderer_.shaders, gbuffer_, visibility, planned_.scene, *task_.camera, range),
+        {planned_.options.width, planned_.options.height});
   }
 
   /// The light that arrives at the samples. Where a pixel's rays and those of its neighbours all agreed, that is known
@@ -82,7 +76,8 @@ class SampledView {
     measure::ViewReceivers samples = measure::read_view_receivers(gbuffer_, planned_.scene.light);
     std::vector<std::uint8_t> traced(samples.image.points.size());
     const auto pixel_of = [&](std::size_t sample) {
-      const auto width = static_cast<std::size_t>(gbuffer_.width()), side = static_cast<std::size_t>(side_);
+      const auto width = static_cast<std::size_t>(gbuffer_.width());
+      const std::size_t side = width / static_cast<std::size_t>(planned_.options.width);
       return sample / width / side * (width / side) + sample % width / side;
     };
     for (std::size_t i = 0; i < traced.size(); ++i) {
@@ -106,46 +101,57 @@ class SampledView {
   }
 };
 
-/// The cells that this run measured for a task, among those that are shown, with their requests.
-std::vector<std::pair<records::CellRecord, filters::FilterRequest>> list_shown(
-    const PlannedScene& planned, const PlannedTask& task, const std::vector<const records::CellRecord*>& shown) {
-  std::vector<std::pair<records::CellRecord, filters::FilterRequest>> cells;
-  for (const filters::FilterRequest& request : task.task.filters) {
-    if (request.user_file) continue;  // drawn by a process of its own
-    const std::string key = measure::make_record(planned.options, task.task, request).key;
-    for (const records::CellRecord* cell : shown)
-      if (cell->key == key) cells.emplace_back(*cell, request);
+/// What this run measured of the cells that are shown, in the order of the plan's tasks.
+struct ShownCell {
+  const PlannedTask* task = nullptr;
+  const filters::FilterRequest* request = nullptr;
+  records::CellRecord* cell = nullptr;
+};
+
+std::vector<ShownCell> list_shown(const RunPlan& plan, std::vector<records::CellRecord>& cells) {
+  const std::vector<std::string> keys = pages::list_first_pictures(cells);
+  std::vector<ShownCell> shown;
+  for (const PlannedTask& task : plan.tasks) {
+    if (std::ranges::none_of(keys, [&](const auto& key) { return std::ranges::count(task.keys, key) > 0; })) continue;
+    for (const filters::FilterRequest& request : task.task.filters) {
+      const std::string key = measure::make_record(plan.scenes[task.scene].options, task.task, request).key;
+      if (request.user_file || std::ranges::count(keys, key) == 0) continue;  // one is drawn by a process of its own
+      shown.push_back({&task, &request, &*std::ranges::find(cells, key, &records::CellRecord::key)});
+    }
   }
-  return cells;
+  return shown;
 }
 
 }  // namespace
 
-void draw_supersampled_pictures(measure::Renderer& renderer, const options::RunOptions& options, const RunPlan& plan,
-                                truth::TruthCache& cache) {
-  std::vector<records::CellRecord> cells;
-  for (const PlannedTask& task : plan.tasks)
-    for (const std::string& key : task.keys) cells.push_back(records::read_cell(options.out, key));
+void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache,
+                                double pad_texels, std::vector<records::CellRecord>& cells) {
   const gl::Recorder::Pause pause(renderer.recorder.get());
-  const std::vector<const records::CellRecord*> shown = pages::list_first_pictures(cells);
-  for (const PlannedTask& task : plan.tasks) {
-    const PlannedScene& planned = plan.scenes[task.scene];
+  std::optional<measure::SceneAssets> assets;
+  std::optional<SampledView> view;
+  const PlannedTask* before = nullptr;
+  std::string truth;
+  for (const auto& [task, request, cell] : list_shown(plan, cells)) {
+    const PlannedScene& planned = plan.scenes[task->scene];
     const int side = choose_side(planned.options.width, planned.options.height);
-    auto drawn = list_shown(planned, task, shown);
-    if (side == 1 || drawn.empty()) continue;
-    measure::SceneAssets assets(renderer, planned.options, planned.scene, cache, measure::padding_texels(options));
-    SampledView view(renderer, planned, task.task, assets, side);
-    const std::string stem = "images/" + task_stem(planned.options, task.task);
-    const std::string truth = stem + ".truth.supersampled.png";
-    images::write_picture_png(options.out / truth, view.draw_truth());
-    for (auto& [cell, request] : drawn) {
-      const std::string picture = stem + "." + files::make_file_stem(request.label()) + ".supersampled.png";
-      images::write_picture_png(options.out / picture, view.draw(request));
-      cell.images.supersampled = picture;
-      cell.images.truth_supersampled = truth;
-      cell.images.samples = side * side;
-      records::write_cell(options.out, cell);
+    if (side == 1) continue;
+    const std::string stem = "images/" + task_stem(planned.options, task->task);
+    const std::filesystem::path& out = planned.options.out;
+    if (before != task) {
+      view.reset();
+      if (!before || before->scene != task->scene)
+        assets.emplace(renderer, planned.options, planned.scene, cache, pad_texels);
+      view.emplace(renderer, planned, task->task, *assets, side);
+      truth = stem + ".truth.supersampled.png";
+      images::write_picture_png(out / truth, view->draw_truth());
+      before = task;
     }
+    const std::string picture = stem + "." + files::make_file_stem(request->label()) + ".supersampled.png";
+    images::write_picture_png(out / picture, view->draw(*request));
+    cell->images.supersampled = picture;
+    cell->images.truth_supersampled = truth;
+    cell->images.samples = side * side;
+    records::write_cell(out, *cell);
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "harness/measure/renderer.h"
@@ -12,10 +11,10 @@ namespace shadowbench::run {
 
 /// Draws what the run's page shows first once more with 16 samples a pixel, 4 of a large picture, and the truth with as
 /// many: every sample is a receiver of its own, looked up in the map that was measured, and shaded; their mean in
-/// linear light is the pixel. Pictures larger than 2^23 / 4 pixels are left as they are. Notes the paths in the records
-/// of these cells, and writes them; cells that an earlier run measured stay as they are. Cost: 16 lookups and shadings
-/// for each, and about one tracing for each view.
-void draw_supersampled_pictures(measure::Renderer& renderer, const options::RunOptions& options, const RunPlan& plan,
-                                truth::TruthCache& cache);
+/// linear light is the pixel. Pictures larger than 2^23 / 4 pixels are left as they are. `cells` are all of the plan;
+/// those that are drawn get the paths, and are written; those that an earlier run measured stay as they are. Cost: 16
+/// lookups and shadings for each, and about one tracing for each view.
+void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache,
+                                double pad_texels, std::vector<records::CellRecord>& cells);
 
 }  // namespace shadowbench::run

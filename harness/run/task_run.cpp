@@ -159,6 +159,7 @@ class TaskRun {
       begin(options::Work::kAttribution, 1, "attribution of " + cell.label);
       watch = {};
       analyser_->analyse(cell);
+      cell.cascades.clear();
       cell.record.measured_s = watch.read_s();
       measured.attribution_s += *cell.record.measured_s;
     }
@@ -171,6 +172,7 @@ class TaskRun {
     const std::string& absent = assets_.truth(*task_.camera).absent;
     if (absent.empty() && count > 0 && !accumulation_)
       accumulation_.emplace(measure::FrameBench{renderer_, options_, task_, assets_});
+    const std::string picture = task_stem(options_, task_) + ".frames.png";
     images::Grid grid;
     grid.title = task_.scene->name + ": visibility accumulated over frames";
     grid.columns = 6;
@@ -182,11 +184,11 @@ class TaskRun {
       if (!cell.record.accumulation) {
         cell.record.absent["accumulation"] = absent.empty() ? "visibility is finite at no receiver" : absent;
       } else if (options_.grids && options_.pictures && !options_.part.is_worker()) {
-        cell.record.accumulation->picture = task_stem(options_, task_) + ".frames.png";
+        cell.record.accumulation->picture = picture;
         std::ranges::move(accumulation_->show(cell.label, drawn), std::back_inserter(grid.tiles));
       }
     }
-    if (!grid.tiles.empty()) images::write_grid(options_.out / (task_stem(options_, task_) + ".frames.png"), grid);
+    if (!grid.tiles.empty()) images::write_grid(options_.out / picture, grid);
   }
 
   /// Measures how the map's texels are spent on the view.

@@ -77,15 +77,21 @@ std::vector<int> find_layer(const OIIO::ImageSpec& spec, const std::string& laye
   return channels;
 }
 
-/// A part, or the one that has a layer of that name.
-int find_part(OIIO::ImageInput& input, const PictureName& name) {
-  if (!name.part) return 0;
+/// A part, or the channels of it that are a layer.
+struct FoundPart {
+  int part = 0;
+  std::vector<int> channels = {};  ///< empty: all
+};
+
+/// A part, or the layer of that name.
+FoundPart find_part(OIIO::ImageInput& input, const PictureName& name) {
+  if (!name.part) return {};
   const std::vector<std::string> parts = list_parts(input);
   const auto found = std::find(parts.begin(), parts.end(), *name.part);
-  if (found != parts.end()) return static_cast<int>(found - parts.begin());
+  if (found != parts.end()) return {static_cast<int>(found - parts.begin())};
   std::vector<std::string> known = parts;
   for (int part = 0; part < static_cast<int>(parts.size()); ++part) {
-    if (!find_layer(input.spec(part), *name.part).empty()) return part;
+    if (auto channels = find_layer(input.spec(part), *name.part); !channels.empty()) return {part, std::move(channels)};
     for (const std::string& channel : input.spec(part).channelnames)
       if (const std::size_t dot = channel.rfind('.'); dot != channel.npos) known.push_back(channel.substr(0, dot));
   }
@@ -152,11 +158,9 @@ StoredPicture choose_channels(const StoredPicture& whole, const OIIO::ImageSpec&
 StoredPicture read_stored_picture(const std::string& name) {
   const PictureName parsed = parse_name(name);
   const auto input = open_file(parsed.file);
-  const int part = find_part(*input, parsed);
-  const OIIO::ImageSpec spec = input->spec(part);
+  const auto [part, channels] = find_part(*input, parsed);
   StoredPicture whole = read_part(*input, part, name);
-  const bool is_part = !parsed.part || list_parts(*input)[static_cast<std::size_t>(part)] == *parsed.part;
-  return is_part ? whole : choose_channels(whole, spec, find_layer(spec, *parsed.part));
+  return channels.empty() ? whole : choose_channels(whole, input->spec(part), channels);
 }
 
 std::map<std::string, StoredPicture> read_layers(const std::string& file) {

@@ -10,6 +10,7 @@
 
 #include "report/analysis/advice_words.h"
 #include "report/analysis/gains.h"
+#include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/picks.h"
 #include "report/analysis/trade_measures.h"
 #include "report/pages/answer_data.h"
@@ -105,14 +106,16 @@ analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& c
   return request;
 }
 
-std::vector<const records::CellRecord*> list_first_pictures(const std::vector<records::CellRecord>& cells) {
-  std::vector<const records::CellRecord*> shown;
-  if (!can_advise(cells)) return shown;
+std::vector<std::string> list_first_pictures(const std::vector<records::CellRecord>& measured) {
+  const auto withheld = analysis::withhold_mixed_times(measured);
+  const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
+  std::vector<std::string> keys;
+  if (!can_advise(cells)) return keys;
   const analysis::Advice advice = analysis::advise(cells, choose_request(cells));
-  if (advice.keeping.empty()) return shown;
+  if (advice.keeping.empty()) return keys;
   for (const analysis::Pick& pick : analysis::list_picks(advice))
-    if (const auto* cell = find_worst_picture(advice.keeping[pick.index].configuration)) shown.push_back(cell);
-  return shown;
+    if (const auto* cell = find_worst_picture(advice.keeping[pick.index].configuration)) keys.push_back(cell->key);
+  return keys;
 }
 
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "report/analysis/advice.h"
@@ -12,8 +13,9 @@ namespace shadowbench::pages {
 /// everything, whose times say nothing of a GPU, that is the first GPU of which there is an estimate.
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells);
 
-/// The cells whose pictures the page shows first: one of each answer, where it differs most from the truth.
-std::vector<const records::CellRecord*> list_first_pictures(const std::vector<records::CellRecord>& cells);
+/// The keys of the cells whose pictures the page of these cells shows first: one of each answer, where it differs most
+/// from the truth.
+std::vector<std::string> list_first_pictures(const std::vector<records::CellRecord>& measured);
 
 /// Says which filters are fast, balanced and best, over all scenes and on each, at what cost and error and why, with a
 /// picture of one beside the truth. In the browser a script makes the same of limits that the reader moves.

@@ -30,6 +30,7 @@ struct EngineSetting {
 };
 
 constexpr double kSoftKernel = 2.5;  // by which Unity multiplies both of its biases where a light's shadows are soft
+constexpr double kSoftLow = 2.0;     // the radius by which Godot multiplies its bias at its default quality
 
 constexpr EngineSetting kSettings[] = {
     {"three.js bias", "constant", [](const Need& need) { return -need.depth; },
@@ -38,8 +39,9 @@ constexpr EngineSetting kSettings[] = {
     {"Unity URP Depth Bias", "constant", [](const Need& need) { return need.texels / kSoftKernel; },
      "Unity's universal pipeline moves casters away from the light by so many texels, 2.5 times as far for soft "
      "shadows, which stand here (ShadowUtils.GetShadowBias, Shadows.hlsl). It sets glPolygonOffset(2.5, 1) besides."},
-    {"Godot Bias", "constant", [](const Need& need) { return 100.0 * need.depth; },
-     "Godot moves receivers towards the light by a hundredth of it times the depth range (light_storage.cpp, 4.x)."},
+    {"Godot Bias", "constant", [](const Need& need) { return 100.0 * need.depth / kSoftLow; },
+     "Godot moves receivers towards the light by a hundredth of it times the depth range, the light's blur (1 by "
+     "default) and the radius of its quality, 2 at Soft Low, the default (light_storage.cpp, 4.x)."},
     {"Filament constantBias", "constant", [](const Need& need) { return need.metres; },
      "Filament takes metres (LightManager::ShadowOptions)."},
     {"three.js normalBias", "normal-offset", [](const Need& need) { return need.setting * need.texel_m * need.sine; },

@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 
+#include "base/error.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/summary.h"
 #include "report/files/file_name.h"
@@ -23,8 +24,13 @@ using records::CellRecord;
 using records::ResolveRecord;
 
 const ResolveRecord& find_resolve(const AccumulationRecord& record, const std::string& rule, bool jitter) {
-  return *std::ranges::find_if(
-      record.resolves, [&](const ResolveRecord& r) { return r.rule == rule && r.jitter == jitter; });
+  const auto found = std::ranges::find_if(record.resolves,
+                                          [&](const ResolveRecord& r) { return r.rule == rule && r.jitter == jitter; });
+  if (found == record.resolves.end() || found->rmse.empty())
+    fail_input(
+        fmt::format("the accumulation of a cell lacks what frames make of it by the rule '{}' {} jitter: run it again",
+                    rule, jitter ? "with" : "without"));
+  return *found;
 }
 
 std::optional<int> find_taps(const CellRecord& cell) {
@@ -270,7 +276,7 @@ document::Page make_frames_page(const std::vector<CellRecord>& cells, const reco
             group.cells, [](const CellRecord& cell) { return !!cell.accumulation; });
       });
   const auto accumulated = std::ranges::find_if(cells, [](const CellRecord& cell) { return !!cell.accumulation; });
-  const std::size_t frames = accumulated->accumulation->resolves.front().rmse.size();
+  const std::size_t frames = find_resolve(*accumulated->accumulation, "mean", false).rmse.size();
   document::Page page{fmt::format("Frames: what accumulation over {} of them makes of each filter", frames), {}, {}};
   document::Section answer{"answer", "", {document::Paragraph{summarize(groups, frames)}}};
   if (document::Table table = make_equivalence_table(groups); !table.table.rows.empty())

@@ -73,6 +73,13 @@ void write_page(const std::filesystem::path& dir, std::string_view command, docu
   for (const document::Link& sibling : page.siblings) link_back((dir / sibling.path).lexically_normal());
 }
 
+void remove_page(const std::filesystem::path& dir, std::string_view command) {
+  const auto own = std::ranges::find(list_pages(), command, &PageFile::command);
+  assert(own != list_pages().end());
+  std::error_code ignored;
+  for (const std::string_view name : {own->html, own->markdown}) std::filesystem::remove(dir / name, ignored);
+}
+
 std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record) {
   return {{"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
           {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},

@@ -25,6 +25,9 @@ const std::vector<PageFile>& list_pages();
 /// already, and these with it. Throws Error(kOutput).
 void write_page(const std::filesystem::path& dir, std::string_view command, document::Page page);
 
+/// Removes a command's page from a folder, where it is there.
+void remove_page(const std::filesystem::path& dir, std::string_view command);
+
 /// Says what made a record: OpenGL, machine, program, command and time.
 std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record);
 

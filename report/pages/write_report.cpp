@@ -32,8 +32,11 @@ void add_warnings(records::RunRecord& run, const std::vector<records::CellRecord
 }  // namespace
 
 void write_report(const std::filesystem::path& dir, records::RunRecord run, const std::vector<std::string>& keys) {
-  std::vector<records::CellRecord> cells;
-  for (const std::string& key : keys) cells.push_back(records::read_cell(dir, key));
+  write_report(dir, std::move(run), records::read_cells(dir, keys));
+}
+
+void write_report(const std::filesystem::path& dir, records::RunRecord run,
+                  const std::vector<records::CellRecord>& cells) {
   const std::vector<records::GpuTimes> machines = records::list_gpu_times(dir, cells, run.warnings);
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
@@ -48,6 +51,8 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
   }
   if (std::ranges::any_of(cells, [](const records::CellRecord& cell) { return cell.accumulation.has_value(); }))
     write_page(dir, "frames", make_frames_page(cells, run));
+  else
+    remove_page(dir, "frames");  // of another run into this folder
   write_page(dir, "run", make_run_page(run, cells, trade, machines));
   records::write_results(dir, run, cells);
 }

@@ -15,4 +15,8 @@ namespace shadowbench::pages {
 /// Error(kInput) for a cell file, Error(kOutput) for the others. Cost: memory of all records, no pictures.
 void write_report(const std::filesystem::path& dir, records::RunRecord run, const std::vector<std::string>& keys);
 
+/// The same of cells that were read.
+void write_report(const std::filesystem::path& dir, records::RunRecord run,
+                  const std::vector<records::CellRecord>& cells);
+
 }  // namespace shadowbench::pages

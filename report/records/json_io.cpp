@@ -244,6 +244,12 @@ CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
   return cell_from_json(root.value("cell", json()), file.string());
 }
 
+std::vector<CellRecord> read_cells(const std::filesystem::path& dir, const std::vector<std::string>& keys) {
+  std::vector<CellRecord> cells;
+  for (const std::string& key : keys) cells.push_back(read_cell(dir, key));
+  return cells;
+}
+
 void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<CellRecord>& cells) {
   write_text_file(dir / "results.schema.json", results_schema());
   AtomicFile file(dir / "results.json");

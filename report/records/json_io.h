@@ -37,6 +37,9 @@ void write_cell(const std::filesystem::path& dir, const CellRecord& cell);
 /// Throws Error(kInput) where the file is missing, cut off or of another schema version.
 CellRecord read_cell(const std::filesystem::path& dir, const std::string& key);
 
+/// Reads several, in this order. Throws likewise.
+std::vector<CellRecord> read_cells(const std::filesystem::path& dir, const std::vector<std::string>& keys);
+
 /// Writes results.json, with the cells in this order, and results.schema.json beside it.
 /// Throws Error(kOutput). Cost: memory of the JSON of one cell at a time.
 void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<CellRecord>& cells);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/measure/timing/statistics.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/flicker.h"
-#include "report/records/format.h"
 
 namespace shadowbench::measure {
 namespace {
@@ -57,14 +57,13 @@ void AccumulationMeter::trace_jittered() {
 void AccumulationMeter::time_resolves() {
   const render::GBuffer& gbuffer = bench_.assets.gbuffer(*bench_.task.camera);
   const gl::Texture visibility = render::upload_image(truth_.area);
-  for (render::ResolvePass& resolve : make_resolves(bench_)) {
-    std::vector<double> times;
-    for (int i = 0; i < kTimed; ++i)
-      times.push_back(gl::time_ms(bench_.renderer.timer, [&] {
+  for (render::ResolvePass& resolve : make_resolves(bench_, kFirstExponential)) {
+    std::vector<double> times(kTimed);
+    for (double& ms : times)
+      ms = gl::time_ms(bench_.renderer.timer, [&] {
         resolve.add(bench_.renderer.shaders, *bench_.task.scene, {gbuffer, visibility, *bench_.task.camera});
-      }));
-    std::ranges::nth_element(times, times.begin() + kTimed / 2);
-    resolve_ms_.push_back(times[kTimed / 2]);
+      });
+    resolve_ms_.push_back(summarise(times).median);
   }
 }
 
@@ -118,25 +117,22 @@ std::optional<records::AccumulationRecord> AccumulationMeter::measure(const filt
     if (std::ranges::any_of(resolve.rmse, [](double rmse) { return std::isnan(rmse); })) return std::nullopt;
   record.ghosts = measure_ghosts(bench_, ghosts_, drawing, images.stopped);
   record.no_ghosts = ghosts_.absent;
-  record.exponential_ms = resolve_ms_[2];
-  record.clamped_ms = resolve_ms_[3];
+  record.exponential_ms = resolve_ms_.front();
+  record.clamped_ms = resolve_ms_.back();
   return record;
 }
 
 std::vector<images::GridTile> AccumulationMeter::show(const std::string& label, const AccumulatedImages& images) const {
   std::vector<images::GridTile> tiles;
   const auto add = [&](const std::string& caption, const images::Image& visibility, const images::Image& truth) {
-    images::Image error(visibility.width, visibility.height, 1);
-    for (std::size_t i = 0; i < truth_.mask.size(); ++i)
-      if (truth_.mask[i]) error.texels[i] = visibility.texels[i] - truth.texels[i];
-    tiles.push_back({label, caption, {}, visibility, std::move(error), ""});
+    tiles.push_back({label, caption, {}, visibility, make_error_image(visibility, truth, truth_.mask), ""});
   };
   for (std::size_t i = 0; i < images.resolved.size(); ++i)
     add(fmt::format("{}, after {} frames with jitter", list_resolve_rules()[i].name, bench_.options.frames),
         images.resolved[i], jittered_truth_);
   for (std::size_t i = 0; i < images.stopped.size(); ++i)
-    add(list_resolve_rules()[i + 2].name + ", as shadows stop that moved by 4 texels a frame", images.stopped[i],
-        ghosts_.motions[1].end.area);
+    add(list_resolve_rules()[kFirstExponential + i].name + ", as shadows stop that moved by 4 texels a frame",
+        images.stopped[i], std::ranges::find(ghosts_.motions, kShownTexels, &GhostMotion::texels)->end.area);
   return tiles;
 }
 

@@ -20,7 +20,7 @@ class AccumulationMeter {
   explicit AccumulationMeter(const FrameBench& bench);
 
   /// Gives nothing where the filter is finite at no receiver.
-  /// Cost: two lookups a frame; 256 more where the filter is stochastic; and those of measure_ghosts().
+  /// Cost: prefilter and lookup twice a frame; 256 more where the filter is stochastic; and those of measure_ghosts().
   std::optional<records::AccumulationRecord> measure(const filters::FilterRequest& request, AccumulatedImages& images);
 
   /// Shows them, as errors and as visibility.
@@ -32,7 +32,7 @@ class AccumulationMeter {
   const SceneTruth& truth_;
   images::Image jittered_truth_;  ///< the mean over all places of the camera
   GhostBench ghosts_;
-  std::vector<double> resolve_ms_;  ///< of each rule
+  std::vector<double> resolve_ms_;  ///< of each exponential rule
 
   struct Sequence;
   std::vector<records::ResolveRecord> follow(FrameDrawing& drawing, const Sequence& sequence,

@@ -42,7 +42,7 @@ void FrameDrawing::draw(const ShownFrame& frame, std::vector<render::ResolvePass
   render::LightLayers light = make_filter_light(bench_.options, frame.light, frame.map.layers, filter_->request());
   for (render::LightSetup& layer : light) layer.frame = frame.number;
   render::ShaderLibrary& shaders = bench_.renderer.shaders;
-  filter_->retune(shaders, filters::ParamValues(filter_->request().values), light);
+  filter_->retune(shaders, filter_->request().values, light);
   filter_->prefilter(frame.map.map);
   filter_->lookup(frame.gbuffer, frame.map.map, target_);
   for (render::ResolvePass& resolve : resolves)
@@ -51,7 +51,8 @@ void FrameDrawing::draw(const ShownFrame& frame, std::vector<render::ResolvePass
 
 images::Image FrameDrawing::average(ShownFrame frame, int count) {
   std::vector<render::ResolvePass> mean;
-  mean.emplace_back(list_resolve_rules()[1].rule, bench_.options.width, bench_.options.height);
+  mean.emplace_back(render::ResolveRule{.least_weight = 0.0f, .clamps = false}, bench_.options.width,
+                    bench_.options.height);
   for (int i = 0; i < count; ++i, ++frame.number) draw(frame, mean);
   return render::read_image(mean.front().texture(), 1);
 }

@@ -26,6 +26,7 @@ struct NamedRule {
 
 /// Lists them: the newest frame alone, the plain mean, and the exponential one without clamping and with it.
 const std::vector<NamedRule>& list_resolve_rules();
+inline constexpr std::size_t kFirstExponential = 2;  ///< the others come before
 
 /// What one task is drawn with, frame by frame.
 struct FrameBench {

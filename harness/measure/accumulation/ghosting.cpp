@@ -4,20 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtx/rotate_vector.hpp>
 
 namespace shadowbench::measure {
 namespace {
 
 constexpr int kAtRest = 16;          // frames before the motion, and those of what the filter itself sees at rest
 constexpr double kTrial_rad = 1e-3;  // small beside what a shadow's caster is seen under
-constexpr double kShownTexels = 4.0;
-constexpr std::size_t kFirstRule = 2;  // the exponential ones
-
-scene::Light turn(const scene::Light& light, double angle_rad) {
-  return scene::turn_light(
-      light, [&](const glm::vec3& v) { return glm::vec3(glm::rotateY(glm::dvec3(v), angle_rad)); });
-}
+constexpr int kMovingFrames = 8, kMostAtRest = 64;
 
 /// How far the shadow at a receiver moves in the trial, in texels; nothing where there is no shadow.
 std::optional<double> find_move(const FrameBench& bench, const LightMap& map, const images::Image& depths,
@@ -31,7 +24,8 @@ std::optional<double> find_move(const FrameBench& bench, const LightMap& map, co
   const double texel_m = frustum.texel_size_at(receiver);
   if (above_m < texel_m) return std::nullopt;
   const glm::vec3 caster(receiver + above_m * frustum.to_light(receiver));
-  const glm::dvec3 move(scene::to_light(turn(light, kTrial_rad), caster) - scene::to_light(light, caster));
+  const glm::dvec3 move(scene::to_light(scene::turn_about_vertical(light, kTrial_rad), caster) -
+                        scene::to_light(light, caster));
   return glm::length(move) * above_m / texel_m;
 }
 
@@ -40,7 +34,7 @@ GhostMotion make_motion(const FrameBench& bench, double texels, double turn_per_
   GhostMotion motion;
   motion.texels = texels;
   for (int i = 0; i <= kMovingFrames; ++i)
-    motion.lights.push_back(turn(bench.task.scene->light, i * texels * turn_per_texel));
+    motion.lights.push_back(scene::turn_about_vertical(bench.task.scene->light, i * texels * turn_per_texel));
   const scene::Light& last = motion.lights.back();
   motion.end =
       trace_scene(bench.assets.tracer(), last, read_view_receivers(bench.assets.gbuffer(*bench.task.camera), last),
@@ -77,9 +71,9 @@ class GhostHunt {
       : bench_(bench),
         motion_(motion),
         drawing_(drawing),
-        resolves_(make_resolves(bench, kFirstRule)),
+        resolves_(make_resolves(bench, kFirstExponential)),
         pixels_(list_pixels(motion, drawing.average(show(kMovingFrames), kAtRest))) {
-    for (std::size_t i = kFirstRule; i < list_resolve_rules().size(); ++i)
+    for (std::size_t i = kFirstExponential; i < list_resolve_rules().size(); ++i)
       ghosts_.push_back(
           {motion.texels, list_resolve_rules()[i].name, static_cast<std::int64_t>(pixels_.size()), {}, {}});
   }
@@ -89,7 +83,7 @@ class GhostHunt {
     for (int i = 1; i <= kMovingFrames; ++i) draw(i);
     for (render::ResolvePass& resolve : resolves_) at_stop_.push_back(render::read_image(resolve.texture(), 1));
     if (pixels_.empty()) return ghosts_;
-    for (int rest = 0; rest <= kMostAtRest && !look(rest); ++rest) draw(kMovingFrames);
+    for (int rest = 0; !look(rest) && rest < kMostAtRest; ++rest) draw(kMovingFrames);
     return ghosts_;
   }
 
@@ -129,8 +123,8 @@ class GhostHunt {
   }
 };
 
-}  // namespace
-
+/// The angle in radians by which the light turns about the vertical while shadows move by a texel: at the median of the
+/// pixels that lie in shadow, whose casters' distances the map holds. Nothing where there is no shadow, or none moves.
 std::optional<double> find_turn_per_texel(const FrameBench& bench) {
   const SceneTruth& truth = bench.assets.truth(*bench.task.camera);
   const LightMap& map = bench.assets.light_map(*bench.task.camera, bench.task.map_size);
@@ -147,6 +141,8 @@ std::optional<double> find_turn_per_texel(const FrameBench& bench) {
   constexpr double kLeast = 1e-6;
   return *middle < kLeast ? std::nullopt : std::optional(kTrial_rad / *middle);
 }
+
+}  // namespace
 
 GhostBench make_ghost_bench(const FrameBench& bench) {
   GhostBench ghosts;

@@ -5,7 +5,7 @@
 namespace shadowbench::measure {
 
 /// Frames that a shadow moves for, and the most that it is then followed at rest.
-inline constexpr int kMovingFrames = 8, kMostAtRest = 64;
+inline constexpr double kShownTexels = 4.0;  ///< of the motion whose pictures are kept
 
 /// A turn of a task's light about the vertical, frame by frame.
 struct GhostMotion {
@@ -24,10 +24,6 @@ struct GhostBench {
 /// Makes it. Nothing moves where the light stands overhead, where the map has several layers, or in a view without
 /// shadows. Cost: three truths.
 GhostBench make_ghost_bench(const FrameBench& bench);
-
-/// The angle in radians by which the light turns about the vertical while shadows move by a texel: at the median of the
-/// pixels that lie in shadow, whose casters' distances the map holds. Nothing where there is no shadow, or none moves.
-std::optional<double> find_turn_per_texel(const FrameBench& bench);
 
 /// Measures how long a filter's accumulated visibility lags behind, by the exponential rules. The pixels that count are
 /// those behind shadows' edges: revealed ones which the filter itself, accumulated at rest, sees within kGhostLimit of

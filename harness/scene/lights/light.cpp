@@ -105,6 +105,11 @@ Light turn_light(Light light, const LightTurn& turn) {
   return light;
 }
 
+Light turn_about_vertical(const Light& light, double angle_rad) {
+  return turn_light(
+      light, [&](const glm::vec3& v) { return glm::rotateY(glm::dvec3(v), angle_rad); });
+}
+
 Light place_in_sky(Light light, const SkyAngles& place) {
   const glm::vec3 direction(light_direction(place.azimuth_deg, place.elevation_deg));
   return turn_light(std::move(light), [&](const glm::vec3&) { return direction; });
@@ -113,10 +118,7 @@ Light place_in_sky(Light light, const SkyAngles& place) {
 std::vector<Light> make_light_ring(const Light& first, int count) {
   assert(count >= 1);
   std::vector<Light> lights(1, first);
-  for (int i = 1; i < count; ++i) {
-    const double turn_rad = glm::radians(360.0 * i / count);
-    lights.push_back(turn_light(first, [&](const glm::vec3& v) { return glm::rotateY(glm::dvec3(v), turn_rad); }));
-  }
+  for (int i = 1; i < count; ++i) lights.push_back(turn_about_vertical(first, glm::radians(360.0 * i / count)));
   return lights;
 }
 

@@ -60,6 +60,9 @@ truth::AreaLight make_area_light(const Light& light);
 /// The light with its direction mapped by `turn`; one in the scene goes round its target, or the world's origin.
 Light turn_light(Light light, const LightTurn& turn);
 
+/// Turns a light about the vertical.
+Light turn_about_vertical(const Light& light, double angle_rad);
+
 /// The light moved to a place in the sky; one in the scene as seen from what it goes round.
 Light place_in_sky(Light light, const SkyAngles& place);
 

@@ -57,6 +57,14 @@ TEST_F(LayersRun, UsersFilters_GetWhatBuiltInOnesGet) {
   }
 }
 
+/// Its process names what it draws by its parameters, too.
+TEST_F(LayersRun, UsersFilter_WithParametersInAnyOrder_IsScored) {
+  write("mine.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/poisson.glsl"));
+  const json cells =
+      run_cells("--scene cubes --filters mine:taps=4,bail=agree --filter-file " + (folder() / "mine.glsl").string());
+  EXPECT_TRUE(cells[0]["error"]["rmse"].is_number()) << cells[0]["absent"];
+}
+
 TEST_F(LayersRun, FitsAreAnAxis) {
   const json cells = run_cells("--grids --scene avenue --filters none --fit tight --fit view --fit cascades");
   std::set<std::string> fits, keys;

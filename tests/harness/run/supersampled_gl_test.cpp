@@ -9,15 +9,10 @@
 #include "harness/run/run_experiment.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
+#include "tests/harness/run/silent.h"
 
 namespace shadowbench::test {
 namespace {
-
-class NoProgress final : public options::Progress {
-  void begin(int, int) override {}
-  void show(int, const std::string&, const std::optional<options::WorkAhead>&) override {}
-  void note(const std::string&) override {}
-};
 
 struct MeasuredRun {
   std::filesystem::path folder;
@@ -43,7 +38,7 @@ MeasuredRun measure_sized(const std::filesystem::path& folder, const images::Siz
   options.map_sizes = {256};
   options.out = folder;
   options.command = {"test"};
-  NoProgress progress;
+  Silent progress;
   run::run_experiment(options, progress);
   return {folder, records::read_results(folder / "results.json").cells};
 }

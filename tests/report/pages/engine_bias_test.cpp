@@ -31,7 +31,7 @@ const std::map<std::string, std::function<glm::dvec3(double)>> kEngines = {
     {"Unity URP Depth Bias", [](double bias) { return kToLight * (2.5 * kTexel * bias); }},
     {"Unity URP Normal Bias",
      [](double bias) { return kNormal * (2.5 * kTexel * bias * (1.0 - glm::dot(kToLight, kNormal))); }},
-    {"Godot Bias", [](double bias) { return kToLight * (bias / 100.0 * kRange); }},
+    {"Godot Bias", [](double bias) { return kToLight * (bias / 100.0 * kRange * 2.0); }},
     {"Godot Normal Bias",
      [](double bias) {
        const glm::dvec3 way = kNormal * ((1.0 - glm::dot(kToLight, kNormal)) * bias * kTexel);

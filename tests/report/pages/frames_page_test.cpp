@@ -8,6 +8,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
+#include "base/temporary_files.h"
+#include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::pages {
@@ -75,6 +78,22 @@ TEST(FramesPage, RecordsAreReadAgain) {
   EXPECT_EQ(records::to_json(records::cell_from_json(json, "here")), json);
   cell.accumulation.reset();
   EXPECT_FALSE(records::to_json(cell).contains("accumulation"));
+}
+
+TEST(FramesPage, RecordsThatLackARule_AreBadInput) {
+  records::CellRecord cell = make_cells().front();
+  cell.accumulation->resolves.clear();
+  EXPECT_THROW(make_frames_page({cell}, {}), Error);
+}
+
+TEST(FramesPage, OfAnotherRunIntoTheFolder_IsRemoved) {
+  const ScratchFolder folder(make_temporary_folder_path(std::filesystem::temp_directory_path() / "frames", "test"));
+  records::CellRecord cell = make_accumulated(4, "blue-noise", 0.25);
+  write_report(folder.path(), {}, std::vector{cell});
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "frames.html"));
+  cell.accumulation.reset();
+  write_report(folder.path(), {}, std::vector{cell});
+  for (const char* name : {"frames.html", "frames.md"}) EXPECT_FALSE(std::filesystem::exists(folder.path() / name));
 }
 
 }  // namespace

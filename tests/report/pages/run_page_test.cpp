@@ -319,7 +319,7 @@ TEST(SummaryMd, HasATableOfCostsAndOneOfErrors) {
 
 TEST(Report, OfNoCell_IsWritten) {
   const TemporaryFolder folder("report_empty");
-  write_report(folder.path(), make_run(), {});
+  write_report(folder.path(), make_run(), std::vector<std::string>{});
   for (const char* name : {"results.json", "results.schema.json", "timings.csv", "summary.md", "index.html"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
   expect_balanced(read_text(folder.path() / "index.html"));

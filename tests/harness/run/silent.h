@@ -1,0 +1,14 @@
+#pragma once
+
+#include "harness/options/progress.h"
+
+namespace shadowbench::test {
+
+/// Says nothing of a run's progress.
+class Silent final : public options::Progress {
+  void begin(int, int) override {}
+  void show(int, const std::string&, const std::optional<options::WorkAhead>&) override {}
+  void note(const std::string&) override {}
+};
+
+}  // namespace shadowbench::test
