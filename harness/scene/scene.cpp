@@ -8,6 +8,7 @@ truth::CutOut make_cut_out(const Scene& scene, const Mesh& mesh, const Material&
   for (const Vertex& vertex : mesh.vertices) cut_out.uvs.push_back(vertex.uv);
   cut_out.base_alpha = material.base_color.a;
   cut_out.cutoff = material.alpha_cutoff;
+  cut_out.dims = material.alpha_mode == AlphaMode::kBlend;
   if (material.base_color_texture < 0) return cut_out;
   const Texture& texture = scene.textures[static_cast<std::size_t>(material.base_color_texture)];
   cut_out.width = texture.width;
@@ -60,7 +61,7 @@ std::vector<truth::OccluderMesh> list_occluders(const Scene& scene, bool casts_s
     for (const Vertex& vertex : mesh.vertices) surface.positions.push_back(vertex.position_ws);
     surface.indices = mesh.indices;
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-    if (material.alpha_mode == AlphaMode::kMask) surface.cut_out = make_cut_out(scene, mesh, material);
+    if (material.alpha_mode != AlphaMode::kOpaque) surface.cut_out = make_cut_out(scene, mesh, material);
   }
   return meshes;
 }

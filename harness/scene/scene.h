@@ -26,7 +26,11 @@ struct Texture {
   std::vector<std::uint8_t> rgba;
 };
 
-enum class AlphaMode { kOpaque, kMask };
+enum class AlphaMode {
+  kOpaque,
+  kMask,   ///< holes where alpha is below the cutoff
+  kBlend,  ///< alpha is the share of the light that is held back; a camera sees it opaque
+};
 
 struct Material {
   std::string name;
@@ -92,8 +96,8 @@ struct Scene {
 /// A copy of a scene for each of its lights, which alone shines there; called SCENE.LIGHT where there are several.
 std::vector<Scene> separate_lights(const Scene& scene);
 
-/// What rays can hit of a scene: every mesh that casts a shadow, with the holes of its material; or, without
-/// `casts_shadow`, the other meshes.
+/// What rays can hit of a scene: every mesh that casts a shadow, with the holes or the transparency of its material;
+/// or, without `casts_shadow`, the other meshes.
 std::vector<truth::OccluderMesh> list_occluders(const Scene& scene, bool casts_shadow = true);
 
 }  // namespace shadowbench::scene

@@ -24,6 +24,7 @@ constexpr Range kCells{1, 512};
 constexpr Range kSegments{3, 1024};
 constexpr Range kCount{1, 10000};
 constexpr Range kDegrees{-36000, 36000};
+constexpr Range kOpacity{0.0, 1.0};
 
 /// One shape: the keys it reads beside the common ones, and how it is made.
 struct Shape {
@@ -172,10 +173,11 @@ class SceneBuilder {
   }
 
   void add_material(const TomlTable& table) {
-    table.require_known_keys({"name", "color"});
+    table.require_known_keys({"name", "color", "opacity"});
     Material material;
     material.name = table.string("name");
-    material.base_color = glm::vec4(glm::vec3(table.vec3("color", kColor)), 1.0f);
+    material.base_color = glm::vec4(table.vec3("color", kColor), table.number("opacity", kOpacity, 1.0));
+    if (material.base_color.a < 1.0f) material.alpha_mode = AlphaMode::kBlend;
     take_name(material.name, "materials", table);
     scene_.materials.push_back(material);
     named_materials_.push_back(material.name);

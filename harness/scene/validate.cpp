@@ -128,6 +128,12 @@ void check_material(const Material& material, const Scene& scene, const std::str
                            scene.textures.size()),
                where);
   }
+  const float alpha = material.base_color.a;
+  if (material.alpha_mode == AlphaMode::kBlend && !(alpha >= 0.0f && alpha <= 1.0f)) {
+    fail_input(
+        fmt::format("material '{}' blends with an alpha of {}; it must lie between 0 and 1", material.name, alpha),
+        where);
+  }
   const bool finite = is_finite(glm::vec3(material.base_color)) && std::isfinite(material.base_color.a) &&
                       std::isfinite(material.alpha_cutoff);
   if (!finite) fail_input(fmt::format("material '{}' has a colour that is not finite", material.name), where);

@@ -31,7 +31,11 @@ constexpr int kTileSide = 16;
 /// What the first points of all pixels take of a whole image's time, roughly.
 constexpr double kFirstPart = 0.3;
 
-using Counts = std::array<int, kScrambles>;
+/// Transmittances that differ by less differ by the order of their factors.
+constexpr float kSameTransmittance = 1e-6f;
+
+/// Of transmittances, each of 24 bits: exact.
+using Sums = std::array<double, kScrambles>;
 
 /// Writes base + x * along_x + y * along_y, lane by lane.
 void write_lanes(RayPacket::Lanes& to, float base, float along_x, float along_y, const SampleSets::Lanes& offsets) {
@@ -58,7 +62,7 @@ struct Arrival {
   std::array<float, kScrambles> arrived{};
 };
 
-/// Traces a fan's points, one packet of all scrambles for each, and counts the rays that reach the light.
+/// Traces a fan's points, one packet of all scrambles for each, and adds up what arrives from the light.
 class FanTracer {
  public:
   explicit FanTracer(const RayFan& fan) : fan_(fan) {
@@ -80,17 +84,31 @@ class FanTracer {
     packet_.reach.fill(fan_.reach);
     if (settings.on_packet) settings.on_packet(packet_);
     occluders.find_blocked(packet_);
-    for (std::size_t s = 0; s < lit_.size(); ++s) lit_[s] -= packet_.reach[s] < 0.0f ? 0 : packet_.active[s];
+    for (std::size_t s = 0; s < lit_.size(); ++s) {
+      const float arrives = packet_.active[s] != 0 ? packet_.transmittance[s] : 0.0f;
+      lit_[s] += static_cast<double>(arrives);
+      least_[s] = std::min(least_[s], arrives);
+      most_[s] = std::max(most_[s], arrives);
+    }
     if (fan_.weighs) weigh();
   }
 
-  const Counts& lit() const { return lit_; }
+  const Sums& lit() const { return lit_; }
+
+  /// By how much the rays differ, 0 .. 1; 0 where all agree.
+  double spread() const {
+    const float spread = *std::ranges::max_element(most_) - *std::ranges::min_element(least_);
+    return spread > kSameTransmittance ? static_cast<double>(spread) : 0.0;
+  }
+
   const Arrival& arrival() const { return arrival_; }
 
  private:
   const RayFan& fan_;
   RayPacket packet_;
-  Counts lit_{};
+  Sums lit_{};
+  RayPacket::Lanes least_ = RayPacket::every(1.0f);
+  RayPacket::Lanes most_{};
   Arrival arrival_;
 
   static void write(const SampleSets::Lanes& offsets, std::array<RayPacket::Lanes, 3>& to, const glm::vec3& base,
@@ -118,7 +136,7 @@ class FanTracer {
       const float weight = is_flat ? cosine * std::abs(glm::dot(way, fan_.light_axis)) / (squared * squared)
                                    : cosine / std::sqrt(squared);
       arrival_.sent[i] += weight;
-      arrival_.arrived[i] += packet_.reach[i] < 0.0f ? 0.0f : weight;
+      arrival_.arrived[i] += packet_.reach[i] < 0.0f ? 0.0f : packet_.transmittance[i] * weight;
     }
   }
 };
@@ -221,7 +239,8 @@ class AdaptiveTracer {
     });
   }
 
-  /// Whether a pixel and those of its neighbours that count all see the whole light, or all see nothing of it.
+  /// Whether a pixel and those of its neighbours that count all see the whole light, or all see nothing of it. What is
+  /// dimmed is traced on, since a mean does not say whether all rays agree.
   bool is_settled(const std::vector<float>& first, int i) const {
     const int x = i % receivers_.width, y = i / receivers_.width;
     const float own = first[static_cast<std::size_t>(i)];
@@ -247,7 +266,7 @@ class AdaptiveTracer {
     for (int points = least / 2, traced = 0;; points *= 2) {
       if (settings_.stop.stop_requested()) throw TracingStopped();
       for (; traced < points; ++traced) tracer.trace(occluders_, offsets_of(fan, set, traced), settings_);
-      const double error = conclude(pixel, tracer.lit(), points);
+      const double error = conclude(pixel, tracer, points);
       if (fan.weighs) conclude(pixel, tracer.arrival());
       if (points == most || (points >= least && foretold <= settings_.standard_error)) return;
       foretold = kGainOfDoubling * error;
@@ -266,18 +285,18 @@ class AdaptiveTracer {
   }
 
   /// Stores mean and standard error over the scrambles, and returns the standard error.
-  double conclude(std::size_t pixel, const Counts& lit, int points) {
-    const int total = std::accumulate(lit.begin(), lit.end(), 0);
-    const double mean = static_cast<double>(total) / points / kScrambles;
+  double conclude(std::size_t pixel, const FanTracer& tracer, int points) {
+    const Sums& lit = tracer.lit();
+    const double mean = std::accumulate(lit.begin(), lit.end(), 0.0) / points / kScrambles;
     double squares = 0.0;
-    for (const int count : lit) {
-      const double deviation = static_cast<double>(count) / points - mean;
+    for (const double sum : lit) {
+      const double deviation = sum / points - mean;
       squares += deviation * deviation;
     }
     // Stratified scrambles often have the same sum although none is exact: a deviation of one point is assumed on top.
-    const double presumed = 1.0 / points;
+    const double spread = tracer.spread(), presumed = (spread > 0.0 ? spread : 1.0) / points;
     const double error = std::sqrt((squares + presumed * presumed) / (kScrambles - 1) / kScrambles);
-    const bool unanimous = total == 0 || total == kScrambles * points;
+    const bool unanimous = spread == 0.0;
     truth_.visibility[pixel] = static_cast<float>(mean);
     truth_.rays[pixel] = static_cast<std::uint32_t>(kScrambles * points);
     truth_.unanimous[pixel] = unanimous ? 1 : 0;

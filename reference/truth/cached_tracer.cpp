@@ -23,7 +23,7 @@ std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
     if (!mesh.cut_out) continue;
     const CutOut& holes = *mesh.cut_out;
     hash.add_values(std::span<const glm::vec2>(holes.uvs));
-    hash.add(fmt::format("{} {} {} {}", holes.width, holes.height, holes.base_alpha, holes.cutoff));
+    hash.add(fmt::format("{} {} {} {} {}", holes.width, holes.height, holes.base_alpha, holes.cutoff, holes.dims));
     hash.add_values(std::span<const std::uint8_t>(holes.alpha));
   }
   return hash.name();

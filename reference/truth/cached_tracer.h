@@ -14,7 +14,7 @@ namespace shadowbench::truth {
 /// What rays find for one view of one light; it does not depend on any shadow map.
 struct ViewRays {
   TracedVisibility area;                 ///< the fraction of the light that is seen
-  std::vector<float> hard;               ///< whether the light's centre is seen
+  std::vector<float> hard;               ///< how much of the light's centre is seen
   std::vector<float> first_blockers_ws;  ///< see trace_first_blockers()
 };
 

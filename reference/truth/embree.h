@@ -9,11 +9,20 @@
 
 namespace shadowbench::truth {
 
+class Dimming;
+
 #if SHADOWBENCH_EMBREE_MAJOR == 3
-/// Sets `tfar` of every active ray that something blocks to minus infinity.
-inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays) {
-  RTCIntersectContext context;
+/// What filter functions get beside the rays.
+struct OcclusionContext : RTCIntersectContext {
+  Dimming* dimming;
+};
+
+/// Sets `tfar` of every active ray that something blocks to minus infinity. Filter functions find `dimming` in their
+/// context.
+inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays, Dimming* dimming = nullptr) {
+  OcclusionContext context;
   rtcInitIntersectContext(&context);
+  context.dimming = dimming;
   rtcOccluded16(active, scene, &context, rays);
 }
 
@@ -24,7 +33,19 @@ inline void intersect_packet(const int* active, RTCScene scene, RTCRayHit16* ray
   rtcIntersect16(active, scene, &context, rays);
 }
 #else
-inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays) { rtcOccluded16(active, scene, rays); }
+struct OcclusionContext : RTCRayQueryContext {
+  Dimming* dimming;
+};
+
+inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays, Dimming* dimming = nullptr) {
+  OcclusionContext context;
+  rtcInitRayQueryContext(&context);
+  context.dimming = dimming;
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  rtcOccluded16(active, scene, rays, &arguments);
+}
 inline void intersect_packet(const int* active, RTCScene scene, RTCRayHit16* rays) {
   rtcIntersect16(active, scene, rays);
 }

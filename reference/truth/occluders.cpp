@@ -10,6 +10,38 @@
 #include "reference/truth/embree.h"
 
 namespace shadowbench::truth {
+
+/// What surfaces that dim have left of each ray of a packet. Embree may report one hit several times, and a ray through
+/// an edge hits both triangles there: crossings of one mesh, to the same side, within `same_m` of each other are one.
+class Dimming {
+ public:
+  Dimming(RayPacket::Lanes& transmittance, float same_m) : transmittance_(transmittance), same_m_(same_m) {}
+
+  /// Dims the ray of a lane, and returns what is left. `surface` tells meshes and their sides apart. The latest 16
+  /// crossings of a ray are remembered.
+  float cross(std::size_t lane, std::uint32_t surface, float distance_m, float alpha) {
+    std::array<Crossing, kRemembered>& known = known_[lane];
+    const std::uint32_t last = std::min(counts_[lane], kRemembered);
+    const auto is_same = [&](const Crossing& each) {
+      return each.surface == surface && std::abs(each.distance_m - distance_m) <= same_m_;
+    };
+    if (std::any_of(known.begin(), known.begin() + last, is_same)) return transmittance_[lane];
+    known[counts_[lane]++ % kRemembered] = {surface, distance_m};
+    return transmittance_[lane] *= 1.0f - alpha;
+  }
+
+ private:
+  static constexpr std::uint32_t kRemembered = 16;
+  struct Crossing {
+    std::uint32_t surface;
+    float distance_m;
+  };
+  RayPacket::Lanes& transmittance_;
+  float same_m_;
+  RayPacket::Words counts_{};
+  std::array<std::array<Crossing, kRemembered>, RayPacket::kSize> known_;
+};
+
 namespace {
 
 int wrap(int i, int size) { return ((i % size) + size) % size; }
@@ -56,6 +88,26 @@ void forgive_holes(const RTCFilterFunctionNArguments* arguments) {
     const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
     const float u = RTCHitN_u(arguments->hit, arguments->N, i), v = RTCHitN_v(arguments->hit, arguments->N, i);
     if (test.is_hole(triangle, u, v)) arguments->valid[i] = 0;
+  }
+}
+
+/// Rejects hits, but what they leave of the ray is kept, until that is nothing. As forgive_holes(); the context must be
+/// an OcclusionContext.
+void dim_rays(const RTCFilterFunctionNArguments* arguments) {
+  const auto& test = *static_cast<const HoleTest*>(arguments->geometryUserPtr);
+  Dimming& dimming = *static_cast<const OcclusionContext*>(arguments->context)->dimming;
+  RTCRayN* rays = arguments->ray;
+  RTCHitN* hits = arguments->hit;
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const glm::vec3 way(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i));
+    const glm::vec3 normal(RTCHitN_Ng_x(hits, n, i), RTCHitN_Ng_y(hits, n, i), RTCHitN_Ng_z(hits, n, i));
+    const unsigned surface = 2 * RTCHitN_geomID(hits, n, i) + (glm::dot(way, normal) > 0.0f ? 1 : 0);
+    const float alpha = test.find_alpha(RTCHitN_primID(hits, n, i), RTCHitN_u(hits, n, i), RTCHitN_v(hits, n, i));
+    const float left =
+        dimming.cross(RTCRayN_id(rays, n, i), surface, RTCRayN_tfar(rays, n, i) * glm::length(way), alpha);
+    if (left > 0.0f) arguments->valid[i] = 0;
   }
 }
 
@@ -110,8 +162,9 @@ struct Occluders::Impl {
     if (mesh.cut_out) {
       hole_tests.push_back(std::make_unique<HoleTest>(HoleTest{*mesh.cut_out, std::move(indices)}));
       rtcSetGeometryUserData(geometry, hole_tests.back().get());
-      rtcSetGeometryOccludedFilterFunction(geometry, &forgive_holes);
-      rtcSetGeometryIntersectFilterFunction(geometry, &forgive_holes);
+      const bool dims = mesh.cut_out->dims;  // such a surface is met where its first hit is
+      rtcSetGeometryOccludedFilterFunction(geometry, dims ? &dim_rays : &forgive_holes);
+      if (!dims) rtcSetGeometryIntersectFilterFunction(geometry, &forgive_holes);
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
@@ -134,7 +187,12 @@ Occluders::Occluders(Occluders&&) noexcept = default;
 Occluders& Occluders::operator=(Occluders&&) noexcept = default;
 
 void Occluders::find_blocked(RayPacket& packet) const {
-  occlude_packet(packet.active.data(), impl_->scene, reinterpret_cast<RTCRay16*>(&packet));
+  const float largest = std::max({impl_->largest.x, impl_->largest.y, impl_->largest.z});
+  packet.transmittance.fill(1.0f);
+  Dimming dimming(packet.transmittance, origin_offset(largest, largest));
+  occlude_packet(packet.active.data(), impl_->scene, reinterpret_cast<RTCRay16*>(&packet), &dimming);
+  for (std::size_t i = 0; i < packet.transmittance.size(); ++i)
+    packet.transmittance[i] = packet.reach[i] < 0.0f ? 0.0f : packet.transmittance[i];
 }
 
 PacketHits Occluders::find_nearest(const RayPacket& packet) const {
@@ -177,11 +235,15 @@ Box Occluders::bounds() const {
   return {{bounds.lower_x, bounds.lower_y, bounds.lower_z}, {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
 }
 
-bool HoleTest::is_hole(std::uint32_t triangle, float u, float v) const {
+float HoleTest::find_alpha(std::uint32_t triangle, float u, float v) const {
   const std::uint32_t* corner = &indices[3 * static_cast<std::size_t>(triangle)];
   const glm::vec2 uv =
       (1.0f - u - v) * cut_out.uvs[corner[0]] + u * cut_out.uvs[corner[1]] + v * cut_out.uvs[corner[2]];
-  return cut_out.base_alpha * read_alpha(cut_out, uv) < cut_out.cutoff;
+  return cut_out.base_alpha * read_alpha(cut_out, uv);
+}
+
+bool HoleTest::is_hole(std::uint32_t triangle, float u, float v) const {
+  return find_alpha(triangle, u, v) < cut_out.cutoff;
 }
 
 }  // namespace shadowbench::truth

@@ -24,14 +24,21 @@ struct alignas(64) RayPacket {
   Lanes time{};
   Lanes reach{};  ///< in units of a direction's length; infinity for lights at infinity
   Words mask = every(0xffffffffu);
-  Words id{};
+  Words id = number_lanes();
   Words flags{};
   alignas(64) std::array<std::int32_t, kSize> active{};  ///< -1: traced, 0: not
+  Lanes transmittance{};  ///< set by Occluders::find_blocked(): the share of the light that a traced ray lets arrive
 
   template <class T>
   static constexpr std::array<T, kSize> every(T value) {
     std::array<T, kSize> lanes{};
     lanes.fill(value);
+    return lanes;
+  }
+
+  static constexpr Words number_lanes() {
+    Words lanes{};
+    for (std::uint32_t lane = 0; lane < kSize; ++lane) lanes[lane] = lane;
     return lanes;
   }
 
@@ -50,9 +57,10 @@ struct alignas(64) RayPacket {
   }
 };
 
-/// Where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff. The texture repeats
-/// and is read bilinearly, its first row at v = 0. The depth pass discards by the same rule, but reads a smaller mip
-/// level where the map has fewer texels than the texture: fine holes can be lost there, which is the map's error.
+/// Where a mesh has holes: a ray passes where the alpha of its texture is under the cutoff. A mesh that dims has none:
+/// each crossing leaves 1 - alpha of a ray. The texture repeats and is read bilinearly, its first row at v = 0. The
+/// depth pass discards by the same rule, but reads a smaller mip level where the map has fewer texels than the texture:
+/// fine holes can be lost there, which is the map's error.
 struct CutOut {
   std::vector<glm::vec2> uvs;  ///< one per position
   int width = 0;               ///< of the texture; 0: none, alpha is `base_alpha` everywhere
@@ -60,6 +68,7 @@ struct CutOut {
   std::vector<std::uint8_t> alpha;  ///< width * height
   float base_alpha = 1.0f;          ///< factor
   float cutoff = 0.5f;
+  bool dims = false;
 };
 
 /// Triangles that block light, both faces; world space, metres.
@@ -69,12 +78,15 @@ struct OccluderMesh {
   std::optional<CutOut> cut_out;
 };
 
-/// Finds the hits on a mesh that lie in its holes.
+/// Finds the alpha of hits on a mesh, and which of them lie in its holes.
 struct HoleTest {
   CutOut cut_out;
   std::vector<std::uint32_t> indices;  ///< three per triangle that is traced
 
-  /// Whether a point of a triangle, given by the weights of its second and third corner, is a hole.
+  /// The alpha of a point of a triangle, given by the weights of its second and third corner.
+  float find_alpha(std::uint32_t triangle, float u, float v) const;
+
+  /// Whether that point is a hole.
   bool is_hole(std::uint32_t triangle, float u, float v) const;
 };
 
@@ -111,7 +123,8 @@ class Occluders {
   Occluders(Occluders&&) noexcept;
   Occluders& operator=(Occluders&&) noexcept;
 
-  /// Sets `reach` of each active ray that anything blocks to minus infinity. Safe to call from many threads.
+  /// Finds the `transmittance` of each active ray: 0 where anything blocks it, else the product of what each surface
+  /// that dims leaves of it. Safe to call from many threads.
   void find_blocked(RayPacket& packet) const;
 
   /// For each active ray how far it gets, and what it meets there. Safe to call from many threads.

@@ -164,7 +164,7 @@ std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& r
     }
     occluders.find_blocked(packet);
     for (std::size_t lane = 0; lane < group.size(); ++lane)
-      visibility[group[lane]] = packet.active[lane] != 0 && packet.reach[lane] >= 0.0f ? 1.0f : 0.0f;
+      visibility[group[lane]] = packet.active[lane] != 0 ? packet.transmittance[lane] : 0.0f;
   });
   return visibility;
 }

@@ -97,7 +97,8 @@ struct TraceSettings {
   std::stop_token stop = {};  ///< where it asks to stop, tracing ends with TracingStopped, each thread within a pixel
 };
 
-/// A traced fraction of rays at every receiver; 1 lit, 0 blocked, 1 where a point does not count.
+/// A traced fraction of rays at every receiver; 1 lit, 0 blocked, 1 where a point does not count. A ray that surfaces
+/// dim counts for what is left of it.
 struct TracedVisibility {
   std::vector<float> visibility;
   std::vector<float> standard_error;    ///< of the mean over the scrambles; 0 where all rays agree, see `unanimous`
@@ -176,14 +177,14 @@ TracedVisibility trace_disks(const Occluders& occluders, const ReceiverImage& re
 TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& receivers, double half_width_texels,
                               const MapGrid& grid, const TraceSettings& settings);
 
-/// Traces one ray from each receiver to the light's centre: 1 seen, 0 blocked, 1 where a point does not count.
-/// Throws TracingStopped where `stop` asks for it.
+/// Traces one ray from each receiver to the light's centre: 1 seen, 0 blocked, between them what surfaces that dim
+/// leave of it, 1 where a point does not count. Throws TracingStopped where `stop` asks for it.
 std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
                               const std::stop_token& stop = {});
 
-/// Returns how far from each receiver, towards the light, the surface lies that the light meets first; metres. An ideal
-/// depth map would hold that surface. Infinity where nothing blocks the light and where a point does not count.
-/// Throws TracingStopped where `stop` asks for it.
+/// Returns how far from each receiver, towards the light, the surface lies that the light meets first, one that dims
+/// included; metres. An ideal depth map would hold that surface. Infinity where nothing blocks the light and where a
+/// point does not count. Throws TracingStopped where `stop` asks for it.
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
                                         const AreaLight& light, const std::stop_token& stop = {});
 

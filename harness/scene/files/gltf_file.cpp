@@ -204,11 +204,11 @@ class GltfImporter {
     const tinygltf::TextureInfo& texture = source.pbrMetallicRoughness.baseColorTexture;
     if (texture.index >= 0) material.base_color_texture = add_texture(texture.index);
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-    if (source.alphaMode == "MASK") {
-      material.alpha_mode = AlphaMode::kMask;
-    } else if (source.alphaMode == "BLEND") {
-      warn(fmt::format("material '{}' blends; it is drawn opaque", material.name));
-    } else if (source.alphaMode != "OPAQUE") {
+    if (source.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;
+    if (source.alphaMode == "BLEND") {
+      material.alpha_mode = AlphaMode::kBlend;
+      warn(fmt::format("material '{}' blends; cameras see it opaque", material.name));
+    } else if (source.alphaMode != "OPAQUE" && source.alphaMode != "MASK") {
       fail(fmt::format("material '{}' has alphaMode '{}'; glTF knows OPAQUE, MASK and BLEND", material.name,
                        source.alphaMode));
     }

@@ -146,6 +146,7 @@ class GlbBuilder {
     made.pbrMetallicRoughness.baseColorFactor = {material.base_color.r, material.base_color.g, material.base_color.b,
                                                  material.base_color.a};
     made.pbrMetallicRoughness.baseColorTexture.index = material.base_color_texture;
+    if (material.alpha_mode == AlphaMode::kBlend) made.alphaMode = "BLEND";
     if (material.alpha_mode == AlphaMode::kMask) {
       made.alphaMode = "MASK";
       made.alphaCutoff = static_cast<double>(material.alpha_cutoff);

@@ -54,7 +54,7 @@ TEST(LoadTest, TeachingScenes_AreFoundByNameAndNotAmongTheOthers) {
     EXPECT_FALSE(info.title.empty());
     EXPECT_TRUE(load(info.name, make_options()).warnings.empty());
   }
-  EXPECT_THAT(names, testing::ElementsAre("avenue", "edge", "lamp", "lantern", "minified", "three_lights"));
+  EXPECT_THAT(names, testing::ElementsAre("avenue", "edge", "lamp", "lantern", "minified", "panes", "three_lights"));
   EXPECT_TRUE(list_teaching_scenes(kScenes / "nowhere").empty());
   LoadOptions options = make_options();
   EXPECT_THAT(error_of([&] { load("edges", options); }).message(), testing::HasSubstr("did you mean 'edge'"));

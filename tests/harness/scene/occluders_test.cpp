@@ -65,6 +65,17 @@ TEST(Occluders, HolesOfAMaterial_LetRaysThrough) {
   EXPECT_EQ(hard[15], 0.0f) << "an opaque one";
 }
 
+TEST(Occluders, AMaterialThatBlends_DimsRays) {
+  Scene scene = make_roofed_scene();
+  scene.materials[0].alpha_mode = AlphaMode::kBlend;
+  scene.materials[0].base_color.a = 0.2f;
+  EXPECT_NEAR(trace_hard(scene).front(), 0.8f, 1e-6f);
+  EXPECT_EQ(trace_hard(scene).back(), 1.0f);
+  scene.materials[0].base_color_texture = 0;
+  scene.textures.push_back({"half", 1, 1, {255, 255, 255, 51}});
+  EXPECT_NEAR(trace_hard(scene).front(), 1.0f - 0.2f * 0.2f, 1e-6f);
+}
+
 /// Whether light falls through a roof over the receivers' left and right half. The roof is a picture whose right half
 /// is a hole, under a KHR_texture_transform.
 std::pair<bool, bool> lit_halves(const std::string& transform) {

@@ -375,5 +375,21 @@ TEST(SceneFileTest, SeveralLights_NeedNamesOfTheirOwn) {
   EXPECT_THAT(complaint_about(text).message, HasSubstr("has no 'name': of several lights each needs one"));
 }
 
+TEST(SceneFileTest, Opacity_IsTheAlphaOfWhatBlends) {
+  const auto text = [](const std::string& opacity) {
+    return std::string(kBase) +
+           "material = \"glass\"\n[[material]]\nname = \"glass\"\ncolor = [1, 0, 0]\nopacity = " + opacity;
+  };
+  const Material glass = load_text(text("0.3")).materials.front();
+  EXPECT_EQ(glass.alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(glass.base_color, glm::vec4(1.0f, 0.0f, 0.0f, 0.3f));
+  EXPECT_EQ(load_text(text("1")).materials.front().alpha_mode, AlphaMode::kOpaque);
+  for (const char* bad : {"1.5", "-0.1", "nan", "inf"}) {
+    const Complaint c = complaint_about(text(bad));
+    EXPECT_THAT(c.message, AllOf(HasSubstr("'opacity'"), HasSubstr(bad)));
+    EXPECT_EQ(c.line, "16");
+  }
+}
+
 }  // namespace
 }  // namespace shadowbench::scene

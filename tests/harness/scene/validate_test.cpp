@@ -1,8 +1,10 @@
 #include "harness/scene/validate.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "harness/scene/primitives.h"
@@ -53,6 +55,16 @@ TEST(ValidateTest, NormalOrTextureCoordinateNotFinite_NamesMeshAndVertex) {
   scene = make_scene();
   scene.meshes[0].vertices[1].uv.x = kInfinity;
   EXPECT_THAT(message_of(scene), AllOf(HasSubstr("vertex 1"), HasSubstr("texture coordinate")));
+}
+
+TEST(ValidateTest, AlphaThatCannotBlend_IsNamed) {
+  for (const float bad : {1.5f, -0.25f, kNaN, kInfinity}) {
+    Scene scene = make_scene();
+    scene.materials[0].base_color.a = bad;
+    if (std::isfinite(bad)) EXPECT_NO_THROW(validate(scene, "file.toml")) << "an opaque material's says nothing";
+    scene.materials[0].alpha_mode = AlphaMode::kBlend;
+    EXPECT_THAT(message_of(scene), AllOf(HasSubstr("'grey'"), HasSubstr(fmt::format("{}", bad)), HasSubstr("0 and 1")));
+  }
 }
 
 TEST(ValidateTest, IndexOutOfRange_IsAnError) {

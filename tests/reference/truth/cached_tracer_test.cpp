@@ -95,6 +95,10 @@ TEST_F(Tracer, WhatTheTruthFollowsFrom_TracesAgain) {
   EXPECT_EQ(count_traced(changed, view), 1) << "another alpha";
   changed[0].cut_out->uvs[3].x += 0.25f;
   EXPECT_EQ(count_traced(changed, view), 1) << "the texture elsewhere";
+  changed[0].cut_out->dims = true;
+  EXPECT_EQ(count_traced(changed, view), 1) << "dimmed by the same texture";
+  changed[0].cut_out->base_alpha = 0.5f;
+  EXPECT_EQ(count_traced(changed, view), 1) << "dimmed otherwise";
   EXPECT_EQ(count_traced({}, view), 1) << "no caster";
   ReceiverImage other = make_receivers();
   other.content = "other receivers";

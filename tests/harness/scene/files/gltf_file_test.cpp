@@ -425,8 +425,18 @@ TEST(GltfFileTest, Materials_KeepColourAndAlphaMode) {
   EXPECT_EQ(model.materials[0].base_color, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
   EXPECT_EQ(model.materials[0].alpha_mode, AlphaMode::kMask);
   EXPECT_FLOAT_EQ(model.materials[0].alpha_cutoff, 0.25f);
-  EXPECT_EQ(model.materials[1].alpha_mode, AlphaMode::kOpaque);
+  EXPECT_EQ(model.materials[1].alpha_mode, AlphaMode::kBlend);
   EXPECT_THAT(model.warnings, testing::ElementsAre(AllOf(HasSubstr("'glass'"), HasSubstr("opaque"))));
+}
+
+// A picture of floats, which alone could hold a NaN.
+TEST(GltfFileTest, TextureOfFloats_IsNamed) {
+  for (const std::string& bytes : {std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\0\0\0\0", 50),
+                                   std::string("\x76\x2f\x31\x01\2\0\0\0", 8)}) {
+    GltfParts parts = textured_parts(R"({"name": "pane", "uri": "data.bin"})");
+    parts.buffer = bytes + parts.buffer;
+    EXPECT_THAT(complaint_about_gltf(parts), AllOf(HasSubstr("image 'pane'"), HasSubstr("use PNG or JPEG")));
+  }
 }
 
 /// Damages single bytes at random; a sanitizer build makes this a fuzz test.

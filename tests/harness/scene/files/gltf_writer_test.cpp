@@ -73,6 +73,14 @@ TEST(GltfWriter, TexturesAndHolesStay) {
   EXPECT_EQ(read.materials[0].base_color_texture, 0);
 }
 
+TEST(GltfWriter, WhatBlends_Stays) {
+  Scene scene = load("panes", {kScenes});
+  const Scene read = write_and_read(scene);
+  EXPECT_EQ(read.materials[1].alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(read.materials[1].base_color.a, 0.3f);
+  EXPECT_EQ(read.materials[0].alpha_mode, AlphaMode::kOpaque);
+}
+
 TEST(GltfWriter, ExtrasThatASceneFileDoesNotTake_AreRefused) {
   const TestFolder folder;
   std::string text = write_glb(load("cubes", {kScenes}), 1.5);
