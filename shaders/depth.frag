@@ -1,7 +1,11 @@
-// Depth only; cut-out surfaces leave holes.
+// Depth only; cut-out surfaces leave holes, and those that one sees through a pattern of them, if the run asks for one.
 #include "lib/material.glsl"
 #include "lib/depth_curve.glsl"
 #include "lib/light.glsl"
+#if defined(ALPHA_BLEND) && defined(STIPPLED_CASTERS)
+#define STIPPLED
+#include "lib/blend_casters.glsl"
+#endif
 #ifdef EXACT_EDGES
 flat in mat3x4 corner_places;
 flat in mat3x2 corner_uvs;
@@ -45,6 +49,9 @@ float own_depth() {
 }
 
 void main() {
+#ifdef STIPPLED
+  float threshold = find_threshold();
+#endif
 #ifdef EXACT_EDGES
   vec3 weights = find_weights();
   vec2 surface_uv = corner_uvs * weights;
@@ -59,6 +66,8 @@ void main() {
 #endif
 #ifdef ALPHA_MASK
   surface_color(surface_uv);
+#elif defined(STIPPLED)
+  if (surface_color(surface_uv).a < threshold) discard;
 #endif
 #if defined(BEND_DEPTH) || defined(CURVED_MAP)
   gl_FragDepth = store_depth(depth);

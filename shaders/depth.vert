@@ -3,6 +3,9 @@ uniform mat4 clip_from_world;
 layout(location = 0) in vec3 in_position_ws;
 layout(location = 3) in vec2 in_uv;
 out vec2 v_surface_uv;
+#ifdef HASHED_CASTERS
+out vec3 v_position_ws;
+#endif
 #ifdef EXACT_EDGES
 out vec4 v_map_place;  // u w, -, depth, w
 #elif defined(CURVED_MAP)
@@ -11,6 +14,9 @@ out float v_depth;
 
 void main() {
   v_surface_uv = in_uv;
+#ifdef HASHED_CASTERS
+  v_position_ws = in_position_ws;
+#endif
 #ifdef EXACT_EDGES
   v_map_place = uv_depth_from_world * vec4(in_position_ws, 1.0);
 #elif defined(PARABOLOID_MAP)

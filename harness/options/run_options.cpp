@@ -4,12 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
 #include <type_traits>
 
 #include "base/error.h"
 #include "base/split_list.h"
-#include "filters/store_format.h"
 #include "harness/gl/pixel_format.h"
 
 namespace shadowbench::options {
@@ -98,6 +96,11 @@ void take(const char*, const std::string& text, std::optional<scene::SkyAngles>&
 std::string tell(filters::Border border) { return filters::to_string(border); }
 void take(const char*, const std::string& text, filters::Border& border) { border = filters::parse_border(text); }
 
+std::string tell(render::BlendCasters casters) { return render::to_string(casters); }
+void take(const char*, const std::string& text, render::BlendCasters& casters) {
+  casters = render::parse_blend_casters(text);
+}
+
 std::string tell(TruthWeight weight) { return weight == TruthWeight::kArea ? "area" : "cosine"; }
 void take(const char* name, const std::string& text, TruthWeight& weight) {
   if (text != "area" && text != "cosine") fail(fmt::format("{}: '{}' must be area or cosine", name, text));
@@ -160,20 +163,6 @@ class Table {
   const RunOptions defaults_;
 };
 
-constexpr std::int64_t kMebibyte = 1 << 20;
-
-std::int64_t count_texel_bytes(const RunOptions& options) {
-  std::int64_t bytes = gl::pixel_format(options.map.format).bytes_per_texel * (options.bias.map.midpoint ? 3 : 1);
-  std::set<std::string> formats;
-  for (const filters::FilterRequest& request : options.filters)
-    if (request.spec.has_encode) formats.insert(filters::text_or(request.values, "store", ""));
-  for (const filters::FilterRequest& request : options.filters)
-    for (const filters::PassSpec& pass : request.spec.passes)
-      bytes += std::max<std::int64_t>(1, filters::store_bytes(pass.store) / (pass.half ? 4 : 1));
-  for (const std::string& format : formats) bytes += filters::store_bytes(format);
-  return bytes;
-}
-
 }  // namespace
 
 std::string RunOption::key() const {
@@ -208,6 +197,13 @@ std::vector<RunOption> list_run_options() {
       "store depth as a perspective projection would whose far plane is this many times as far away as its "
       "near plane; filters read linear depth all the same",
       [](auto& o) -> auto& { return o.map.curve; });
+  t.add(
+       "--blend-casters",
+       "how the map holds casters that one sees through, glTF's BLEND or an opacity below 1: 'opaque', as if one did "
+       "not; 'hashed', in texels by a hash of the place on the surface; 'dither', by a matrix of 8 x 8 texels. Rays of "
+       "the truth are dimmed by 1 - alpha in any case",
+       [](auto& o) -> auto& { return o.map.blend_casters; })
+      .one_of(render::blend_caster_names());
   t.add("--fit",
         "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; 'view', "
         "around what the camera sees and the casters before it; 'cascades', which give slices of that a map each: "
@@ -379,22 +375,6 @@ void check_run_options(const RunOptions& options) {
   require_light_maps_fit(options);
   if (options.grids && options.part.shards() > 1)
     fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");
-}
-
-std::int64_t count_light_map_bytes(const RunOptions& options, int lights, int map_size) {
-  return count_texel_bytes(options) * lights * map_size * map_size;
-}
-
-void require_light_maps_fit(const RunOptions& options) {
-  if (options.lights.empty()) return;
-  const int lights = *std::max_element(options.lights.begin(), options.lights.end());
-  const int map_size = *std::max_element(options.map_sizes.begin(), options.map_sizes.end());
-  const std::int64_t bytes = count_light_map_bytes(options, lights, map_size);
-  if (bytes <= kMostLightMapBytes) return;
-  throw Error(ErrorKind::kUsage, fmt::format("--lights: the maps of {} lights at --map-size {} take {} MiB, more than "
-                                             "the {} MiB there may be; choose fewer lights, "
-                                             "smaller maps, or filters that store less",
-                                             lights, map_size, bytes / kMebibyte, kMostLightMapBytes / kMebibyte));
 }
 
 }  // namespace shadowbench::options

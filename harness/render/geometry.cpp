@@ -86,6 +86,7 @@ Defines Geometry::variant(const scene::Material& material) const {
   Defines defines;
   if (material.base_color_texture >= 0) defines.emplace_back("HAS_TEXTURE", "1");
   if (material.alpha_mode == scene::AlphaMode::kMask) defines.emplace_back("ALPHA_MASK", "1");
+  if (material.alpha_mode == scene::AlphaMode::kBlend) defines.emplace_back("ALPHA_BLEND", "1");
   return defines;
 }
 

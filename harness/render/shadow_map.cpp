@@ -33,6 +33,18 @@ filters::DepthCurve fit_curve(filters::DepthCurve wanted, const scene::LightFrus
   return {wanted.reversed, frustum.perspective->far_over_near()};
 }
 
+Defines stipple_defines(BlendCasters casters, const scene::LightFrustum& frustum) {
+  if (casters == BlendCasters::kOpaque) return {};
+  if (casters == BlendCasters::kDither) return {{"STIPPLED_CASTERS", "1"}};
+  if (frustum.shape == scene::MapShape::kLogarithmic) {
+    throw Error(
+        ErrorKind::kUsage,
+        "--blend-casters hashed cannot be drawn into a logarithmic map, whose fragments do not know their place "
+        "on the surface; use dither, or another --fit");
+  }
+  return {{"STIPPLED_CASTERS", "1"}, {"HASHED_CASTERS", "1"}};
+}
+
 void set_curve(gl::Program& program, const filters::DepthCurve& curve) {
   program.set("far_over_near", static_cast<float>(curve.far_over_near));
 }
@@ -42,7 +54,9 @@ void set_curve(gl::Program& program, const filters::DepthCurve& curve) {
 std::string describe_map(const MapSettings& settings) {
   std::string text(gl::pixel_format(settings.format).name);
   if (!settings.curve.is_linear()) text += fmt::format(" perspective {:.6g}", settings.curve.far_over_near);
-  return settings.curve.reversed ? text + " reversed" : text;
+  if (settings.curve.reversed) text += " reversed";
+  if (settings.blend_casters == BlendCasters::kOpaque) return text;
+  return text + " " + to_string(settings.blend_casters);
 }
 
 double find_coarsest_step(const MapSettings& settings, double farthest) {
@@ -114,6 +128,7 @@ void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, c
   if (is_plane && bends) defines.emplace_back("BEND_DEPTH", "1");
   for (auto& define : shape_defines(frustum)) defines.push_back(std::move(define));
   if (frustum.shape == scene::MapShape::kLogarithmic) defines.push_back(kExactEdges);
+  for (auto& define : stipple_defines(settings_.blend_casters, frustum)) defines.push_back(std::move(define));
   const float away = curve.reversed ? -1.0f : 1.0f;
   if (curve.reversed) glDepthFunc(GL_GREATER);
   if (bias.polygon_factor != 0.0 || bias.polygon_units != 0.0) {

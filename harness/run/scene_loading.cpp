@@ -8,6 +8,22 @@
 #include "harness/scene/load.h"
 
 namespace shadowbench::run {
+namespace {
+
+/// Rays are dimmed by what blends, also where the map holds it opaque.
+void warn_of_blending(scene::Scene& scene) {
+  for (const scene::Mesh& mesh : scene.meshes) {
+    const scene::Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    if (!mesh.casts_shadow || material.alpha_mode != scene::AlphaMode::kBlend) continue;
+    scene.warnings.push_back(
+        fmt::format("shadow maps hold '{}', which blends, as if it were opaque, while rays of the truth are dimmed by "
+                    "its alpha; choose --blend-casters hashed or dither",
+                    material.name));
+    return;
+  }
+}
+
+}  // namespace
 
 scene::Scene load_scene(const options::RunOptions& options, const std::string& argument) {
   scene::LoadOptions load;
@@ -15,7 +31,9 @@ scene::Scene load_scene(const options::RunOptions& options, const std::string& a
   load.ground = options.ground;
   load.aspect = static_cast<double>(options.width) / options.height;
   load.light = options.light;
-  return scene::load(argument, load);
+  scene::Scene scene = scene::load(argument, load);
+  if (options.truth && options.map.blend_casters == render::BlendCasters::kOpaque) warn_of_blending(scene);
+  return scene;
 }
 
 std::vector<scene::Scene> load_scenes(const options::RunOptions& options) {

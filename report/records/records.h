@@ -270,7 +270,7 @@ struct CellRecord : metrics::MetricValues {
   std::optional<bool> teaching;                    ///< the filter is for teaching: it is not advised
   std::optional<std::vector<std::string>> claims;  ///< what the filter says of itself, such as "contact-hardening"
   int map_size = 0;                                ///< texels along a side
-  std::string map_format;                          ///< "d32f", "d16 reversed"
+  std::string map_format;                          ///< "d32f", "d16 reversed hashed"
   std::string fit = "tight";    ///< how the light's frustum is fitted: "sphere", "tight" or "view", perhaps " snapped"
   std::string light = "scene";  ///< where the light stands: as the scene says, or "AZIMUTH,ELEVATION" in degrees
   BiasRecord bias;

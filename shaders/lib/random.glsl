@@ -1,18 +1,8 @@
 // Random turns for filters, in integers so that every machine agrees; sources in filters/random.h. Every frame, which
 // lib/receiver.glsl counts, turns on.
+#include "lib/hash.glsl"
 uniform uint run_seed;
 layout(binding = 7) uniform sampler2D blue_noise;  // bound for filters that read it
-
-uint hash_bits(uint x) {
-  x ^= x >> 16;
-  x *= 0x7feb352du;
-  x ^= x >> 15;
-  x *= 0x846ca68bu;
-  x ^= x >> 16;
-  return x;
-}
-
-float bits_to_turn(uint bits) { return float(bits >> 8) * exp2(-24.0); }
 
 // What a frame adds to its turns, in 2^-32 of a turn: the golden ratio.
 uint frame_bits() { return 2654435769u * run_frame; }

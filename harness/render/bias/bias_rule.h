@@ -10,10 +10,25 @@
 
 namespace shadowbench::render {
 
+/// How a depth map holds casters that one sees through.
+enum class BlendCasters {
+  kOpaque,  ///< as any other
+  kHashed,  ///< in texels by a hash of the place on the surface: lib/blend_casters.glsl
+  kDither,  ///< in texels by a matrix of 8 x 8
+};
+
+/// The names of these, in the order of the enumerators.
+const std::vector<std::string>& blend_caster_names();
+const std::string& to_string(BlendCasters casters);
+
+/// The way of that name. Throws Error(kUsage) for any other, with the names that there are.
+BlendCasters parse_blend_casters(const std::string& name);
+
 /// How a depth map stores depth.
 struct MapSettings {
   GLenum format = GL_DEPTH_COMPONENT32F;  ///< or GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24
   filters::DepthCurve curve{};            ///< floats are finest near 0, perspective depth is coarsest far away
+  BlendCasters blend_casters = BlendCasters::kOpaque;
 };
 
 /// How far a receiver is moved towards the light before it is compared. Of the first two parts the larger one counts;

@@ -49,6 +49,13 @@ const writeChanges = (request, changes) =>
 // Azimuth and elevation, degrees, of a sun whose light travels so: azimuth 0 is +z, 90 is +x.
 const findSkyAngles = ([x, y, z]) =>
   [Math.atan2(-x, -z), Math.asin(clamp(-y, -1, 1))].map((angle) => Number(((180 / Math.PI) * angle).toFixed(2)));
+// A map's format in the program's words, "d16 perspective 30.5 reversed hashed", as the options that it stands for.
+const writeFormat = (text) =>
+  text
+    .replace("perspective", "--perspective-depth")
+    .replace("reversed", "--reversed-depth")
+    .replace(/hashed|dither/, "--blend-casters $&")
+    .split(" ");
 // Empty where it is not known how the scene, or the file of the filter, was given.
 const writeRun = ({ place, right, light, parameters, map: changes }, { motion, settings }) => {
   const { filter, request, map, size } = run.configurations[right];
@@ -59,7 +66,8 @@ const writeRun = ({ place, right, light, parameters, map: changes }, { motion, s
   const words = [
     ...["--scene", scene, ...of, ...(file ? ["--filter-file", file] : [])],
     ...["--filters", writeChanges(request, parameters.get(right)), "--map-size", changes.size ?? map],
-    ...["--size", size.join("x"), "--map-format", changes.format ?? settings.map_format, "--fit", settings.fit],
+    ...["--size", size.join("x"), "--fit", settings.fit],
+    ...["--map-format", ...writeFormat(settings.map_format.replace(/^\S+/, changes.format ?? "$&"))],
     ...writeBias(settings, changes),
     ...(/^-?[\d.]+,/.test(sky) ? ["--light", sky] : []),
   ];

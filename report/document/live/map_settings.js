@@ -125,9 +125,10 @@ const fillMapControls = (box, frame, view, most, changed) => {
   const size = addSelect(row, "Map", sizes, {}, (text) => choose("size", Number(text), Number(text) === own.map_size));
   size.value = view.map.size ?? own.map_size;
   size.disabled = Boolean(fixed.size);
+  const [stored] = own.map_format.split(" ");
   const formats = kMapFormats.map((name) => [name, name]);
-  const format = addSelect(row, "Format", formats, {}, (name) => choose("format", name, name === own.map_format));
-  format.value = view.map.format ?? own.map_format;
+  const format = addSelect(row, "Format", formats, {}, (name) => choose("format", name, name === stored));
+  format.value = view.map.format ?? stored;
   format.disabled = Boolean(fixed.format);
   const largest = (name) => Math.max(0, ...steps.map((index) => frame.frames.steps[index].uniforms?.[name]?.[0] ?? 0));
   const steps = [...frame.player.listSteps(frame.picture)];

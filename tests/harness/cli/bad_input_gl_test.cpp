@@ -221,6 +221,23 @@ TEST_F(BadInput, UnknownBorder) {
   expect_refusal(small("--border mirror"), 2, {"--border", "mirror", "border", "edge", "repeat"});
 }
 TEST_F(BadInput, UnknownFarTest) { expect_refusal(small("--far-test yes"), 2, {"--far-test", "yes", "on", "off"}); }
+TEST_F(BadInput, AlphaThatCannotBlend) {
+  write("glass.gltf",
+        R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": []}],
+            "materials": [{"name": "glass", "alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1.5]}}]})");
+  expect_refusal("run --out out --scene glass.gltf --filters none", 3, {"glass.gltf", "'glass'", "1.5", "0 and 1"});
+  const std::string text =
+      "title = \"t\"\n[light]\nazimuth_deg = 40\nelevation_deg = 50\n[[material]]\nname = \"m\"\n"
+      "color = [1, 1, 1]\nopacity = nan\n[[object]]\nshape = \"plane\"\nsize = [8, 8]\nmaterial = \"m\"\n";
+  write("glass.toml", text);
+  expect_refusal("run --out out --scene glass.toml --filters none", 3, {"glass.toml:8", "'opacity'", "nan"});
+}
+TEST_F(BadInput, UnknownBlendCasters) {
+  expect_refusal(small("--blend-casters glass"), 2, {"--blend-casters", "glass", "opaque", "hashed", "dither"});
+}
+TEST_F(BadInput, HashedCastersOfALogarithmicMap) {
+  expect_refusal(small("--blend-casters hashed --fit logpsm --filters none"), 2, {"--blend-casters hashed", "dither"});
+}
 TEST_F(BadInput, UnknownBehindTest) {
   expect_refusal(small("--behind-test 0"), 2, {"--behind-test", "0", "on", "off"});
 }

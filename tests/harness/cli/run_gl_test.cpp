@@ -419,6 +419,25 @@ TEST_F(Command, BorderSettings_ReachCellsPicturesAndUsersFilters) {
   EXPECT_EQ(range, nlohmann::json::parse(R"({"border": "repeat", "far_test": true, "behind_test": true})"));
 }
 
+TEST_F(Command, BlendCasters_AreHeldAgainstTheirTransmittance) {
+  const std::string arguments = "run --size 160x90 --map-size 512 --rounds 1 --scene panes --filters tent7x7 --out ";
+  std::set<std::string> keys;
+  std::map<std::string, double> rmse;
+  for (const std::string name : {"opaque", "hashed", "dither"}) {
+    const Outcome outcome = run(arguments + name + " --blend-casters " + name);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const nlohmann::json document = nlohmann::json::parse(read_text(folder() / name / "results.json"));
+    const nlohmann::json& cell = document["cells"][0];
+    keys.insert(cell["key"].get<std::string>());
+    rmse[name] = cell["error"]["rmse"];
+    EXPECT_EQ(cell["map_format"], name == "opaque" ? "d32f" : "d32f " + name);
+    EXPECT_EQ(outcome.err.find("'pane', which blends") != std::string::npos, name == "opaque") << outcome.err;
+  }
+  EXPECT_EQ(keys.size(), 3u);
+  EXPECT_LT(rmse["hashed"], 0.5 * rmse["opaque"]);
+  EXPECT_LT(rmse["dither"], 0.5 * rmse["opaque"]);
+}
+
 TEST_F(Command, OnlyTheRightRule_LeavesNoErrorBeyondTheFarPlane) {
   const std::string arguments = "run --out out --size 128x72 --map-size 256 --rounds 1 --scene edge --filters none ";
   ASSERT_EQ(run(arguments).exit_code, 0);

@@ -45,6 +45,7 @@ const std::map<std::string, std::vector<std::string>>& list_others() {
                                                                          {"map_format", {"d16"}},
                                                                          {"reversed_depth", {"true"}},
                                                                          {"perspective_depth", {"30.5"}},
+                                                                         {"blend_casters", {"dither"}},
                                                                          {"fit", {"view", "sphere"}},
                                                                          {"snap", {"on"}},
                                                                          {"light", {"60,30.5"}},
