@@ -146,6 +146,40 @@ TEST(BlendCasters, AreDrawnIntoMapsOfEveryShape_ButHashesNotIntoALogarithmicOne)
   }
 }
 
+/// So many bars that fill a quarter of a pane's texture, cut out at an alpha of one half.
+scene::Scene make_bars(int count) {
+  constexpr int side = 1024;
+  scene::Scene scene = make_panes({1.0f});
+  scene::Texture bars{"bars", side, 1, std::vector<std::uint8_t>(4 * static_cast<std::size_t>(side), 0)};
+  for (int x = 0; x < side; ++x)
+    bars.rgba[4 * static_cast<std::size_t>(x) + 3] = x % (side / count) < side / count / 4 ? 255 : 0;
+  scene.textures.push_back(std::move(bars));
+  scene.materials[1].alpha_mode = scene::AlphaMode::kMask;
+  scene.materials[1].base_color_texture = 0;
+  for (scene::Vertex& vertex : scene.meshes[1].vertices)
+    vertex.uv = {0.5f * (vertex.position_ws.x + 1.0f), 0.5f * (vertex.position_ws.z + 1.0f)};
+  return scene;
+}
+
+// What the program does with MASK: rays read the texture itself, the map one of its smaller levels, whose alpha is a
+// mean and falls below the cutoff.
+TEST(MaskCasters, LoseTheirCoverageInAMapThatIsTooSmall_WhereRaysDoNot) {
+  std::vector<double> in_map;
+  for (const int count : {8, 32, 64, 128}) {
+    const scene::Scene scene = make_bars(count);
+    truth::ReceiverImage receivers{512, 1, {}};
+    for (int i = 0; i < 512; ++i)
+      receivers.points.push_back({{(static_cast<float>(i) + 0.5f) / 256.0f - 1.0f, 0.0f, 0.1f}, {0, 1, 0}, true});
+    const std::vector<float> lit = truth::trace_hard(truth::Occluders(scene::list_occluders(scene)), receivers,
+                                                     truth::AreaLight::make_sun({0.0, 1.0, 0.0}, 0.0));
+    EXPECT_NEAR(static_cast<double>(std::ranges::count(lit, 0.0f)) / 512.0, 0.25, 0.02) << count;
+    in_map.push_back(share_of(find_held(scene, BlendCasters::kOpaque)));
+    std::printf("%d bars: %.3f of the map's texels\n", count, in_map.back());
+  }
+  EXPECT_NEAR(in_map.front(), 0.25, 0.05);
+  EXPECT_LT(in_map.back(), 0.01) << "a bar is a quarter of a texel";
+}
+
 TEST(BlendCasters, AreNamedWithTheMap) {
   EXPECT_EQ(render::describe_map({}), "d32f");
   EXPECT_EQ(render::describe_map({GL_DEPTH_COMPONENT16, {true, 30.5}, BlendCasters::kDither}),
