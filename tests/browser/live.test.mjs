@@ -6,7 +6,8 @@ import { pageOf, pick } from "./support.mjs";
 
 for (const [title, args] of [["OnTheRunsOwnRasteriser", kMesa], ["OnAnotherImplementation", kOwn]])
   test(`EveryFilterDrawsAsTheRunDid_${title}`, () => withBrowser(args, async (browser) => {
-    for (const [run, count, absent] of [["live", 28, { textureGather: 2 }], ["lamps", 4, {}], ["fits", 18, { "geometry shaders": 2 }]]) {
+    for (const [run, count, absent] of [["live", 28, { textureGather: 2 }], ["lamps", 4, {}], ["fits", 18, { "geometry shaders": 2 }],
+      ["hashed", 3, {}], ["dither", 3, {}]]) {
       const { page, messages, shoot, close } = await openLive(pageOf(run), browser);
       const requests = [], scenes = await page.locator(".live select").first().locator("option").allTextContents();
       page.on("request", (request) => requests.push(request.url()));

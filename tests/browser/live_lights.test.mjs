@@ -4,8 +4,8 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
-import { compareShots, kMesa, openLive, splitWords, withBrowser } from "./live_support.mjs";
-import { pageOf, readData, runProgram } from "./support.mjs";
+import { compareShots, kMesa, openLive, press, splitWords, withBrowser } from "./live_support.mjs";
+import { pageOf, pick, readData, runProgram } from "./support.mjs";
 
 const kScene = new URL("../../data/scenes/teaching/three_lights.toml", import.meta.url);
 const kFew = ["--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids"];
@@ -52,6 +52,26 @@ test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", (context) => withBrowser
     const drawn = drawByProgram(["run", "--scene", "moved.toml", "--light-name", light, "--filters", "tent3x3", "--size", "160x90", "--map-size", "128"], join(folder, light), folder);
     await holdAgainst(context, browser, light, [picture, drawn, ownPicture("lamps", data, place, "tent3x3")]);
   }
+  rmSync(folder, { recursive: true });
+}));
+
+// Maps from the lamps' middles alone are 0.11 and 0.23 off.
+test("AReferenceForALamp_IsNearItsTracedTruth", (context) => withBrowser(kMesa, async (browser) => {
+  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), out = join(folder, "out");
+  writeFileSync(join(folder, "wide.toml"), readFileSync(kScene, "utf8").replace("radius = 0.04", "radius = 0.4").replace("radius = 0.03", "radius = 0.15"));
+  const ran = runProgram(["run", "--scene", "wide.toml", "--filters", "none", "--size", "240x135", "--map-size", "1024", ...kFew.slice(0, -1), "--out", out], { cwd: folder });
+  assert.equal(ran.status, 0, ran.stderr);
+  const { page, messages, close } = await openLive(join(out, "index.html"), browser), found = {};
+  for (const light of ["spot", "bulb"]) {
+    await pick(page, "Scene", { label: `wide.${light}` }, ".live");
+    await press(page, "Check against the run");
+    const said = await page.locator(".live caption").textContent();
+    found[light] = Number(/The mean of 256 maps from points of the light has an RMSE of ([\d.]+) to the traced truth/.exec(said)?.[1]);
+  }
+  context.diagnostic(JSON.stringify(found));
+  for (const [light, rmse] of Object.entries(found)) assert.ok(rmse > 0 && rmse < 0.02, `${light}: ${rmse}`);
+  assert.deepEqual(messages, []);
+  await close();
   rmSync(folder, { recursive: true });
 }));
 

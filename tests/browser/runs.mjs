@@ -23,6 +23,7 @@ writeFileSync(join(folder, "nine_compares.glsl"), titled);
 const kSmall = ["--size", "160x90", "--map-size", "128", "--rounds", "2"];
 const kMany = ["--scene", "cubes", "--size", "96x54", "--map-size", "64", "--rounds", "1", "--phases", "1", "--no-attribution", "--no-grids", "--gpu", "none"];
 const listMany = (count) => ["none", ...Array.from({ length: count - 1 }, (_, i) => `vsm:bleed_reduction=${(i + 1) / 1000}`)].join();
+const kPanes = ["run", "--scene", "panes", ...kSmall, "--filters", "none,tent3x3,vsm", "--phases", "1", "--no-attribution", "--gpu", "none", "--blend-casters"];
 const kRuns = {
   several: ["run", "--scene", "cubes", "--scene", "ball", "--size", "240x135", "--map-size", "128", "--rounds", "2", "--stability",
     "--uncertainty", "--filters", "none,pcf2x2,tent3x3,box4x4,box3x3,vsm,vsm:radius=1,esm:radius=1"],
@@ -37,6 +38,8 @@ const kRuns = {
   ball: ["run", "--scene", "ball", "--filters", "none,pcss,vsm", "--size", "240x135", "--rounds", "2", "--phases", "1", "--no-attribution", "--gpu", "none"],
   lamps: ["run", "kinds", "--filters", "none,tent3x3,vsm,pcss", ...kSmall, "--phases", "1", "--no-attribution", "--gpu", "none"],
   fits: ["run", "cascades", "--filters", "none,vsm", ...kSmall, "--phases", "1", "--no-attribution", "--gpu", "none"],
+  hashed: [...kPanes, "hashed"],
+  dither: [...kPanes, "dither"],
   waves: ["run", "--scene", "waves.obj", ...kSmall, "--filters", "none,tent3x3,vsm", "--phases", "1", "--no-attribution", "--no-grids", "--gpu", "none"],
   forty: ["run", ...kMany, "--filters", listMany(40)],
   hundreds: ["run", ...kMany, "--filters", listMany(400)],

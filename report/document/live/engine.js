@@ -78,12 +78,12 @@ const makeEngine = (gl) => {
       for (const index of steps) player.setUniforms(index, { [name]: values });
     }
   };
-  // The mean over many maps, of the frame without a filter; null where there is none, or no sun that could be moved.
+  // The mean over many maps, of the frame without a filter; null where there is none, or no light that could be moved.
   const findReference = async ({ id }, place) => {
     const who = run.configurations.findIndex(({ request }) => /^none\b/.test(request));
     if (who < 0 || !cellAt(who, place)?.frames) return null;
     const frame = await load(who, place);
-    if (!frame.motion.isSun) return null;
+    if (frame.motion.stays) return null;
     const key = `${id} ${place}`;
     const visibility = frame.player.inputOf(frame.picture, kVisibility);
     if (!references.has(key))

@@ -79,6 +79,7 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
   const direction = find("light_direction_ws");
   const lamp = find("light_position_ws");
   const isCube = find("layer_face") !== undefined;
+  const isBall = lamp && !(find("light_cone")?.[1] > -1); // a point light, which has no cone
   const stays = layers.length === 0 || find("map_texels") ? "its map is bent for the run's own camera and light" : "";
 
   const coverOf = ({ slice = [0, 0, Infinity, Infinity] }) => {
@@ -93,26 +94,27 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
       if (!uniformsOf(index).camera_forward_ws || !uniformsOf(index).clip_from_world)
         player.setUniforms(index, Object.fromEntries(kOfLight.map((name) => [name, null])));
   };
-  // `tilt` turns the sun a little more, about an axis across it: the axis's angle, and that of the turn.
-  const move = ([yaw, pitch], tilt = [0, 0]) => {
+  // `point` is one of the light's own, from its middle: tangents of a sun, metres of a lamp; only a point light is deep.
+  const move = ([yaw, pitch], point = [0, 0, 0]) => {
     const isMoved = yaw !== 0 || pitch !== 0 || (followsView && cameraNow().isTurned);
-    if (!isMoved && tilt[1] === 0) return restore();
+    const off = Math.hypot(...point);
+    if (!isMoved && off === 0) return restore();
     const turn = turnAround(middle, direction, yaw, pitch);
     const across = normalise(cross(direction, Math.abs(direction[1]) < 0.9 ? [0, 1, 0] : [1, 0, 0]));
-    const axis = add(
-      across.map((value) => Math.cos(tilt[0]) * value),
-      cross(direction, across),
-      Math.sin(tilt[0]),
-    );
-    const about = (angle) => turnAt(middle, rotateAbout(axis, angle));
-    const place = lamp && transform(turn.forth, lamp, 1);
-    const back = isCube ? shiftBy(add(lamp, place, -1)) : multiply(about(-tilt[1]), turn.back);
-    const turned = (vector) => (isCube ? vector : transform(turn.forth, transform(about(tilt[1]), vector, 0), 0));
+    const beside = add(add([0, 0, 0], across, point[0]), cross(direction, across), point[1]);
+    const about = (angle) => turnAt(middle, rotateAbout(normalise(beside), lamp ? 0 : angle));
+    const tilt = Math.atan(Math.hypot(...beside));
+    const shift = isBall ? add(beside, direction, point[2]) : beside;
+    // A spot light's cone stays about its middle.
+    const place = lamp && transform(turn.forth, isBall ? add(lamp, shift) : lamp, 1);
+    const unshift = lamp ? shiftBy(shift.map((value) => -value)) : about(-tilt);
+    const back = isCube ? shiftBy(add(lamp, place, -1)) : multiply(unshift, turn.back);
+    const turned = (vector) => (isCube ? vector : transform(turn.forth, transform(about(tilt), vector, 0), 0));
     const distance = lamp && Math.hypot(...add(middle, lamp, -1));
     const own = ({ uv }) => ({ wide: 1, deep: 1, uv: multiply(uv, back), clipOf: (clip) => multiply(clip, back) });
     const frame = (layer) =>
       lamp
-        ? frameLamp(layer.uv, back, find("depth_range_ws")[0], distance, bounds)
+        ? frameLamp(layer.uv, back, find("depth_range_ws")[0], distance, { radius: bounds.radius + off })
         : frameSun(layer.uv, back, coverOf(layer), bounds);
     const framed = new Map(layers.map((layer) => [layer, isMoved ? frame(layer) : own(layer)]));
     for (const index of steps) {

@@ -47,7 +47,7 @@ const makeMeasuring = (engine) => {
     const [plane, mask] = [await getPlane(kTruth, place, "visibility"), await getMask(place)];
     const { width, height } = await loadFile(kTruth, place);
     const { rmse } = compareValues(reference.read(), plane, mask, width, { x: 0, y: 0, width, height }, 0);
-    const maps = `The mean of ${reference.count()} maps from points of the sun`;
+    const maps = `The mean of ${reference.count()} maps from points of the light`;
     references.set(place, ` ${maps} has an RMSE of ${format(rmse)} to the traced truth.`);
   };
   // Times the filters of a place that draw as the run did; what they share is timed once.

@@ -1,8 +1,15 @@
-// A reference where no rays were traced: the mean visibility of many maps, each drawn from another point of the sun.
+// A reference where no rays were traced: the mean visibility of many maps, each drawn from another point of the light.
 const kReferenceMaps = 256;
 const kGoldenAngle = Math.PI * (3 - Math.sqrt(5));
-// Points of a disk, spread evenly by the spiral of a sunflower: radius and angle.
-const diskPoint = (i, count) => [Math.sqrt((i + 0.5) / count), i * kGoldenAngle];
+const kOtherAngle = 2 * Math.PI * (Math.SQRT2 - 1);
+// Points of a ball whose first two coordinates are spread evenly over a disk, by the spiral of a sunflower. With the third
+// they look so from every side: they are points of a sphere in four dimensions less one coordinate, and any two of its
+// coordinates are spread evenly over a disk (Archimedes' theorem of the sphere and the cylinder, two dimensions up).
+const ballPoint = (i, count) => {
+  const [squared, angle] = [(i + 0.5) / count, i * kGoldenAngle];
+  const radius = Math.sqrt(squared);
+  return [radius * Math.cos(angle), radius * Math.sin(angle), Math.sqrt(1 - squared) * Math.cos(i * kOtherAngle)];
+};
 
 // `frame` is that of a lookup without a filter.
 const makeReference = (gl, { player, picture, lightSize }, motion, visibility) => {
@@ -46,11 +53,11 @@ const makeReference = (gl, { player, picture, lightSize }, motion, visibility) =
       gl.bindFramebuffer(gl.FRAMEBUFFER, means[maps % 2].framebuffer);
       return readValues(gl, width, height);
     },
-    // Adds some maps from points of a sun that is turned so.
+    // Adds some maps from points of a light that is turned so.
     refine: (light, count) => {
       for (const last = Math.min(maps + count, kReferenceMaps); maps < last;) {
-        const [radius, angle] = diskPoint(maps, kReferenceMaps);
-        motion.moveLight(light, [angle, Math.atan(radius * 0.5 * lightSize)]);
+        const point = ballPoint(maps, kReferenceMaps).map((value) => 0.5 * lightSize * value);
+        motion.moveLight(light, point);
         player.draw(visibility);
         add(player.textureOf(visibility).object);
       }
