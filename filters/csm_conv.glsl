@@ -34,8 +34,8 @@ const vec4 places = vec4(1.0, 2.0, 3.0, 4.0) / 4.0;
 // `begun` on the first step, then the mean along one axis: TAP is a texel of the map before.
 #define BOX_MEAN(begun, TAP)                                                                  \
   if (p.step == 0) return begun;                                                              \
-  vec4 sum = vec4(0.0);                                                                       \
-  for (int i = -radius; i <= radius; ++i) sum += TAP(p.texel + i * p.direction);              \
+  vec4 sum = TAP(p.texel - radius * p.direction);                                             \
+  for (int i = 1 - radius; i <= radius; ++i) sum += TAP(p.texel + i * p.direction);           \
   return sum / float(2 * radius + 1);
 
 vec4 cosines(PassInput p) { BOX_MEAN(cos(frequencies * load_depth(p.texel)), load_cosines) }

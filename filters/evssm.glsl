@@ -105,7 +105,7 @@ float visibility(Receiver r) {
   float lit = light_of(around, up, down);
   if (min(lit, 1.0 - lit) < sure) return round(lit);
   float blockers = down - (down - around.z) / (1.0 - lit);
-  float depth = 0.5 - 0.5 * log(clamp(-blockers, -down, exp(c_down))) / c_down;
+  float depth = 0.5 - 0.5 * log(-clamp(blockers, -exp(c_down), down)) / c_down;
   float radius = clamp(penumbra_radius(r, r.depth - depth), least_radius, search);
   float light = light_of(fetch_disk(r, radius), up, down);
   return max(light - bleed_reduction, 0.0) / (1.0 - bleed_reduction);

@@ -2,7 +2,9 @@
 
 Left out, because what they give is the same filter:
 - numbers in encode(): it writes four channels, of which a store keeps as many as it has;
-- the sign of a half before fract(): both signs lie a whole period apart.
+- the sign of a half before fract(): both signs lie a whole period apart;
+- the bias of a receiver that is asked whether it lies beyond the map's depths: it is a texel's width from there or not;
+- a share of nothing.
 """
 
 import re
@@ -107,7 +109,7 @@ def negate_conditions(code):
 
 def drop_bias(code):
     """Compares the receiver's own depth."""
-    for m in re.finditer(r"\br\.depth\b", code):
+    for m in re.finditer(r"\br\.depth\b(?! > 1\.0\b)", code):
         yield Edit(m.start(), m.end(), "r.depth_unbiased")
 
 
@@ -115,7 +117,7 @@ def scale_results(code):
     """Makes what is returned 3 % less; of whole numbers it halves them."""
     halves = {"int": " / 2", "uint": " / 2u", "uvec4": " / 2u"}
     types = [(f.start(), f.group(1)) for f in re.finditer(r"^(\w+) \w+\([^)]*\)\s*{", code, re.MULTILINE)]
-    for m in re.finditer(r"\breturn\s+([^;]+);", code):
+    for m in re.finditer(r"\breturn\s+(?!0\.0;)([^;]+);", code):
         kind = next((each for start, each in reversed(types) if start < m.start()), "float")
         scaled = f"({m.group(1)}){halves[kind]}" if kind in halves else f"0.97 * ({m.group(1)})"
         yield Edit(m.start(1), m.end(1), scaled)
