@@ -4,7 +4,8 @@ Left out, because what they give is the same filter:
 - numbers in encode(): it writes four channels, of which a store keeps as many as it has;
 - the sign of a half before fract(): both signs lie a whole period apart;
 - the bias of a receiver that is asked whether it lies beyond the map's depths: it is a texel's width from there or not;
-- a share of nothing.
+- a share of nothing;
+- a quotient by an axis, (1, 0) or (0, 1): it is the product, or undefined.
 """
 
 import re
@@ -144,7 +145,7 @@ def swap_signs(code):
 
 def swap_factors(code):
     """Swaps multiplication and division."""
-    for m in re.finditer(r"(?<= )[*/](?= )", code):
+    for m in re.finditer(r"(?<= )[*/](?= (?!p\.direction\b))", code):
         yield Edit(m.start(), m.end(), "/" if m.group() == "*" else "*")
 
 
