@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "filters/random.h"
+#include "reference/metrics/metric_table.h"
 
 namespace shadowbench::measure {
 namespace {
@@ -35,23 +36,20 @@ std::vector<glm::dvec2> list_phase_shifts(int count, std::uint32_t seed) {
 }
 
 void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases, std::size_t group) {
-  metrics::ErrorStats sum;
-  std::vector<double> replicates(phases.size() / group);
-  for (const metrics::ErrorStats& stats : phases) {
-    sum.rmse += stats.rmse;
-    sum.mae += stats.mae;
-    sum.p95 += stats.p95;
-    sum.mean += stats.mean;
-    sum.max = std::max(sum.max, stats.max);
+  using Number = std::optional<double>& (*)(metrics::MetricValues&);
+  const auto count = static_cast<double>(phases.size());
+  for (const metrics::Metric& metric : metrics::metric_table()) {
+    if (!metric.statistic) continue;
+    double sum = 0.0, largest = 0.0;
+    for (const metrics::ErrorStats& stats : phases) {
+      sum += stats.*metric.statistic;
+      largest = std::max(largest, stats.*metric.statistic);
+    }
+    std::get<Number>(metric.member)(record) = metric.statistic == &metrics::ErrorStats::max ? largest : sum / count;
   }
+  std::vector<double> replicates(phases.size() / group);
   for (std::size_t i = 0; i < replicates.size() * group; ++i)
     replicates[i / group] += phases[i].rmse / static_cast<double>(group);
-  const auto count = static_cast<double>(phases.size());
-  record.error.rmse = sum.rmse / count;
-  record.error.mae = sum.mae / count;
-  record.error.p95 = sum.p95 / count;
-  record.error.max = sum.max;
-  record.error.mean = sum.mean / count;
   record.phases = static_cast<std::int64_t>(phases.size());
   const auto interval = metrics::find_mean_interval(replicates);
   if (!interval) return;

@@ -25,8 +25,8 @@ std::size_t count_phases_of_group(std::size_t phases);
 /// 1956.
 std::vector<glm::dvec2> list_phase_shifts(int count, std::uint32_t seed);
 
-/// Notes the mean of every error over the phases, which come in groups of `group`, with the interval of its RMSE; the
-/// largest error is the largest of all.
+/// Notes every metric of the table that measure_error() gives: its mean over the phases, which come in groups of
+/// `group`, with the interval of the RMSE; the largest error is the largest of all.
 void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases, std::size_t group);
 
 /// Notes how much the image changes from phase to phase, and why it is not known where there is one phase.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reference/metrics/error_stats.h"
+#include "reference/metrics/metric_table.h"
 
 namespace shadowbench::measure {
 namespace {
@@ -51,6 +52,17 @@ TEST(Phases, GroupsBeginAnywhere) {
   }
   for (const auto& axis : counts)
     for (const int count : axis) EXPECT_NEAR(count, kSeeds / 4, 60);
+}
+
+TEST(Phases, EveryErrorOfTheTable_IsItsMeanOverThem_AndTheLargestIsTheLargest) {
+  std::vector<metrics::ErrorStats> phases(4);
+  for (const metrics::Metric& metric : metrics::metric_table())
+    if (metric.statistic) phases[0].*metric.statistic = 8.0;
+  records::CellRecord record;
+  note_errors(record, phases, 1);
+  for (const metrics::Metric& metric : metrics::metric_table())
+    if (metric.statistic) EXPECT_EQ(metric.read(record), metric.path == "error.max" ? 8.0 : 2.0) << metric.path;
+  EXPECT_EQ(record.phases, 4);
 }
 
 TEST(MeanInterval, IsStudents) {
