@@ -127,7 +127,7 @@ std::vector<Metric> list_artefacts() {
        "over neighbours on one surface that cascades share differently, of the sum of what each cascade alone shows "
        "there "
        "times the change of its share",
-       kNotKept, kUntabled, "", kRun, nullptr, true},
+       kNotKept},
   };
 }
 

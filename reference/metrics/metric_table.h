@@ -63,7 +63,6 @@ struct Metric {
   std::string_view limit = {};  ///< the option of `advise` that limits it: "--max-rmse"; empty: none
   MetricSource source = MetricSource::kRun;
   double ErrorStats::*statistic = nullptr;  ///< where measure_error() puts it; null for other sources
-  bool later = false;                       ///< reports of before lack it
 
   /// The path up to its first dot: "error"; empty where it has none.
   std::string_view group() const { return path.substr(0, path.find('.') == path.npos ? 0 : path.find('.')); }

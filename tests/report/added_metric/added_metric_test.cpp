@@ -49,7 +49,15 @@ TEST_F(AddedMetric, IsInTheSchema) {
   const nlohmann::json schema = nlohmann::json::parse(records::results_schema());
   const nlohmann::json group = schema.at("$defs").at("cell").at("properties").at("artefact");
   EXPECT_EQ(group.at("properties").at("banding").at("maximum"), 1);
-  EXPECT_THAT(group.at("required"), Contains("banding"));
+}
+
+TEST_F(AddedMetric, IsEmptyInAReportOfBefore) {
+  nlohmann::json before = records::to_json(cell_);
+  before["key"] = "0123456789abcdef";
+  before.at("artefact").erase("banding");
+  metrics::added_value.reset();
+  records::cell_from_json(before, "here");
+  EXPECT_EQ(metrics::added_value, std::nullopt);
 }
 
 TEST_F(AddedMetric, IsListed) {

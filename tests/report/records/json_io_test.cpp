@@ -374,7 +374,7 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
       json::parse(R"([{"op": "replace", "path": "/cells/0/fit", "value": "box"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/light", "value": "noon"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/coverage/map_used", "value": 2}])"),
-      json::parse(R"([{"op": "remove", "path": "/cells/0/coverage/map_filled"}])"),
+      json::parse(R"([{"op": "remove", "path": "/cells/0/map_size"}])"),
       json::parse(R"([{"op": "remove", "path": "/cells/0/images/texel_grid"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/range/border", "value": "mirror"}])"),
       json::parse(R"([{"op": "replace", "path": "/cells/0/range/far_test", "value": "on"}])"),
