@@ -126,7 +126,10 @@ TEST(AccuracyCsv, HoldsTheErrors_AndEmptyFieldsWhereThereAreNone) {
 
 TEST(AccuracyCsv, HoldsArtefactsAndAttribution) {
   CellRecord cell = make_attributed_cell("vsm", 0.5, {0.125, 0.75, -0.25, 0.375});
-  cell.artefact = {0.1, 0.2, 0.3, 0.4, {}};
+  cell.artefact.acne = 0.1;
+  cell.artefact.leak = 0.2;
+  cell.artefact.contact_gap = 0.3;
+  cell.artefact.noise = 0.4;
   const auto rows = parse_csv(make_csv(CsvTable::kAccuracy, make_run(), {cell}));
   EXPECT_EQ(field(rows, 1, "kernel_rmse"), "0.25");
   EXPECT_EQ(field(rows, 1, "acne"), "0.1");

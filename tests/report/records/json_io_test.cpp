@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "reference/metrics/metric_table.h"
 #include "synthetic.h"
 
 namespace shadowbench::records {
@@ -58,6 +59,20 @@ CellRecord make_timed_out_cell() {
 // No two fields alike.
 constexpr ShaderFacts kFacts{31, 168, 8, 128, 1, 2, 16, 779, 49, 3, 4, 5, 6, 7};
 
+// Gives each metric that a cell lacks a number within its range.
+void fill_metrics(CellRecord& cell) {
+  int place = 0;
+  for (const metrics::Metric& metric : metrics::metric_table())
+    metrics::visit_metric(metric, cell, [&](const std::string&, auto& value) {
+      ++place;
+      if (value) return;
+      if constexpr (std::is_same_v<decltype(value), std::optional<double>&>)
+        value = place / 128.0;
+      else
+        value = place;
+    });
+}
+
 // A cell in which everything that later issues bring exists.
 CellRecord make_full_cell() {
   CellRecord cell = make_cell("cubes", "full", 4.0);
@@ -65,23 +80,25 @@ CellRecord make_full_cell() {
   cell.kernel = {1.9, "soft"};
   cell.teaching = false;
   cell.claims = {{"contact-hardening"}};
-  cell.map_scale = {0.02, 10.0};
   cell.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8, {0.0, 0.9, 1.0}, true, 1.1, 1.2, true, true};
   cell.time_ms.prefilter = Quartiles{1.5, 1.25, 1.75, 3};
   cell.ratio_to_none.static_light = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
-  cell.cost.prefilter_texels = 2097152;
   cell.range = {"edge", false, false};
-  cell.error = {0.1, 0.05, 0.2, 1.0, -0.01, 0.3, 0.04, 0.05};
-  cell.truth = {0.001, 0.9, 0.002};
-  cell.artefact = {0.1, 0.2, 0.3, 0.4, 0.5};
-  cell.attribution = {{0.1, 0.5}, {0.2, -0.1}, {0.3, 0.2}, {0.4, 0.4}};
+  cell.error.kernel_rmse = 0.04;
+  cell.attribution.estimator.share = -0.1;
   cell.images = {"a.png", "b.png", "c.png",   "d.png", "e.exr",
                  "g.png", "h.png", "all.png", "i.png", "j.js",
                  "k.png", "l.js",  "m.js",    "vsm",   TileRecord{1, 2, 3, 4},
                  "n.png", "o.png", 16};
-  cell.stability = {1, 2, 3, -1e-6, 4.5, 11.25, 0.5, 0.25, 0.125, 4, 5};
-  cell.coverage = {3.5, 0.25, 0.75, 0.5};
+  cell.stability.negative_variance_texels = 3;
+  cell.stability.safe_exponent = 11.25;
+  cell.stability.bound_exact_violations = 5;
+  cell.coverage.texels_per_pixel = 3.5;
+  cell.coverage.fewest_texels_per_pixel = 0.25;
+  cell.coverage.map_used = 0.75;
+  cell.coverage.map_filled = 0.5;
+  fill_metrics(cell);
   cell.fit = "view snapped";
   cell.light = "120,-35.5";
   cell.time_ms.stopped = "budget";

@@ -116,8 +116,17 @@ inline CellRecord make_cell(const std::string& scene, const std::string& filter,
 inline CellRecord make_attributed_cell(const std::string& filter, double rmse, const PartValues& shares) {
   CellRecord cell = make_cell("cubes", filter, 4.0);
   cell.absent.erase("error");
-  cell.error = {rmse, rmse / 4.0, 2.0 * rmse, 1.0, -rmse / 8.0, 0.02, rmse / 2.0, rmse / 3.0};
-  cell.truth = {0.001, 0.9, 0.002};
+  cell.error.rmse = rmse;
+  cell.error.mae = rmse / 4.0;
+  cell.error.p95 = 2.0 * rmse;
+  cell.error.max = 1.0;
+  cell.error.mean = -rmse / 8.0;
+  cell.error.flip = 0.02;
+  cell.error.kernel_rmse = rmse / 2.0;
+  cell.error.flicker = rmse / 3.0;
+  cell.truth.se = 0.001;
+  cell.truth.unanimous = 0.9;
+  cell.truth.weight_rmse = 0.002;
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i)
     cell.attribution.*list_error_parts()[i].record = {std::abs(shares[i]) * rmse, shares[i]};
   return cell;
