@@ -17,7 +17,7 @@
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/machines/machine_kinds.h"
-#include "report/pages/advice_text.h"
+#include "report/pages/answer/advice_text.h"
 #include "report/records/gpu_times.h"
 #include "report/records/json_io.h"
 

@@ -14,7 +14,7 @@
 #include "report/files/file_name.h"
 #include "report/images/canvas.h"
 #include "report/images/picture_io.h"
-#include "report/pages/answer.h"
+#include "report/pages/answer/answer.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::run {

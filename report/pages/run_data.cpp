@@ -15,7 +15,7 @@
 #include "report/analysis/trade_measures.h"
 #include "report/document/chart.h"
 #include "report/files/file_name.h"
-#include "report/pages/answer_data.h"
+#include "report/pages/answer/answer_data.h"
 #include "report/pages/external_section.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"

@@ -15,7 +15,7 @@
 #include "report/analysis/surprises.h"
 #include "report/analysis/trade_measures.h"
 #include "report/images/attribution_bar.h"
-#include "report/pages/answer.h"
+#include "report/pages/answer/answer.h"
 #include "report/pages/external_section.h"
 #include "report/pages/run_data.h"
 #include "report/pages/text_tables.h"

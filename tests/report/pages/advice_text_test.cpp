@@ -1,4 +1,4 @@
-#include "report/pages/advice_text.h"
+#include "report/pages/answer/advice_text.h"
 
 #include <gmock/gmock.h>
 

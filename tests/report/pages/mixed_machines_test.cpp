@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "report/analysis/machines/machine_kinds.h"
-#include "report/pages/advice_text.h"
+#include "report/pages/answer/advice_text.h"
 #include "report/pages/run_page.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"

@@ -260,7 +260,7 @@ TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
       ++files;
     }
   }
-  EXPECT_EQ(files, 11u);
+  EXPECT_GE(files, 11u);
   for (const nlohmann::json& cell : read_data(page)["cells"])
     EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(cell["picture"]))) << cell;
 }

@@ -6,7 +6,7 @@
 
 #include "report/analysis/advice_words.h"
 #include "report/analysis/picks.h"
-#include "report/pages/advice_text.h"
+#include "report/pages/answer/advice_text.h"
 #include "report/records/absence.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"

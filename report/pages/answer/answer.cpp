@@ -1,4 +1,4 @@
-#include "report/pages/answer.h"
+#include "report/pages/answer/answer.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/picks.h"
 #include "report/analysis/trade_measures.h"
-#include "report/pages/answer_data.h"
+#include "report/pages/answer/answer_data.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {

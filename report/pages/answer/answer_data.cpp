@@ -1,4 +1,4 @@
-#include "report/pages/answer_data.h"
+#include "report/pages/answer/answer_data.h"
 
 #include <fmt/format.h>
 

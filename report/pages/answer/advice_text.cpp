@@ -1,4 +1,4 @@
-#include "report/pages/advice_text.h"
+#include "report/pages/answer/advice_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
