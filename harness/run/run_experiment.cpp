@@ -332,12 +332,11 @@ class Experiment {
     if (told_.insert(warning).second) warn(warning);
   }
 
-  /// The map of a sun has no behind, and a point light shines there too.
+  /// The map of a sun has no behind, and a light without a cone shines there too.
   void warn_of_tests_without_effect(const scene::Scene& scene) {
-    if (options_.range.behind_test || options_.part.is_worker() ||
-        std::holds_alternative<scene::Spot>(scene.light.kind))
-      return;
-    warn(scene.name + ": --behind-test off changes nothing: only a spot light has a behind, and this light is none");
+    const std::optional<scene::Beam> beam = scene::find_beam(scene.light);
+    if (options_.range.behind_test || options_.part.is_worker() || (beam && beam->has_edge())) return;
+    warn(scene.name + ": --behind-test off changes nothing: only a light with a cone has a behind");
   }
 
   void note_scene(const PlannedScene& planned) {

@@ -29,6 +29,8 @@ struct Beam {
   double cos_outer = 0.0;              ///< none beyond this one
   double reference_m = 1.0;            ///< where its strength is 1
 
+  /// Whether there is a direction that gets no light.
+  bool has_edge() const { return cos_outer > -1.0; }
   /// The share of the cone's light that goes to a point, 0 .. 1: the square of a ramp between both angles, of cosines.
   /// Source: Khronos, KHR_lights_punctual, "Inner and Outer Cone Angles". 0 for the light's own place.
   double cone_at(const glm::dvec3& point_ws) const;
