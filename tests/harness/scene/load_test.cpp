@@ -38,13 +38,14 @@ std::filesystem::path write_tower(const TestFolder& folder) {
                       "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n");
 }
 
-TEST(LoadTest, BuiltInScenes_AreFive) {
+TEST(LoadTest, BuiltInScenes_AreFoundInOrder) {
   std::vector<std::string> names;
   for (const SceneInfo& info : list_scenes(kScenes)) {
     names.push_back(info.name);
     EXPECT_FALSE(info.title.empty());
   }
-  EXPECT_THAT(names, testing::ElementsAre("ball", "cubes", "fence", "stack", "steps"));
+  EXPECT_THAT(names, testing::IsSupersetOf({"ball", "cubes", "fence", "stack", "steps"}));
+  EXPECT_TRUE(std::ranges::is_sorted(names));
 }
 
 TEST(LoadTest, TeachingScenes_AreFoundByNameAndNotAmongTheOthers) {
@@ -54,7 +55,8 @@ TEST(LoadTest, TeachingScenes_AreFoundByNameAndNotAmongTheOthers) {
     EXPECT_FALSE(info.title.empty());
     EXPECT_TRUE(load(info.name, make_options()).warnings.empty());
   }
-  EXPECT_THAT(names, testing::ElementsAre("avenue", "edge", "lamp", "lantern", "minified", "panes", "three_lights"));
+  EXPECT_THAT(names, testing::IsSupersetOf({"edge", "lamp"}));
+  for (const SceneInfo& info : list_scenes(kScenes)) EXPECT_THAT(names, testing::Not(testing::Contains(info.name)));
   EXPECT_TRUE(list_teaching_scenes(kScenes / "nowhere").empty());
   LoadOptions options = make_options();
   EXPECT_THAT(error_of([&] { load("edges", options); }).message(), testing::HasSubstr("did you mean 'edge'"));
