@@ -16,21 +16,21 @@ constexpr double kMostTaps = 2.0 * kWidestRadius + 1.0;  // along an axis
 constexpr double kWeightsSlack = 1e-6;                   // of the sum
 
 /// A shape with what its size may be.
-struct Shape {
+struct DeclaredShape {
   const char* name;
   KernelShape shape;
   Ends size;  ///< texels
   bool whole;
 };
 
-constexpr Shape kShapes[] = {{"tent", KernelShape::kTent, {0.5, kWidestRadius}, false},
-                             {"box", KernelShape::kBox, {1.0, kMostTaps}, true},
-                             {"disk", KernelShape::kDisk, {0.0, kWidestRadius}, false},
-                             {"gaussian", KernelShape::kGaussian, {0.0, kWidestRadius}, true}};
+constexpr DeclaredShape kShapes[] = {{"tent", KernelShape::kTent, {0.5, kWidestRadius}, false},
+                                     {"box", KernelShape::kBox, {1.0, kMostTaps}, true},
+                                     {"disk", KernelShape::kDisk, {0.0, kWidestRadius}, false},
+                                     {"gaussian", KernelShape::kGaussian, {0.0, kWidestRadius}, true}};
 
-const Shape& find_shape(const TomlValue& value, const std::string& name) {
+const DeclaredShape& find_shape(const TomlValue& value, const std::string& name) {
   std::vector<std::string> known;
-  for (const Shape& each : kShapes) {
+  for (const DeclaredShape& each : kShapes) {
     if (each.name == name) return each;
     known.emplace_back(each.name);
   }
@@ -44,7 +44,7 @@ void read_shape(const TomlValue& value, const FilterSpec& spec, DeclaredKernel& 
   const std::size_t colon = text ? text->find(':') : std::string::npos;
   if (colon == std::string::npos)
     throw value.error("a kernel's shape must be a text such as \"tent:2\" or \"disk:radius\"");
-  const Shape& shape = find_shape(value, text->substr(0, colon));
+  const DeclaredShape& shape = find_shape(value, text->substr(0, colon));
   const std::string size = text->substr(colon + 1);
   kernel.shape = shape.shape;
   double number = 0.0;

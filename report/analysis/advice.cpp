@@ -23,7 +23,7 @@ namespace shadowbench::analysis {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr const char* kRmse = "error.rmse";
+constexpr const char* kRmseField = "error.rmse";
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
@@ -186,7 +186,7 @@ double mean_or_infinity(const Candidate& candidate, const LimitSpec& spec, Light
 }
 
 void sort_by_cost(std::vector<Candidate>& candidates, const AdviceRequest& request) {
-  const LimitSpec& rmse = *std::ranges::find(limit_table(), kRmse, &LimitSpec::field);
+  const LimitSpec& rmse = *std::ranges::find(limit_table(), kRmseField, &LimitSpec::field);
   const auto key = [&](const Candidate& candidate) {
     const auto size = request.cheapest == CostKind::kRatio ? size_of(candidate.configuration) : std::pair(0, 0);
     return std::tuple(size, candidate.cost.mean, mean_or_infinity(candidate, cost_spec(CostKind::kTime), request.light),
@@ -294,7 +294,7 @@ Verdict judge_limit(const Configuration& configuration, const Demand& demand, Li
   verdict.worst = value_of(verdict.where);
   verdict.kept = *verdict.worst <= demand.most;
   for (const records::CellRecord* cell : telling)
-    if (verdict.kept && spec.field == kRmse && demand.most - value_of(cell) < find_rmse_reach(*cell))
+    if (verdict.kept && spec.field == kRmseField && demand.most - value_of(cell) < find_rmse_reach(*cell))
       verdict.uncertain = cell;
   return verdict;
 }

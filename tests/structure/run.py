@@ -4,7 +4,8 @@
 A source is listed in its room's CMakeLists.txt. An include runs from a room to one that stands before it in ROOMS, never back
 up. A room is one CMake target and one namespace, with the folders inside it that are no rooms. Every folder of sources has a
 README and holds at most 40 files (the filters' own do not count). No source has more than 400 lines (a test 500), none outside of
-REPLAYS names a filter, and none includes a library that belongs to another folder.
+REPLAYS names a filter, and none includes a library that belongs to another folder. No two sources of one namespace, product or
+tests, define the same name for themselves: CMake joins sources into one (CMAKE_UNITY_BUILD), and a further file decides anew which.
 """
 import argparse
 import pathlib
@@ -100,6 +101,28 @@ def check_folder(root, folder, faults):
             faults.append(f"{name}: has a target of its own, and is no room")
 
 
+def list_own_names(text):
+    """What a source defines in its unnamed namespace: types, constants, and functions with their parameters."""
+    text = re.sub(r'R"(\w*)\(.*?\)\1"', "", text, flags=re.DOTALL)
+    for own in re.findall(r"^namespace \{$(.*?)^\}  // namespace$", text, re.DOTALL | re.MULTILINE):
+        yield from re.findall(r"^(?:struct|class|enum(?: class)?) (\w+)[^;]*$", own, re.MULTILINE)
+        yield from re.findall(r"^(?:constexpr|const) [^=(]*?(\w+)(?:\[\w*\])* ?[={]", own, re.MULTILINE)
+        yield from re.findall(r"^(?!TEST)\w[\w:<>,&* ]*[ &*](\w+\([^)]*\)) (?:const )?\{$", own, re.MULTILINE)
+
+
+def check_own_names(root, faults):
+    owners = {}
+    for path in sorted(path for top in ("base", "filters", "reference", "report", "harness", "tests") for path in root.joinpath(top).rglob("*.cpp")):
+        name, text = path.relative_to(root).as_posix(), path.read_text(encoding="utf-8")
+        space = re.findall(r"^namespace (\S+) \{$", text, re.MULTILINE)[:1]
+        # Many programs have one of these two namespaces.
+        folder = path.parent if space in (["shadowbench"], ["shadowbench::test"]) else name.startswith("tests/")
+        program = (*space, folder, name.endswith("_gl_test.cpp"))
+        for own in list_own_names(text):
+            if owners.setdefault((program, own), name) != name:
+                faults.append(f"{name}: defines {own}, as {owners[program, own]} does; give one another name")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
@@ -111,6 +134,7 @@ def main():
                 continue
             check_folder(root, path, faults) if path.is_dir() else check_source(root, path, faults) if path.suffix in COUNTED_LINES else None
         check_folder(root, root.joinpath(top), faults)
+    check_own_names(root, faults)
     for room in ROOMS:
         if not root.joinpath(room, "CMakeLists.txt").exists():
             faults.append(f"{room}: has no CMakeLists.txt, so it is no target")

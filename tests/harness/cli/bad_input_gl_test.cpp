@@ -9,9 +9,9 @@ namespace {
 
 using BadInput = ProgramTest;
 
-constexpr const char* kSmall = "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes ";
+constexpr const char* kSmallRun = "run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes ";
 
-std::string small(const std::string& rest) { return kSmall + rest; }
+std::string small(const std::string& rest) { return kSmallRun + rest; }
 
 TEST_F(BadInput, UnknownOption) { expect_refusal("run --colour red", 2, {"--colour"}); }
 TEST_F(BadInput, NoCommand) { expect_refusal("", 2, {"subcommand"}); }
@@ -263,7 +263,7 @@ TEST_F(BadInput, NoContext) {
 }
 TEST_F(BadInput, OutputFolderCannotBeWritten) {
   write("out", "a file, not a folder");
-  const Outcome outcome = run(kSmall);
+  const Outcome outcome = run(kSmallRun);
   EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
   EXPECT_NE(outcome.err.find("out"), std::string::npos);
   EXPECT_EQ(read_text(folder() / "out"), "a file, not a folder");

@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kSmall = " --out out --scene cubes --map-size 128 --size 96x54 ";
+constexpr const char* kSmallScene = " --out out --scene cubes --map-size 128 --size 96x54 ";
 
 class TuneCommand : public ProgramTest {
  protected:
@@ -19,7 +19,7 @@ class TuneCommand : public ProgramTest {
 
   nlohmann::json read_results() const { return nlohmann::json::parse(read_text(folder() / "report" / "results.json")); }
 
-  Outcome tune(const std::string& arguments) const { return run("tune" + std::string(kSmall) + arguments); }
+  Outcome tune(const std::string& arguments) const { return run("tune" + std::string(kSmallScene) + arguments); }
 
   /// What the filter at its default scores in the view that is the scene's own.
   double default_score(const std::string& metric) const {
@@ -147,7 +147,7 @@ TEST_F(TuneCommand, BadInput_IsRefused) {
   expect_refusal("tune --out out --filters vsm --bias receiver-plane", 2, {"vsm"});
   expect_refusal("tune --out out --filters vsm --scene stepz", 2, {"'stepz'", "steps"});
   expect_refusal("tune --out out --filters vsm --scene cubes --scene cubes", 2, {"two scenes", "'cubes'"});
-  expect_refusal("tune --filters vsm --metric leak" + std::string(kSmall), 3,
+  expect_refusal("tune --filters vsm --metric leak" + std::string(kSmallScene), 3,
                  {"'cubes'", "leak", "needs 100", "--scene"});
   write("file", "");
   expect_refusal("tune --filters vsm --scene cubes --map-size 64 --size 32x18 --budget 1 --out file/out", 6, {"file"});

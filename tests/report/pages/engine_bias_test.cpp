@@ -49,7 +49,7 @@ records::BiasModeRecord make_mode(const std::string& mode, double setting) {
   return {mode, "key", "", {curve}, {}, "", ""};
 }
 
-records::BiasSweepRecord make_sweep() {
+records::BiasSweepRecord make_engine_sweep() {
   records::BiasSweepRecord sweep;
   sweep.filters = {"none", "vsm"};
   sweep.angle_deg = kAngle;
@@ -68,7 +68,7 @@ const records::TextTable& table_of(const document::Section& section) {
 }
 
 TEST(EngineBias, Settings_MoveAsFarAsTheBiasTheyStandFor) {
-  const document::Section section = make_engine_section(make_sweep());
+  const document::Section section = make_engine_section(make_engine_sweep());
   const records::TextTable& table = table_of(section);
   ASSERT_EQ(table.rows.size(), 2u);
   std::size_t checked = 0;
@@ -89,7 +89,7 @@ TEST(EngineBias, Settings_MoveAsFarAsTheBiasTheyStandFor) {
 }
 
 TEST(EngineBias, OfALamp_IsLeftOut) {
-  records::BiasSweepRecord sweep = make_sweep();
+  records::BiasSweepRecord sweep = make_engine_sweep();
   sweep.texel_m.most *= 2.0;
   const document::Section section = make_engine_section(sweep);
   ASSERT_EQ(section.blocks.size(), 1u);

@@ -42,7 +42,7 @@ records::CellRecord make_accumulated(double taps, const std::string& rotation, d
   return cell;
 }
 
-std::vector<records::CellRecord> make_cells() {
+std::vector<records::CellRecord> make_accumulated_cells() {
   return {make_accumulated(4, "per-pixel", 0.02),  make_accumulated(16, "per-pixel", 0.0101),
           make_accumulated(4, "blue-noise", 0.04), make_accumulated(16, "blue-noise", 0.01),
           make_accumulated(32, "other", 0.001),    make_accumulated(16, "none", 0.0),
@@ -50,7 +50,7 @@ std::vector<records::CellRecord> make_cells() {
 }
 
 TEST(FramesPage, CountsFramesUntilTheyEqualSixteenTaps_OfTheSameRotation) {
-  const auto groups = analysis::group_cells(make_cells());
+  const auto groups = analysis::group_cells(make_accumulated_cells());
   ASSERT_EQ(groups.size(), 1u);
   const std::vector<TapEquivalence> list = list_equivalences(groups.front());
   ASSERT_EQ(list.size(), 4u) << "without 16 taps of its rotation that have noise a cell equals nothing";
@@ -62,7 +62,7 @@ TEST(FramesPage, CountsFramesUntilTheyEqualSixteenTaps_OfTheSameRotation) {
 }
 
 TEST(FramesPage, SaysIt) {
-  const std::string text = document::write_markdown(make_frames_page(make_cells(), {}));
+  const std::string text = document::write_markdown(make_frames_page(make_accumulated_cells(), {}));
   EXPECT_THAT(text, HasSubstr("4 taps have the noise of 16 taps in one frame after 4 frames, and after more than 8: "
                               "poisson (rotation blue-noise, taps 4)."));
   EXPECT_THAT(text, HasSubstr("more than 8"));
@@ -72,7 +72,7 @@ TEST(FramesPage, SaysIt) {
 
 /// What is measured of frames is written, and read again; a cell without it says nothing of it.
 TEST(FramesPage, RecordsAreReadAgain) {
-  records::CellRecord cell = make_cells().front();
+  records::CellRecord cell = make_accumulated_cells().front();
   cell.accumulation->ghosts = {{4.0, "clamped", 7, 0.5, 3}, {4.0, "exponential", 0, {}, {}}};
   const nlohmann::json json = records::to_json(cell);
   EXPECT_EQ(records::to_json(records::cell_from_json(json, "here")), json);
@@ -81,7 +81,7 @@ TEST(FramesPage, RecordsAreReadAgain) {
 }
 
 TEST(FramesPage, RecordsThatLackARule_AreBadInput) {
-  records::CellRecord cell = make_cells().front();
+  records::CellRecord cell = make_accumulated_cells().front();
   cell.accumulation->resolves.clear();
   EXPECT_THROW(make_frames_page({cell}, {}), Error);
 }
