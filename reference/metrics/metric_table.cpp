@@ -124,9 +124,8 @@ std::vector<Metric> list_artefacts() {
        kRate, kTabled},
       {"artefact.seam", at<&V::artefact, &ArtefactRecord::seam>, "visibility", kPositive, kLess, "seam",
        "how much the image changes from pixel to pixel because cascades take over from each other: root mean square, "
-       "over neighbours on one surface that cascades share differently, of the sum of what each cascade alone shows "
-       "there "
-       "times the change of its share",
+       "over neighbours on one surface that cascades share differently, of the sum of what each cascade alone "
+       "shows there times the change of its share",
        kNotKept},
   };
 }
