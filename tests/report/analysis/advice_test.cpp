@@ -41,7 +41,7 @@ records::CellRecord measure(const std::string& scene, const std::string& filter,
   cell.ratio_to_none.moving = records::Ratio{(1.0 + ms) / 5.0, {(1.0 + ms) / 5.0 * 0.99, (1.0 + ms) / 5.0 * 1.01}};
   cell.error.rmse = rmse;
   cell.truth.se = 0.001;
-  cell.artefact = {0.0, 0.0, 0.0, 0.0, {}};
+  cell.artefact.acne = cell.artefact.leak = cell.artefact.contact_gap = cell.artefact.noise = 0.0;
   cell.absent.erase("error");
   cell.key = records::cell_key(cell);
   return cell;

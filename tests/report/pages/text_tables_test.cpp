@@ -40,7 +40,10 @@ TEST(CostTable, Rows_AreAsLongAsTheHeader) {
 
 TEST(AccuracyTable, HoldsErrorsPartsAndArtefacts) {
   records::CellRecord cell = make_attributed_cell("vsm", 0.04, {0.001, 0.71, 0.089, 0.2});
-  cell.artefact = {0.0, 0.0421, 0.00012, 0.5, {}};
+  cell.artefact.acne = 0.0;
+  cell.artefact.leak = 0.0421;
+  cell.artefact.contact_gap = 0.00012;
+  cell.artefact.noise = 0.5;
   cell.rmse_ci95 = records::Interval{0.03, 0.05};
   const records::TextTable table = make_accuracy_table({"cubes", {cell}});
   EXPECT_EQ(field(table, 0, "RMSE to the area truth [95 % over phases]"), "0.04 [0.03, 0.05]");
