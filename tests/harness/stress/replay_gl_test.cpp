@@ -23,10 +23,10 @@ TEST(Replay, OfA16BitExponentialVarianceMap_ShowsBothRankings) {
   ASSERT_EQ(exhibits.size(), 1u);
   const auto& rows = exhibits[0].table->rows;
   ASSERT_EQ(rows.size(), 5u);
-  EXPECT_THAT(rows[0][0], HasSubstr("c=10, store=rg16f"));
+  EXPECT_THAT(rows[0][0], HasSubstr("(c=10, radius=1, store=rg16f"));
   EXPECT_THAT(rows[0][1], Not(StartsWith("0 of")));
   EXPECT_EQ(rows[0][3], "3 of 3");
-  EXPECT_THAT(rows[1][0], HasSubstr("c=5.54, store=rg16f"));
+  EXPECT_THAT(rows[1][0], HasSubstr("(c=5.54, radius=1, store=rg16f"));
   EXPECT_THAT(rows[1][1], StartsWith("0 of"));
   EXPECT_EQ(rows[1][4], "1 of 3");
   EXPECT_TRUE(std::filesystem::exists(inputs.out / exhibits[0].pictures.front().file));
