@@ -3,20 +3,22 @@
 // The one place that knows how Embree 3 and Embree 4 differ; CMake says which one was found.
 #if SHADOWBENCH_EMBREE_MAJOR == 3
 #include <embree3/rtcore.h>
+using EmbreeContext = RTCIntersectContext;
 #else
 #include <embree4/rtcore.h>
+using EmbreeContext = RTCRayQueryContext;
 #endif
 
 namespace shadowbench::truth {
 
 class Dimming;
 
-#if SHADOWBENCH_EMBREE_MAJOR == 3
 /// What filter functions get beside the rays.
-struct OcclusionContext : RTCIntersectContext {
+struct OcclusionContext : EmbreeContext {
   Dimming* dimming;
 };
 
+#if SHADOWBENCH_EMBREE_MAJOR == 3
 /// Sets `tfar` of every active ray that something blocks to minus infinity. Filter functions find `dimming` in their
 /// context.
 inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays, Dimming* dimming = nullptr) {
@@ -33,10 +35,6 @@ inline void intersect_packet(const int* active, RTCScene scene, RTCRayHit16* ray
   rtcIntersect16(active, scene, &context, rays);
 }
 #else
-struct OcclusionContext : RTCRayQueryContext {
-  Dimming* dimming;
-};
-
 inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays, Dimming* dimming = nullptr) {
   OcclusionContext context;
   rtcInitRayQueryContext(&context);

@@ -79,16 +79,17 @@ std::vector<unsigned char> pack_words(const Words& plane, int width) {
 }
 
 std::vector<unsigned char> compress_bytes(std::span<const unsigned char> bytes) {
+  // The bound that holds for every stream has room for what one of this memory makes.
+  std::vector<unsigned char> packed(deflateBound(nullptr, static_cast<uLong>(bytes.size())));
   z_stream stream{};
   if (deflateInit2(&stream, kCompression, Z_DEFLATED, MAX_WBITS, kCompressionMemory, Z_FILTERED) != Z_OK)
     throw std::bad_alloc();
-  std::vector<unsigned char> packed(deflateBound(&stream, static_cast<uLong>(bytes.size())));
   stream.next_in = const_cast<Bytef*>(bytes.data());  // which zlib does not write
   stream.avail_in = static_cast<uInt>(bytes.size());
   stream.next_out = packed.data();
   stream.avail_out = static_cast<uInt>(packed.size());
   [[maybe_unused]] const int result = deflate(&stream, Z_FINISH);
-  assert(result == Z_STREAM_END);  // the bound has room for it
+  assert(result == Z_STREAM_END);
   packed.resize(stream.total_out);
   deflateEnd(&stream);
   return packed;

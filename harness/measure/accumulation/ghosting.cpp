@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kAtRest = 16;          // frames before the motion, and those of what the filter itself sees at rest
 constexpr double kTrial_rad = 1e-3;  // small beside what a shadow's caster is seen under
-constexpr int kMovingFrames = 8, kMostAtRest = 64;
+constexpr int kMovingFrames = 8;     // that a shadow moves for
+constexpr int kMostAtRest = 64;      // frames that it is followed for then
 
 /// How far the shadow at a receiver moves in the trial, in texels; nothing where there is no shadow.
 std::optional<double> find_move(const FrameBench& bench, const LightMap& map, const images::Image& depths,

@@ -4,8 +4,8 @@
 
 namespace shadowbench::measure {
 
-/// Frames that a shadow moves for, and the most that it is then followed at rest.
-inline constexpr double kShownTexels = 4.0;  ///< of the motion whose pictures are kept
+/// Texels a frame of the motion whose pictures are kept.
+inline constexpr double kShownTexels = 4.0;
 
 /// A turn of a task's light about the vertical, frame by frame.
 struct GhostMotion {

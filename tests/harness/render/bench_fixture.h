@@ -124,6 +124,15 @@ inline gl::Context& shared_context() {
   return *choice.context;
 }
 
+/// A camera that looks straight down.
+inline scene::Camera look_down(const glm::vec3& from) {
+  scene::Camera camera;
+  camera.position_ws = from;
+  camera.forward_ws = {0, -1, 0};
+  camera.up_ws = {0, 0, -1};
+  return camera;
+}
+
 inline scene::Scene load_builtin(const std::string& name) {
   scene::Scene scene = scene::load(name.substr(0, name.find(kBy)), {.scenes_folder = options::find_resources().scenes});
   scene.name = name;

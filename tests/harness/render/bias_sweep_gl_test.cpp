@@ -32,10 +32,7 @@ scene::Scene make_plane(double tilt_deg, double azimuth_deg) {
   const double tilt = glm::radians(tilt_deg), azimuth = glm::radians(azimuth_deg);
   scene.light.kind = scene::Sun{glm::normalize(
       glm::vec3(-std::sin(tilt) * std::cos(azimuth), -std::cos(tilt), -std::sin(tilt) * std::sin(azimuth)))};
-  scene::Camera camera;
-  camera.position_ws = {0.37f, 10.0f, 0.21f};
-  camera.forward_ws = {0, -1, 0};
-  camera.up_ws = {0, 0, -1};
+  scene::Camera camera = look_down({0.37f, 10.0f, 0.21f});
   camera.orthographic_height_m = 7.0f;
   scene.cameras = {camera};
   return scene;

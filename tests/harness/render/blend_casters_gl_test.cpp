@@ -30,11 +30,7 @@ scene::Scene make_panes(std::vector<float> alphas) {
     scene.meshes.back().material = static_cast<int>(scene.materials.size()) - 1;
   }
   scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
-  scene::Camera camera;
-  camera.position_ws = {0.0f, 6.0f, 0.1f};
-  camera.forward_ws = {0, -1, 0};
-  camera.up_ws = {0, 0, -1};
-  scene.cameras = {camera};
+  scene.cameras = {look_down({0.0f, 6.0f, 0.1f})};
   return scene;
 }
 

@@ -35,11 +35,7 @@ scene::Scene make_scene() {
   scene.materials.emplace_back();
   scene.meshes = {make_quad(4.0f, 0.0f), make_box(1.0f, 1.0f, 2.0f)};
   scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
-  scene::Camera camera;
-  camera.position_ws = {0.0f, 6.0f, 0.1f};
-  camera.forward_ws = {0, -1, 0};
-  camera.up_ws = {0, 0, -1};
-  scene.cameras = {camera};
+  scene.cameras = {look_down({0.0f, 6.0f, 0.1f})};
   return scene;
 }
 
