@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "report/analysis/cell_group.h"
@@ -12,7 +13,6 @@
 #include "report/analysis/gpu/gpu_costs.h"
 #include "report/analysis/stability_words.h"
 #include "report/analysis/summary.h"
-#include "report/analysis/surprises.h"
 #include "report/analysis/trade_measures.h"
 #include "report/images/attribution_bar.h"
 #include "report/pages/answer/answer.h"
@@ -115,7 +115,7 @@ std::optional<document::Bars> make_bars(const analysis::CellGroup& group) {
   const images::BarScale scale = images::choose_bar_scale(drawn);
   document::Bars bars;
   bars.title = fmt::format(
-      "Where the error comes from: each part's share times RMSE. Parts left of the grey line offset the others. The "
+      "Each part's share times RMSE. Parts left of the grey line offset the others. The "
       "black tick is the RMSE, the full width {}.",
       records::format_number(scale.length));
   for (const records::ErrorPart& part : records::list_error_parts())
@@ -132,7 +132,7 @@ std::string describe_times(const records::RunRecord& run, const std::vector<anal
                              : "times of machines of several kinds do not compare; the warnings name the machines";
 }
 
-/// Tables and bars of one scene.
+/// Tables of one scene.
 void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord& run, const analysis::CellGroup& group,
                  const std::vector<analysis::MachineCount>& machines) {
   blocks.emplace_back(document::Paragraph{records::describe_settings(group.cells.front()), true});
@@ -148,7 +148,6 @@ void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord&
                       make_accuracy_table(group)});
   if (const auto stability = analysis::describe_stability(group); !stability.empty())
     blocks.emplace_back(document::Sentences{{}, stability});
-  if (auto bars = make_bars(group)) blocks.emplace_back(std::move(*bars));
 }
 
 void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGroup& group) {
@@ -167,10 +166,10 @@ void add_groups(std::vector<document::Block>& blocks, const records::RunRecord& 
                 const std::vector<records::CellRecord>& cells) {
   const bool is_large = cells.size() > kMostCellsInDetail;
   if (is_large)
-    blocks.emplace_back(document::Paragraph{fmt::format(
-        "The run has {} cells: of more than {}, tables and bars of each scene are left out. timings.csv and "
-        "accuracy.csv have all numbers.",
-        cells.size(), kMostCellsInDetail)});
+    blocks.emplace_back(document::Paragraph{
+        fmt::format("The run has {} cells: of more than {}, tables of each scene are left out. timings.csv and "
+                    "accuracy.csv have all numbers.",
+                    cells.size(), kMostCellsInDetail)});
   const std::vector<analysis::MachineCount> machines = analysis::count_machines(cells);
   for (const analysis::CellGroup& group : analysis::group_cells(cells)) {
     document::Details details{head_group(run, cells, group.cells.front()), {}};
@@ -178,6 +177,33 @@ void add_groups(std::vector<document::Block>& blocks, const records::RunRecord& 
     add_pictures(details.blocks, group);
     if (!details.blocks.empty()) blocks.emplace_back(std::move(details));
   }
+}
+
+double find_worst_rmse(const analysis::CellGroup& group) {
+  double worst = 0.0;
+  for (const records::CellRecord& cell : group.cells) worst = std::max(worst, cell.error.rmse.value_or(0.0));
+  return worst;
+}
+
+/// Bars of every scene and map, the one with the largest RMSE first and unfolded; nothing where no cell has an
+/// attribution, or where so many cells have that nobody would look at all.
+std::optional<document::Section> make_causes_section(const records::RunRecord& run,
+                                                     const std::vector<records::CellRecord>& cells) {
+  if (cells.size() > kMostCellsInDetail) return std::nullopt;
+  std::vector<analysis::CellGroup> groups = analysis::group_cells(cells);
+  std::ranges::stable_sort(groups, std::greater(), find_worst_rmse);
+  document::Section section{"causes", "Where the error comes from", {}};
+  for (const analysis::CellGroup& group : groups) {
+    auto bars = make_bars(group);
+    if (!bars) continue;
+    const std::string head = head_group(run, cells, group.cells.front());
+    if (section.blocks.empty()) {
+      section.blocks = {document::Heading{head}, std::move(*bars)};
+      continue;
+    }
+    section.blocks.emplace_back(document::Details{head, {std::move(*bars)}});
+  }
+  return section.blocks.empty() ? std::nullopt : std::optional(std::move(section));
 }
 
 /// RMSE of scenes by filters: what the script's table begins with.
@@ -298,8 +324,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
   const auto without_external = analysis::leave_out_external(cells);
   const std::vector<records::CellRecord>& own = without_external ? *without_external : cells;
-  if (const auto surprises = analysis::list_surprises(own); !surprises.empty())
-    add({"surprises", "What surprises", {document::Sentences{{}, surprises}}});
+  if (auto causes = make_causes_section(run, own)) add(std::move(*causes));
   if (!run.warnings.empty()) add({"warnings", "Warnings", {document::Sentences{{}, run.warnings}}, true});
   if (!cells.empty()) {
     add(make_table_section(cells));

@@ -8,7 +8,6 @@
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cost_curves.h"
 #include "report/analysis/maps/map_family.h"
-#include "report/analysis/surprises.h"
 #include "report/analysis/trade.h"
 #include "report/records/absence.h"
 #include "report/records/json_io.h"
@@ -191,12 +190,6 @@ TEST(MixedMachines, WhatNeedsMilliseconds_IsSilent) {
   for (records::CellRecord& cell : cells) cell.fit = "tight";
   ASSERT_THAT(make_growth_table(cells).header, SizeIs(2));
   EXPECT_THAT(make_growth_table(*withhold_mixed_times(cells)).header, SizeIs(1));
-}
-
-TEST(MixedMachines, NoTimeIsWastedThere) {
-  std::vector<records::CellRecord> cells = make_mixed_cells();
-  ASSERT_THAT(list_surprises(cells), Not(IsEmpty()));
-  EXPECT_THAT(list_surprises(*withhold_mixed_times(cells)), IsEmpty());
 }
 
 }  // namespace
