@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -23,6 +25,7 @@ namespace shadowbench::analysis {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr const char* kUnfiltered = "none";
 constexpr const char* kRmseField = "error.rmse";
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
@@ -96,19 +99,6 @@ std::vector<const records::CellRecord*> choose_class(std::vector<const records::
   return cells;
 }
 
-// Where nothing that is seen is limited, the cheapest is often no better than no filter.
-void set_aside_no_gain(Advice& advice, const std::vector<const records::CellRecord*>& cells) {
-  std::vector<Configuration> configurations;
-  for (const Candidate& each : advice.keeping) configurations.push_back(each.configuration);
-  const std::vector<std::optional<bool>> gains = find_gains(configurations, cells);
-  advice.compares_with_none = std::ranges::count(gains, std::optional(true)) > 0;
-  if (!advice.compares_with_none) return;
-  std::vector<Candidate> gaining;
-  for (std::size_t i = 0; i < gains.size(); ++i)
-    (gains[i].value_or(true) ? gaining : advice.no_gain).push_back(std::move(advice.keeping[i]));
-  advice.keeping = std::move(gaining);
-}
-
 // Says why a value cannot be had; empty where it can.
 std::string find_gap(const std::vector<const records::CellRecord*>& cells, const LimitSpec& spec, LightMotion light,
                      const std::vector<Place>& places) {
@@ -161,7 +151,9 @@ records::Interval combine(double mean, const std::vector<double>& values,
   return {mean - std::sqrt(below) / count, mean + std::sqrt(above) / count};
 }
 
-std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice) {
+const LimitSpec& rmse_spec() { return *std::ranges::find(limit_table(), kRmseField, &LimitSpec::field); }
+
+std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice, bool needs_rmse) {
   const AdviceRequest& request = advice.request;
   if (std::string gap = find_missing_cell(configuration, advice.places); !gap.empty())
     return Unjudged{configuration, std::move(gap), {}};
@@ -173,26 +165,73 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
     candidate.verdicts.push_back(std::move(verdict));
   }
   std::string gap = find_gap(configuration.cells, cost_spec(request.cheapest), request.light, advice.places);
+  if (gap.empty() && needs_rmse) gap = find_gap(configuration.cells, rmse_spec(), request.light, advice.places);
   if (!gap.empty()) return Unjudged{configuration, std::move(gap), {}};
   candidate.cost = *measure_cost(configuration.cells, request.cheapest, request.light);
   return candidate;
 }
 
-double mean_or_infinity(const Candidate& candidate, const LimitSpec& spec, LightMotion light) {
+double sum_times(const Candidate& candidate, LightMotion light) {
   double sum = 0.0;
   for (const records::CellRecord* cell : candidate.configuration.cells)
-    sum += spec.read(*cell, light).value_or(kInfinity);
+    sum += cost_spec(CostKind::kTime).read(*cell, light).value_or(kInfinity);
   return sum;
 }
 
 void sort_by_cost(std::vector<Candidate>& candidates, const AdviceRequest& request) {
-  const LimitSpec& rmse = *std::ranges::find(limit_table(), kRmseField, &LimitSpec::field);
   const auto key = [&](const Candidate& candidate) {
     const auto size = request.cheapest == CostKind::kRatio ? size_of(candidate.configuration) : std::pair(0, 0);
-    return std::tuple(size, candidate.cost.mean, mean_or_infinity(candidate, cost_spec(CostKind::kTime), request.light),
-                      mean_or_infinity(candidate, rmse, request.light));
+    return std::tuple(size, candidate.cost.mean, candidate.rmse ? candidate.rmse->value : kInfinity,
+                      sum_times(candidate, request.light));
   };
   std::ranges::stable_sort(candidates, {}, key);
+}
+
+// Finds the cheapest configuration without a filter, whatever it keeps and how wide kernels are to be, and says of each
+// candidate whether it is clearly better.
+void compare_with_unfiltered(Advice& advice, const std::vector<const records::CellRecord*>& cells) {
+  Advice open;
+  open.request = advice.request;
+  open.request.demands.clear();
+  open.places = advice.places;
+  std::vector<Candidate> candidates;
+  for (const Configuration& configuration : list_configurations(cells)) {
+    if (configuration.cells.front()->filter != kUnfiltered) continue;
+    auto judged = judge(configuration, open, true);
+    if (auto* candidate = std::get_if<Candidate>(&judged)) candidates.push_back(std::move(*candidate));
+  }
+  if (candidates.empty()) return;
+  sort_by_cost(candidates, open.request);
+  const Candidate& cheapest = candidates.front();
+  advice.unfiltered = cheapest.configuration.name;
+  for (auto* list : {&advice.keeping, &advice.failing})
+    for (Candidate& each : *list) each.gains = each.rmse && is_clearly_less_error(*each.rmse, *cheapest.rmse);
+}
+
+// Moves to another list what a test finds among candidates; both keep their order.
+template <class Test>
+std::vector<Candidate> take_out(std::vector<Candidate>& from, Test test) {
+  const auto found = std::ranges::stable_partition(from, std::not_fn(test));
+  std::vector<Candidate> taken(std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
+  from.erase(found.begin(), found.end());
+  return taken;
+}
+
+// Keeps the front, of candidates that are sorted by cost and then RMSE: each must have less RMSE than all before it.
+void take_out_beaten(Advice& advice) {
+  double least = kInfinity;
+  advice.beaten = take_out(advice.keeping, [&](const Candidate& each) {
+    if (!each.rmse || each.rmse->value < least) {
+      if (each.rmse) least = each.rmse->value;
+      return false;
+    }
+    return true;
+  });
+}
+
+void take_out_no_gain(Advice& advice) {
+  if (std::ranges::any_of(advice.keeping, &Candidate::gains))
+    advice.no_gain = take_out(advice.keeping, std::not_fn(&Candidate::gains));
 }
 
 std::vector<std::size_t> list_failed(const Candidate& candidate) {
@@ -268,6 +307,11 @@ std::optional<records::Interval> find_interval(const records::CellRecord& cell, 
 }
 
 }  // namespace
+
+bool beats(const Candidate& a, const Candidate& b) {
+  if (!a.rmse || !b.rmse || a.cost.mean > b.cost.mean || a.rmse->value > b.rmse->value) return false;
+  return a.cost.mean < b.cost.mean || a.rmse->value < b.rmse->value;
+}
 
 bool limits_what_is_seen(const AdviceRequest& request) {
   return std::ranges::any_of(
@@ -352,8 +396,9 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
   const std::vector<const records::CellRecord*> asked = choose_cells(cells, request, advice),
                                                 chosen = choose_class(asked, request.width_class);
   advice.places = list_places(chosen);
+  const bool has_errors = std::ranges::any_of(asked, [](const auto* cell) { return cell->error.rmse.has_value(); });
   for (const Configuration& configuration : list_configurations(chosen)) {
-    auto verdict = judge(configuration, advice);
+    auto verdict = judge(configuration, advice, has_errors);
     if (auto* unjudged = std::get_if<Unjudged>(&verdict)) {
       advice.unjudged.push_back(std::move(*unjudged));
       continue;
@@ -362,7 +407,9 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
     (list_failed(candidate).empty() ? advice.keeping : advice.failing).push_back(std::move(candidate));
   }
   sort_by_cost(advice.keeping, advice.request);
-  if (!request.gainless && !limits_what_is_seen(request)) set_aside_no_gain(advice, asked);
+  compare_with_unfiltered(advice, asked);
+  if (!request.whole) take_out_beaten(advice);
+  if (!request.whole && !limits_what_is_seen(request)) take_out_no_gain(advice);
   sort_by_cost(advice.failing, advice.request);
   for (std::size_t i = 0; i < request.demands.size(); ++i) advice.obstacles.push_back(find_obstacle(advice, i));
   advice.closest = find_closest(advice);

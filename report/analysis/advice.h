@@ -23,7 +23,7 @@ struct AdviceRequest {
   std::vector<std::string> scenes;                         ///< empty: all of the run
   std::string width_class;                                 ///< of the kernel; empty: any
   std::optional<std::pair<int, int>> size;                 ///< of the picture, pixels; empty: all of the run
-  bool gainless = false;                                   ///< keep those that are no better than `none`, too
+  bool whole = false;                                      ///< keep those that are beaten or no gain, too
   std::map<std::string, std::vector<std::string>> claims;  ///< by filter id, for cells whose records do not hold theirs
 };
 
@@ -60,8 +60,13 @@ struct Candidate {
   Configuration configuration;
   Cost cost;
   std::vector<Verdict> verdicts;  ///< one per demand
-  std::optional<Estimate> rmse;   ///< over the places; empty where one has none
+  std::optional<Estimate> rmse;   ///< over the places; empty where none of the run has one everywhere
+  bool gains = false;             ///< its RMSE is clearly less than that of the cheapest without a filter
 };
+
+/// Does `a` beat `b`: is it no dearer and no more wrong, and less of one of the two? By the means alone, so that what
+/// is beaten by something that is beaten is beaten too.
+bool beats(const Candidate& a, const Candidate& b);
 
 /// Whether a limit is set on an error or on a fault that people see.
 bool limits_what_is_seen(const AdviceRequest& request);
@@ -109,27 +114,31 @@ struct Obstacle {
 struct Advice {
   AdviceRequest request;
   std::vector<Place> places;
-  std::set<std::string> teaching;   ///< filters of the run that show a mistake, and are left out
-  std::vector<Place> idle;          ///< left out: the choice does not matter there
-  std::vector<Candidate> keeping;   ///< all demands, cheapest first: the first is advised, the second the runner-up
-  std::vector<Candidate> no_gain;   ///< likewise, but no better than `none`, where nothing that is seen is limited
-  bool compares_with_none = false;  ///< whether some were found to be better than `none`
-  std::vector<Candidate> failing;   ///< cheapest first
+  std::set<std::string> teaching;  ///< filters of the run that show a mistake, and are left out
+  std::vector<Place> idle;         ///< left out: the choice does not matter there
+  std::string unfiltered;          ///< the cheapest configuration without a filter, by its name; empty: none is judged
+  std::vector<Candidate> keeping;  ///< all demands, unbeaten, cheapest first: the first is advised
+  std::vector<Candidate> beaten;   ///< keep all demands, but one that does so too beats them; cheapest first
+  std::vector<Candidate> no_gain;  ///< unbeaten, but no better than unfiltered, where nothing that is seen is limited
+  std::vector<Candidate> failing;  ///< cheapest first
   std::vector<Unjudged> unjudged;
   std::vector<Obstacle> obstacles;     ///< one per demand
   std::optional<std::size_t> closest;  ///< index into `failing`: fails the fewest demands, among those by the least
 };
 
-/// Finds the cheapest configuration that keeps every demand in every place; the worst place decides. Configurations of
-/// the same cost are ordered by time, then RMSE. Where several kinds of machine measured the cells, their ratio to
-/// `none` stands for their time, smaller pictures and maps come first, and `cells` are those of
-/// withhold_mixed_times().
-/// Where nothing that is seen is limited, those that are no better than `none` do not count as keeping, unless all are
-/// so. Filters for teaching are left out, and with a class of width those of others. A configuration that was not
-/// measured in a place, did not finish there, or lacks a value there is not judged. A value that has nothing to be
-/// measured on in some places, as is_nothing_to_see() says, is judged on the others, if there are any. Requires that
-/// `cells` outlive what is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not
-/// have, or a claim that no filter makes, or a limit on times of mixed machines; Error(kInput) where there is no cell.
+/// Finds the configurations that keep every demand in every place, the worst place deciding, and that no other which
+/// does so beats: the Pareto front of cost and RMSE over all filters, `none` among them, maps and fits. The cheapest of
+/// them is advised. Where nothing that is seen is limited, they must be clearly better than the cheapest configuration
+/// without a filter, unless none is: that stands in for the limit that is missing.
+///
+/// Costs that are equal are ordered by RMSE, then time. Where several kinds of machine measured the cells, their ratio
+/// to `none` stands for their time, smaller pictures and maps come first, and `cells` are those of
+/// withhold_mixed_times(). Filters for teaching are left out, and with a class of width those of others. A
+/// configuration that was not measured in a place, did not finish there, or lacks a value there is not judged; nor is
+/// one without an RMSE, where others have one. A value that has nothing to be measured on in some places, as
+/// is_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells` outlive what is returned.
+/// Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have, or a claim that no filter
+/// makes, or a limit on times of mixed machines; Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
 
 }  // namespace shadowbench::analysis

@@ -17,15 +17,6 @@
 namespace shadowbench::analysis {
 namespace {
 
-std::optional<double> worst_rmse(const Candidate& candidate) {
-  double worst = 0.0;
-  for (const records::CellRecord* cell : candidate.configuration.cells) {
-    if (!cell->error.rmse) return std::nullopt;
-    worst = std::max(worst, *cell->error.rmse);
-  }
-  return worst;
-}
-
 // What the order by cost hides: the one that is named second may be the more accurate.
 std::string compare_errors(const Candidate& first, const Candidate& second) {
   const std::optional<Estimate>&a = first.rmse, &b = second.rmse;
@@ -46,8 +37,7 @@ std::string explain_order(const Candidate& first, const Candidate& second, Light
   const auto time_a = measure_cost(first.configuration.cells, CostKind::kTime, light),
              time_b = measure_cost(second.configuration.cells, CostKind::kTime, light);
   if (time_a && (!time_b || time_a->mean < time_b->mean)) return "its shorter time";
-  const auto rmse_a = worst_rmse(first), rmse_b = worst_rmse(second);
-  return rmse_a && (!rmse_b || *rmse_a < *rmse_b) ? "its lower RMSE" : "standing first in the run";
+  return "standing first in the run";
 }
 
 std::string describe_tie(const Advice& advice, const CostGap& gap) {
@@ -107,9 +97,18 @@ void add_setting_notes(std::vector<std::string>& notes, const std::vector<const 
     notes.push_back(fmt::format("Lights at {} compete here, as if a renderer could choose.", list));
 }
 
+std::string list_names(const std::vector<Candidate>& candidates) {
+  constexpr std::size_t kMostNamed = 8;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(kMostNamed, candidates.size()); ++i)
+    names.push_back(candidates[i].configuration.name);
+  if (names.size() < candidates.size()) names.push_back(fmt::format("and {} more", candidates.size() - names.size()));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::vector<const records::CellRecord*> list_judged_cells(const Advice& advice) {
   std::vector<const records::CellRecord*> cells;
-  for (const auto* candidates : {&advice.keeping, &advice.failing})
+  for (const auto* candidates : {&advice.keeping, &advice.beaten, &advice.no_gain, &advice.failing})
     for (const Candidate& candidate : *candidates)
       cells.insert(cells.end(), candidate.configuration.cells.begin(), candidate.configuration.cells.end());
   return cells;
@@ -259,12 +258,12 @@ std::vector<std::string> list_run_notes(const Advice& advice, const records::GlR
 
 std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl) {
   std::vector<std::string> notes;
-  if (!advice.no_gain.empty()) {
-    std::vector<std::string> names;
-    for (const Candidate& each : advice.no_gain) names.push_back(each.configuration.name);
-    notes.push_back(fmt::format("No error is limited: what is not clearly better than 'none' is left out ({}).",
-                                fmt::join(names, ", ")));
-  }
+  if (!advice.no_gain.empty())
+    notes.push_back(fmt::format("No error limit set; left out as no better than {}: {}.", advice.unfiltered,
+                                list_names(advice.no_gain)));
+  if (!advice.beaten.empty())
+    notes.push_back(
+        fmt::format("Left out, as another is no dearer and has no larger RMSE: {}.", list_names(advice.beaten)));
   if (!advice.idle.empty()) {
     std::vector<std::string> names;
     for (const Place& place : advice.idle) names.push_back(describe_place(place, advice.idle));

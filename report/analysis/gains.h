@@ -13,11 +13,6 @@ namespace shadowbench::analysis {
 /// or there is none.
 std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells);
 
-/// Says of each configuration whether its RMSE over its places is clearly less than that of the `none` among `cells`
-/// with the same map, bias, light and picture; nothing where either has none. `none` itself gains nothing.
-std::vector<std::optional<bool>> find_gains(const std::vector<Configuration>& configurations,
-                                            const std::vector<const records::CellRecord*>& cells);
-
 /// Said of the places where the choice does not matter.
 inline constexpr const char* kIdle = "every filter's FLIP is below 0.001";
 

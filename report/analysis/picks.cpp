@@ -49,15 +49,16 @@ std::optional<std::size_t> find_knee(const std::vector<Candidate>& keeping, std:
 }
 
 std::string explain_fast(const Advice& advice) {
+  const bool gains = advice.keeping.front().gains && !limits_what_is_seen(advice.request);
   return fmt::format("the {}{}", describe_choice(advice),
-                     limits_what_is_seen(advice.request) ? " that keeps the limits"
-                     : advice.compares_with_none         ? " that is clearly better than 'none'"
-                                                         : "");
+                     gains                            ? " clearly better than " + advice.unfiltered
+                     : advice.request.demands.empty() ? ""
+                                                      : " that keeps the limits");
 }
 
 std::string explain_balanced(const Candidate& fast, const Candidate& knee, const Candidate& best) {
   return fmt::format(
-      "{} of what the best one gains, for {} of what it costs more",
+      "{} of the quality gain for {} of the extra cost",
       records::format_share((fast.rmse->value - knee.rmse->value) / (fast.rmse->value - best.rmse->value)),
       records::format_share((knee.cost.mean - fast.cost.mean) / (best.cost.mean - fast.cost.mean)));
 }
@@ -68,14 +69,18 @@ std::string explain_best(const Candidate& fast, const Candidate& best, const Cos
                      records::format_number(best.cost.mean / fast.cost.mean));
 }
 
-}  // namespace
+[[maybe_unused]] bool is_beaten(const Candidate& candidate, const Advice& advice) {
+  const auto beats_it = [&](const Candidate& other) { return beats(other, candidate); };
+  return std::ranges::any_of(advice.keeping, beats_it) || std::ranges::any_of(advice.beaten, beats_it) ||
+         std::ranges::any_of(advice.no_gain, beats_it);
+}
 
-std::vector<Pick> list_picks(const Advice& advice) {
+std::vector<Pick> choose_picks(const Advice& advice) {
   const std::vector<Candidate>& keeping = advice.keeping;
   const CostKind& kind = advice.request.cheapest;
-  assert(!keeping.empty());
   std::vector<Pick> picks = {{{kFast}, 0, explain_fast(advice)}};
-  const auto best = keeping.size() > 1 ? find_best(keeping) : std::nullopt;
+  const bool has_others = keeping.size() + advice.beaten.size() + advice.no_gain.size() > 1;
+  const auto best = has_others ? find_best(keeping) : std::nullopt;
   if (!best) return picks;
   if (*best == 0) {
     picks.front().names.emplace_back(kBest);
@@ -85,6 +90,32 @@ std::vector<Pick> list_picks(const Advice& advice) {
     picks.push_back({{kBalanced}, *knee, explain_balanced(keeping[0], keeping[*knee], keeping[*best])});
   picks.push_back({{kBest}, *best, explain_best(keeping[0], keeping[*best], kind)});
   return picks;
+}
+
+}  // namespace
+
+std::vector<Pick> list_picks(const Advice& advice) {
+  assert(!advice.keeping.empty());
+  std::vector<Pick> picks = choose_picks(advice);
+  for (Pick& pick : picks) {
+    const Candidate& candidate = advice.keeping[pick.index];
+    assert(advice.request.cheapest == CostKind::kRatio || !is_beaten(candidate, advice));
+    if (const std::string beaten = describe_larger_map(candidate, advice.beaten); !beaten.empty())
+      pick.why += "; " + beaten;
+  }
+  return picks;
+}
+
+std::string describe_larger_map(const Candidate& candidate, const std::vector<Candidate>& others) {
+  const records::CellRecord& own = *candidate.configuration.cells.front();
+  const Candidate* least = nullptr;
+  for (const Candidate& other : others) {
+    const records::CellRecord& cell = *other.configuration.cells.front();
+    if (cell.map_size < own.map_size && cell.filter != own.filter && beats(candidate, other) &&
+        (!least || other.rmse->value < least->rmse->value))
+      least = &other;
+  }
+  return least ? fmt::format("its larger map beats {}", least->configuration.name) : "";
 }
 
 }  // namespace shadowbench::analysis

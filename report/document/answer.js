@@ -30,9 +30,22 @@ const startAnswer = (holder) => {
   // Whether the cost of one cannot be told from that of another, which ranks behind it.
   const areTied = ({ tied }, { rank }) => tied.some(([from, end]) => from <= rank && rank < end);
   const limitsWhatIsSeen = () => Object.keys(state.limits).some((field) => limitOf(field).group !== "cost");
+  // Of what keeps the limits, cheapest first, what nothing beats; and where nothing that is seen is limited, what is
+  // clearly better than the cheapest without a filter.
+  const takeFront = (kept, scope) => {
+    const rmseOf = ({ index }) => scope.rows[index].rmse;
+    const isBeaten = (each, i) => kept.slice(0, i).some((other) => rmseOf(other)?.value <= rmseOf(each)?.value);
+    const [front, beaten] = [kept.filter((...each) => !isBeaten(...each)), kept.filter(isBeaten)];
+    const any = scope.advice[shadowbench.cost][""]?.order ?? [];
+    const unfiltered = any.find(({ index }) => run.configurations[index].filter === "none");
+    const isGain = (each) => unfiltered && rmseOf(each) && isErrorLess(rmseOf(each), rmseOf(unfiltered));
+    const gains = limitsWhatIsSeen() ? [] : front.filter(isGain);
+    const noGain = gains.length > 0 ? front.filter((each) => !gains.includes(each)) : [];
+    return { keeping: gains.length > 0 ? gains : front, beaten, noGain, unfiltered, gained: gains.length > 0 };
+  };
   const judge = (scope = all) => {
     const { order, unjudged } = scope.advice[shadowbench.cost][state.wide] ?? { order: [], unjudged: [] };
-    const judged = { keeping: [], failing: [], noGain: [], unjudged: [...unjudged] };
+    const judged = { keeping: [], failing: [], unjudged: [...unjudged] };
     const fields = Object.keys(state.limits);
     for (const [rank, { index, tied }] of order.entries()) {
       const gap = fields.map((field) => worstOf(index, field, scope)).find((worst) => typeof worst === "string");
@@ -41,13 +54,7 @@ const startAnswer = (holder) => {
       if (gap) judged.unjudged.push({ index, gap });
       else (broken.length > 0 ? judged.failing : judged.keeping).push({ index, rank, tied, broken });
     }
-    judged.gained = judged.keeping.some(({ index }) => scope.rows[index].gains);
-    if (judged.gained && !limitsWhatIsSeen()) {
-      const isPlain = ({ index }) => scope.rows[index].gains === false;
-      judged.noGain = judged.keeping.filter(isPlain);
-      judged.keeping = judged.keeping.filter((each) => !isPlain(each));
-    }
-    return judged;
+    return Object.assign(judged, takeFront(judged.keeping, scope));
   };
 
   const labelOf = (index) => run.configurations[index].label;
@@ -57,14 +64,36 @@ const startAnswer = (holder) => {
   const costText = (index, scope) => `${format(costOf(index, scope))} ${costChoice().unit}`;
   const list = (texts) => (texts.length > 1 ? `${texts.slice(0, -1).join(", ")} and ${texts.at(-1)}` : texts.join());
 
-  const pick = ({ keeping, gained }, scope) =>
-    pickThree(keeping, {
+  // Which filters on smaller maps a choice beats.
+  const describeLargerMap = ({ index, rank }, beaten, scope) => {
+    const [own, rmseOf] = [run.configurations[index], (each) => scope.rows[each.index].rmse?.value];
+    const isBeaten = (each) => {
+      const other = run.configurations[each.index];
+      return (
+        each.rank > rank && other.map < own.map && other.filter !== own.filter && rmseOf(each) >= rmseOf({ index })
+      );
+    };
+    const found = beaten.filter(isBeaten);
+    if (found.length === 0) return "";
+    const least = found.reduce((a, b) => (rmseOf(b) < rmseOf(a) ? b : a));
+    return `; its larger map beats ${labelOf(least.index)}`;
+  };
+  const pick = ({ keeping, beaten, noGain, unfiltered, gained }, scope) => {
+    const limited = Object.keys(state.limits).length > 0 || state.soft;
+    const picks = pickThree(keeping, {
+      hasOthers: keeping.length + beaten.length + noGain.length > 1,
       rmseOf: ({ index }) => scope.rows[index].rmse,
       costOf: ({ index }) => costOf(index, scope),
       areComparable,
       areTied,
-      why: limitsWhatIsSeen() ? "cheapest within the limits" : gained ? "cheapest with a clear gain" : "cheapest",
+      why: gained
+        ? `cheapest clearly better than ${labelOf(unfiltered.index)}`
+        : limited
+          ? "cheapest within the limits"
+          : "cheapest",
     });
+    return picks.map((each) => ({ ...each, why: each.why + describeLargerMap(each, beaten, scope) }));
+  };
 
   // How the worst of what can be limited differs between the choice and the runner-up.
   const compareWorst = (best, second) => {
@@ -144,7 +173,7 @@ const startAnswer = (holder) => {
     ].join(" ");
   };
   const explainSecond = (best, second) => {
-    if (!second) return explain("Runner-up:", "no other keeps the limits.");
+    if (!second) return explain("Runner-up:", "no other on the front keeps the limits.");
     const times = `at ${format(costOf(second.index) / costOf(best.index))} times the cost`;
     const apart = "whose ratio is to another 'none', and is not compared";
     const stands = !areComparable(best, second)
@@ -154,7 +183,7 @@ const startAnswer = (holder) => {
         : times;
     explain("Runner-up:", second.index, `, ${stands}; ${compareWorst(best.index, second.index)}.`);
   };
-  const explainChoice = ({ keeping, failing, noGain, gained }) => {
+  const explainChoice = ({ keeping, failing, noGain, beaten, unfiltered, gained }) => {
     const [best, second] = keeping;
     const tied = keeping.filter((other) => areTied(best, other));
     const configuration = run.configurations[best.index];
@@ -163,11 +192,7 @@ const startAnswer = (holder) => {
     const lead = run.ratios && !costChoice().isEstimate ? `it has the lowest ratio to 'none'${smallest}` : cheapest;
     const bounds = describeBounds(best.index);
     const limited = Object.keys(state.limits).length > 0 || state.soft;
-    const judged = limited
-      ? "that keep the limits"
-      : gained
-        ? "that are clearly better than 'none'"
-        : "that can be judged";
+    const judged = limited ? "that keep the limits" : gained ? "on the Pareto front" : "that can be judged";
     explain(
       "Fast:",
       best.index,
@@ -189,7 +214,9 @@ const startAnswer = (holder) => {
       const limit = say(worstOf(cheaper.index, field).limit, field);
       explain("Cheaper:", cheaper.index, `, ${costText(cheaper.index)}, were ${titleOf(field)} of ${limit} allowed.`);
     }
-    if (noGain.length > 0) explain("No clear gain over 'none':", `${list(noGain.map(({ index }) => labelOf(index)))}.`);
+    const names = (each) => list(each.map(({ index }) => labelOf(index)));
+    if (noGain.length > 0) explain("No better than", unfiltered.index, `: ${names(noGain)}.`);
+    if (beaten.length > 0) explain("Beaten in cost and error:", `${names(beaten)}.`);
     const faults = describeFaults(best.index);
     if (faults.length > 0) explain("Fails at:", `${faults.join("; ")}.`);
   };

@@ -215,9 +215,9 @@ Json picks_json(const analysis::Advice& advice) {
   return list;
 }
 
-Json no_gain_json(const analysis::Advice& advice) {
+Json names_json(const std::vector<analysis::Candidate>& candidates) {
   Json list = Json::array();
-  for (const analysis::Candidate& each : advice.no_gain) list.push_back(each.configuration.name);
+  for (const analysis::Candidate& each : candidates) list.push_back(each.configuration.name);
   return list;
 }
 
@@ -236,7 +236,7 @@ void set_answer(Json& json, const analysis::Advice& advice, const records::GlRec
   if (!fits) json["absent"]["advised"] = analysis::describe_failure(advice);
   if (json["closest"].is_null()) json["absent"]["closest"] = fits ? "the limits are kept" : "nothing could be judged";
   if (advice.keeping.size() < 2) {
-    json["absent"]["runner_up"] = "no other configuration keeps the limits";
+    json["absent"]["runner_up"] = "no other configuration on the front keeps the limits";
     return;
   }
   json["runner_up"] = candidate_json(advice.keeping[1], advice);
@@ -261,7 +261,8 @@ Json make_advice_json(const records::RunRecord& run, const analysis::Advice& adv
   json["relaxed"] = relaxed_json(advice);
   json["limits"] = Json::array();
   for (std::size_t i = 0; i < advice.obstacles.size(); ++i) json["limits"].push_back(obstacle_json(advice, i));
-  json["no_better_than_none"] = no_gain_json(advice);
+  json["beaten"] = names_json(advice.beaten);
+  json["no_better_than_none"] = names_json(advice.no_gain);
   json["idle"] = idle_json(advice);
   json["keep"] = advice.keeping.size();
   json["fail"] = advice.failing.size();

@@ -115,7 +115,7 @@ std::string list_cells(const records::RunRecord& run, const analysis::Advice& ad
 }
 
 std::string describe_second(const records::RunRecord& run, const analysis::Advice& advice) {
-  if (advice.keeping.size() < 2) return "Runner-up: no other configuration keeps the limits.\n";
+  if (advice.keeping.size() < 2) return "Runner-up: no other configuration on the front keeps the limits.\n";
   const analysis::Candidate& second = advice.keeping[1];
   return wrap(fmt::format("Runner-up: {}, {}; {}.", second.configuration.name,
                           analysis::format_cost(second.cost.mean, advice.request.cheapest, run.gl),
@@ -166,7 +166,8 @@ std::string list_obstacles(const analysis::Advice& advice) {
 }
 
 std::string list_remarks(const records::RunRecord& run, const analysis::Advice& advice) {
-  const std::size_t judged = advice.keeping.size() + advice.failing.size();
+  const std::size_t judged =
+      advice.keeping.size() + advice.beaten.size() + advice.no_gain.size() + advice.failing.size();
   std::vector<std::string> places;
   for (const analysis::Place& place : advice.places) places.push_back(analysis::describe_place(place, advice.places));
   std::string text = wrap(fmt::format("{} of {} configurations judged, on {}.", judged, judged + advice.unjudged.size(),
@@ -196,7 +197,7 @@ std::string describe_answer(const records::RunRecord& run, const analysis::Advic
   if (cell.kernel.sigma_texels) parts.push_back(fmt::format("a kernel of {}", records::describe_kernel(cell.kernel)));
   if (!cell.params.empty()) parts.push_back(records::describe_params(cell.params));
   const std::string with = parts.empty() ? "" : wrap(fmt::format("with {}", fmt::join(parts, ", ")));
-  return fmt::format("{}: {}{}; {} of {}{}\n{}", best.configuration.name,
+  return fmt::format("{}: {}{}; {} of {} on the front{}\n{}", best.configuration.name,
                      analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),
                      analysis::describe_frame(advice.request), analysis::describe_choice(advice), advice.keeping.size(),
                      advice.request.demands.empty() ? "" : " that keep the limits", with);

@@ -88,19 +88,15 @@ Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Co
 }
 
 /// What a scope has of each configuration; null of those without a cell there.
-json list_rows(const Scope& scope, const std::vector<analysis::Place>& places,
-               const std::vector<const records::CellRecord*>& all, const std::vector<CostChoice>& choices) {
-  const auto gains = analysis::find_gains(scope.configurations, all);
+json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, const std::vector<CostChoice>& choices) {
   json rows = json::array();
-  for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
-    const analysis::Configuration& each = scope.configurations[i];
+  for (const analysis::Configuration& each : scope.configurations) {
     if (each.cells.empty()) {
       rows.push_back(nullptr);
       continue;
     }
     json row = {{"worst", list_worst(each, places, choices.front().kind)},
-                {"rmse", describe_error(analysis::combine_rmse(each.cells))},
-                {"gains", gains[i] ? json(*gains[i]) : json()}};
+                {"rmse", describe_error(analysis::combine_rmse(each.cells))}};
     for (const CostChoice& choice : choices) row[choice.field] = describe_cost(each.cells, choice);
     rows.push_back(std::move(row));
   }
@@ -121,7 +117,7 @@ json list_advice(const std::vector<records::CellRecord>& cells, const Scope& sco
       if (choice.kind.kind == analysis::CostKind::kGpu) request.cheapest = choice.kind;
       request.width_class = wide;
       request.scenes = scope.scenes;
-      request.gainless = true;
+      request.whole = true;
       const analysis::Advice advice = analysis::advise(cells, request);
       json order = json::array(), unjudged = json::array();
       for (std::size_t rank = 0; rank < advice.keeping.size(); ++rank)
@@ -212,7 +208,7 @@ json make_answer_data(const std::vector<records::CellRecord>& cells,
     const std::string scene = scope.scenes.empty() ? "" : scope.scenes.front();
     data.push_back({{"scene", scene.empty() ? json() : json(scene)},
                     {"idle", scene.empty() || is_judged(scene) ? json() : json(analysis::kIdle)},
-                    {"rows", list_rows(scope, places, all, choices)},
+                    {"rows", list_rows(scope, places, choices)},
                     {"advice", list_advice(cells, scope, list_classes_of(scope, classes), choices, indices)}});
   }
   return data;

@@ -73,6 +73,14 @@ Advice advise_on(const std::vector<records::CellRecord>& cells, std::vector<Dema
   return advise(cells, request);
 }
 
+/// All that keep the demands, in their order: those that are beaten or gain nothing, too.
+Advice rank_on(const std::vector<records::CellRecord>& cells, std::vector<Demand> demands) {
+  AdviceRequest request;
+  request.demands = std::move(demands);
+  request.whole = true;
+  return advise(cells, request);
+}
+
 void expect_refusal(const std::vector<records::CellRecord>& cells, const AdviceRequest& request, ErrorKind kind,
                     const std::string& word) {
   try {
@@ -125,7 +133,7 @@ TEST(Advice, Cost_IsTheMeanOverAllPlaces) {
   const std::vector<records::CellRecord> cells = {
       measure("cubes", "even", 4.0, 0.0), measure("stack", "even", 4.0, 0.0), measure("cubes", "uneven", 1.0, 0.0),
       measure("stack", "uneven", 6.0, 0.0)};
-  const Advice advice = advise_on(cells, {});
+  const Advice advice = rank_on(cells, {});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("uneven", "even"));
   EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.mean, 4.5);
   // Of 2 and 7 ms, each within 1 %, independently.
@@ -143,7 +151,7 @@ TEST(Advice, CostsThatDifferOnTheWhole_AreNoTie_WhereEachPlaceIsUncertain) {
       cells[i].ratio_to_none.moving->ci95 = {0.8 * cells[i].ratio_to_none.moving->median,
                                              1.2 * cells[i].ratio_to_none.moving->median};
   }
-  const Advice advice = advise_on(cells, {});
+  const Advice advice = rank_on(cells, {});
   EXPECT_FALSE(compare_costs(advice.keeping.at(0), advice.keeping.at(1), CostKind::kTime).tied);
 }
 
@@ -151,6 +159,7 @@ TEST(Advice, MovingLight_PaysForMapAndPrefilter) {
   std::vector<records::CellRecord> cells = {measure("cubes", "wide", 4.0, 0.0), measure("cubes", "blurred", 2.0, 0.0)};
   cells[1].time_ms.prefilter = records::Quartiles{8.0, 7.9, 8.1, 9};
   AdviceRequest request;
+  request.whole = true;
   EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("wide", "blurred"));
   EXPECT_DOUBLE_EQ(advise(cells, request).keeping[1].cost.mean, 11.0);
   request.light = LightMotion::kStatic;
@@ -200,7 +209,8 @@ TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
   EXPECT_EQ(advice.obstacles[1].unknown, 1U);
   EXPECT_THAT(count_unjudged(advice), ElementsAre("1: no error.rmse on cubes: no truth in this run",
                                                   "1: no cost.fetches on cubes: it reads the map itself"));
-  EXPECT_THAT(advise_on(cells, {}).unjudged, IsEmpty()) << "nobody asked for those values";
+  EXPECT_THAT(reasons(advise_on(cells, {})), ElementsAre("no error.rmse on cubes: no truth in this run"))
+      << "nobody asked for fetches, and others have an RMSE";
 }
 
 TEST(Advice, CostThatIsNull_IsNotJudged) {
@@ -213,7 +223,7 @@ TEST(Advice, CostThatIsNull_IsNotJudged) {
 
 TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
   std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
-  Advice advice = advise_on(cells, {});
+  Advice advice = rank_on(cells, {});
   CostGap gap = compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime);
   EXPECT_EQ(gap.basis, Basis::kInterval);
   EXPECT_FALSE(gap.tied);
@@ -222,7 +232,7 @@ TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
   EXPECT_EQ(describe_runner_up(advice, make_run().gl),
             "dearer by 0.2 ms (CPU) (4 %); the 95 % intervals are apart; it has the same RMSE");
   cells[1].ratio_to_none.moving->ci95.low *= 0.9;
-  advice = advise_on(cells, {});
+  advice = rank_on(cells, {});
   EXPECT_TRUE(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).tied);
 }
 
@@ -230,12 +240,12 @@ TEST(Advice, OfTwoMaps_QuartilesTellCostsApart) {
   std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0, 256),
                                             measure("cubes", "a", 4.2, 0.0, 1024)};
   cells[1].ratio_to_none.moving->ci95.low *= 0.5;
-  Advice advice = advise_on(cells, {});
+  Advice advice = rank_on(cells, {});
   const CostGap gap = compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime);
   EXPECT_EQ(gap.basis, Basis::kQuartiles);
   EXPECT_FALSE(gap.tied);
   cells[1].time_ms.lookup->q1 = 3.9;
-  advice = advise_on(cells, {});
+  advice = rank_on(cells, {});
   EXPECT_TRUE(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).tied);
   EXPECT_THAT(describe_runner_up(advice, make_run().gl), HasSubstr("a tie, for their quartiles overlap"));
 }
@@ -243,7 +253,7 @@ TEST(Advice, OfTwoMaps_QuartilesTellCostsApart) {
 TEST(Advice, WithoutARatio_QuartilesTellCostsApart) {
   std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
   cells[0].ratio_to_none = {};
-  const Advice advice = advise_on(cells, {});
+  const Advice advice = rank_on(cells, {});
   EXPECT_EQ(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).basis, Basis::kQuartiles);
 }
 
@@ -251,22 +261,37 @@ TEST(Advice, ATie_NamesTheLowerMeanAndSaysByHowMuchErrorsDiffer) {
   std::vector<records::CellRecord> cells = {measure("cubes", "rough", 4.0, 0.03), measure("cubes", "fine", 4.02, 0.01),
                                             measure("cubes", "third", 4.03, 0.02),
                                             measure("cubes", "slow", 9.0, 0.001)};
-  const Advice advice = advise_on(cells, {});
+  const Advice advice = rank_on(cells, {});
   EXPECT_EQ(describe_runner_up(advice, make_run().gl),
             "a tie, for their 95 % intervals overlap: rough is named first for its lower mean; "
             "its RMSE is lower by 0.02 [0.019, 0.021]; tied with it too: third");
 }
 
-TEST(Advice, EqualBytes_AreATieThatTimeOrders) {
-  const std::vector<records::CellRecord> cells = {measure("cubes", "slow", 9.0, 0.01),
-                                                  measure("cubes", "fast", 4.0, 0.03)};
+TEST(Advice, EqualBytes_AreOrderedByRmse_AndWithoutByTime) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "slow", 9.0, 0.01), measure("cubes", "fast", 4.0, 0.03)};
   AdviceRequest request;
   request.cheapest = CostKind::kBytes;
+  EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("slow"));
+  EXPECT_THAT(labels(advise(cells, request).beaten), ElementsAre("fast"));
+  for (records::CellRecord& cell : cells) cell.error.rmse.reset();
   const Advice advice = advise(cells, request);
   EXPECT_THAT(labels(advice.keeping), ElementsAre("fast", "slow"));
   EXPECT_EQ(describe_runner_up(advice, make_run().gl),
-            "a tie, at the same cost: fast is named first for its shorter time; its RMSE is "
-            "lower by 0.02 [0.019, 0.021]");
+            "a tie, at the same cost: fast is named first for its shorter time");
+}
+
+TEST(Advice, WhatAnotherBeats_IsLeftOutAndNamed) {
+  const std::vector<records::CellRecord> cells = {
+      measure("cubes", "none", 1.0, 0.07, 1024), measure("cubes", "none", 1.5, 0.057, 2048),
+      measure("cubes", "pcss", 4.0, 0.065, 1024), measure("cubes", "pcss", 6.0, 0.05, 2048)};
+  const Advice advice = advise_on(cells, {});
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("none", "pcss"));
+  EXPECT_EQ(advice.keeping[0].configuration.name, "none, map 2048");
+  EXPECT_THAT(labels(advice.beaten), ElementsAre("pcss"));
+  EXPECT_THAT(labels(advice.no_gain), ElementsAre("none"));
+  EXPECT_EQ(advice.unfiltered, "none, map 1024");
+  EXPECT_THAT(list_advice_notes(advice, make_run().gl),
+              ::testing::Contains("Left out, as another is no dearer and has no larger RMSE: pcss, map 1024."));
 }
 
 TEST(Advice, RelaxedLimit_BuysEveryStepThatIsReallyCheaper) {
@@ -451,6 +476,7 @@ TEST(Advice, Size_ChoosesThePicture) {
   cells[0].width = 480;
   cells[0].height = 270;
   AdviceRequest request;
+  request.whole = true;
   EXPECT_THAT(advise(cells, request).keeping, SizeIs(2));
   EXPECT_THAT(
       list_advice_notes(advise(cells, request), make_run().gl),
@@ -475,7 +501,7 @@ TEST(Advice, Notes_SayWhatWeakensIt) {
   EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl), IsEmpty());
   std::vector<records::CellRecord> two = {cells[0], measure("cubes", "better", 2.0, 0.001)};
   EXPECT_THAT(list_advice_notes(advise_on(two, {}), gl),
-              ElementsAre("No error is limited: what is not clearly better than 'none' is left out (none)."));
+              ElementsAre("No error limit set; left out as no better than none: none."));
   cells[0].nan = 12;
   cells[0].time_ms.lookup->n = 1;
   EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl),

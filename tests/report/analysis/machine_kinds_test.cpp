@@ -111,7 +111,7 @@ TEST(MixedMachines, AdviceFollowsRatios) {
   const auto cells = *withhold_mixed_times(make_mixed_cells());
   AdviceRequest request;
   request.demands = {{&cost_spec(CostKind::kBytes), 1e9, {}}};
-  request.gainless = true;
+  request.whole = true;
   const Advice advice = advise(cells, request);
   ASSERT_THAT(advice.keeping, SizeIs(3));
   EXPECT_EQ(label_of(advice.keeping, 1), "slow");
@@ -143,6 +143,7 @@ TEST(MixedMachines, AdviceComparesNoRatiosOfTwoMaps) {
   std::vector<records::CellRecord> cells = make_mixed_cells();
   cells.erase(cells.begin());
   cells[0].map_size = 4096;  // the ratio is 2; that of the other map is 3
+  cells[0].error.rmse = 0.04;
   cells[0].key = records::cell_key(cells[0]);
   const Advice advice = advise(*withhold_mixed_times(cells), {});
   ASSERT_THAT(advice.keeping, SizeIs(2));

@@ -6,6 +6,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <set>
+#include <tuple>
+
 #include "report/analysis/gains.h"
 #include "tests/report/records/synthetic.h"
 
@@ -14,6 +21,8 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+
+constexpr const char* kScenes[] = {"cubes", "stack", "fence"};
 
 struct Made {
   const char* filter;
@@ -38,6 +47,12 @@ std::vector<records::CellRecord> make_cells(const std::vector<Made>& all) {
   return cells;
 }
 
+std::vector<std::string> list_names(const std::vector<Candidate>& candidates) {
+  std::vector<std::string> names;
+  for (const Candidate& each : candidates) names.push_back(each.configuration.name);
+  return names;
+}
+
 std::vector<std::string> list_picks(const std::vector<records::CellRecord>& cells, const AdviceRequest& request = {}) {
   const Advice advice = advise(cells, request);
   std::vector<std::string> picks;
@@ -56,9 +71,22 @@ TEST(Picks, FastIsTheCheapestWithAGain_BestHasTheLeastError_AndTheKneeIsBetween)
                                  {"dear", 30, 0.045}});
   EXPECT_THAT(list_picks(cells), ElementsAre("fast: pcf", "balanced: knee", "best: dear"));
   const Advice advice = advise(cells, {});
-  std::vector<std::string> left_out;
-  for (const Candidate& each : advice.no_gain) left_out.push_back(each.configuration.name);
-  EXPECT_THAT(left_out, ElementsAre("none", "blur"));
+  EXPECT_THAT(list_names(advice.no_gain), ElementsAre("none"));
+  EXPECT_THAT(list_names(advice.beaten), ElementsAre("blur", "waste"));
+}
+
+TEST(Picks, ALargerMapWithoutAFilter_MayWin_AndIsSaidTo) {
+  auto cells = make_cells({{"none", 1, 0.08}, {"pcss", 27, 0.065}, {"none", 2, 0.057}});
+  cells[2].map_size = 2048;
+  const Advice advice = advise(cells, {});
+  const std::vector<Pick> picks = analysis::list_picks(advice);
+  ASSERT_THAT(picks, ::testing::SizeIs(1));
+  EXPECT_EQ(advice.keeping[0].configuration.name, "none, map 2048");
+  EXPECT_EQ(picks[0].why, "the cheapest clearly better than none, map 0; its larger map beats pcss, map 0");
+}
+
+TEST(Picks, NoneAlone_IsWhatThereIs) {
+  EXPECT_THAT(list_picks(make_cells({{"none", 1, 0.08}})), ElementsAre("fast: none"));
 }
 
 TEST(Picks, WhatIsAboveTheStraightLine_IsNoKnee) {
@@ -86,7 +114,7 @@ TEST(Picks, ALimitOnAnError_LetsNoneThrough) {
   request.demands = {{&*spec, 0.06, {}}};
   EXPECT_THAT(list_picks(cells, request), ElementsAre("fast: none", "balanced: pcf", "best: pcss"));
   request.demands = {{&cost_spec(CostKind::kTime), 5.0, {}}};
-  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast: pcf")) << "a limit on the cost asks for no gain less";
+  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast and best: pcf")) << "a limit on the cost asks for no gain less";
 }
 
 TEST(Picks, WithoutErrors_TheCheapestIsFast_AndNothingIsBest) {
@@ -95,21 +123,158 @@ TEST(Picks, WithoutErrors_TheCheapestIsFast_AndNothingIsBest) {
   EXPECT_THAT(list_picks(cells), ElementsAre("fast: none"));
 }
 
-TEST(Gains, AreOverTheNoneOfTheSameMap) {
-  auto cells =
-      make_cells({{"none", 1, 0.10}, {"pcf", 2, 0.08}, {"none", 1, 0.05}, {"pcf", 2, 0.08}, {"alone", 2, 0.01}});
-  cells[2].map_size = cells[3].map_size = 2048;
-  cells[4].map_size = 4096;
-  const auto gains = find_gains(list_configurations(point_to(cells)), point_to(cells));
-  EXPECT_THAT(gains, ElementsAre(false, true, false, false, std::nullopt));
-}
-
-TEST(Gains, AClassOfWidth_IsComparedWithTheNoneOfAnother) {
+TEST(Picks, AClassOfWidth_IsComparedWithTheNoneOfAnother) {
   auto cells = make_cells({{"none", 1, 0.05}, {"wide", 2, 0.08}, {"wider", 3, 0.04}});
   cells[1].kernel.width_class = cells[2].kernel.width_class = "soft";
   AdviceRequest request;
   request.width_class = "soft";
-  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast: wider"));
+  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast and best: wider"));
+}
+
+/// A run that nobody measured: filters, maps, fits and scenes, some errors and costs equal, some absent.
+std::vector<records::CellRecord> make_up_run(std::mt19937& random) {
+  const auto draw = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most)); };
+  const int filters = 1 + draw(6), maps = 1 + draw(3), fits = 1 + draw(2), scenes = 1 + draw(3);
+  std::vector<records::CellRecord> cells;
+  for (int i = 0; i < filters * maps * fits; ++i) {
+    const int filter = i % filters, map = i / filters % maps, fit = i / filters / maps;
+    const double ms = (1 + draw(30)) * (1 + map), rmse = 0.002 * (1 + draw(40));
+    for (int scene = 0; scene < scenes; ++scene) {
+      const std::string name = filter == 0 ? "none" : std::string("f") + std::to_string(filter);
+      records::CellRecord cell =
+          make_picked({name.c_str(), ms, rmse * (1.0 + 0.1 * scene)}, 0.0005 * (1 + draw(4)), kScenes[scene]);
+      cell.map_size = 512 << map;
+      cell.fit = fit == 0 ? "tight" : "view";
+      cell.artefact.leak = 0.01 * draw(20);
+      if (draw(40) == 0) cell.error.rmse.reset();
+      if (draw(40) == 0) cell.time_ms.moving.reset();
+      if (draw(40) == 0) cell.status = records::CellStatus::kTimeout;
+      if (draw(40) != 0) cells.push_back(std::move(cell));
+    }
+  }
+  return cells;
+}
+
+using Row = std::pair<double, double>;  ///< mean cost and RMSE over the scenes
+
+/// Every configuration that has all values on all scenes and keeps a limit on the leak, by brute force.
+std::vector<Row> list_rows(const std::vector<records::CellRecord>& cells, double most_leak) {
+  std::set<std::string> scenes;
+  for (const auto& cell : cells) scenes.insert(cell.scene);
+  std::map<std::tuple<std::string, int, std::string>, std::vector<const records::CellRecord*>> groups;
+  for (const auto& cell : cells) groups[{cell.filter, cell.map_size, cell.fit}].push_back(&cell);
+  std::vector<Row> rows;
+  for (const auto& [key, own] : groups) {
+    const bool is_whole = own.size() == scenes.size() && std::ranges::all_of(own, [&](const auto* cell) {
+                            return cell->status == records::CellStatus::kOk && cell->error.rmse &&
+                                   cell->time_ms.moving && *cell->artefact.leak <= most_leak;
+                          });
+    if (!is_whole) continue;
+    Row row;
+    for (const auto* cell : own) {
+      row.first += cell->time_ms.moving->median / static_cast<double>(own.size());
+      row.second += *cell->error.rmse * *cell->error.rmse / static_cast<double>(own.size());
+    }
+    rows.emplace_back(row.first, std::sqrt(row.second));
+  }
+  return rows;
+}
+
+Demand limit(const char* field, double most) {
+  return {&*std::ranges::find(limit_table(), field, &LimitSpec::field), most, {}};
+}
+
+/// What the fast one costs under demands; infinite where nothing keeps them.
+double cost_of_fast(const std::vector<records::CellRecord>& cells, std::vector<Demand> demands) {
+  AdviceRequest request;
+  request.demands = std::move(demands);
+  const Advice advice = advise(cells, request);
+  return advice.keeping.empty() ? std::numeric_limits<double>::infinity() : advice.keeping.front().cost.mean;
+}
+
+/// What is picked and its errors, without costs.
+std::vector<std::string> describe_picks(const std::vector<records::CellRecord>& cells) {
+  const Advice advice = advise(cells, {});
+  std::vector<std::string> texts;
+  if (advice.keeping.empty()) return texts;
+  for (const Pick& each : analysis::list_picks(advice)) {
+    const Candidate& pick = advice.keeping[each.index];
+    const records::CellRecord& cell = *pick.configuration.cells.front();
+    texts.push_back(fmt::format("{} {} {} {} {}", each.names.front(), cell.filter, cell.map_size, cell.fit,
+                                pick.rmse ? pick.rmse->value : 0.0));
+  }
+  return texts;
+}
+
+class MadeUpRuns : public ::testing::Test {
+ protected:
+  /// Calls a check with each of 500 runs that hold an RMSE.
+  template <class Check>
+  void for_each(Check check) {
+    std::mt19937 random(53);
+    for (int i = 0; i < 500; ++i) {
+      const auto cells = make_up_run(random);
+      if (list_rows(cells, 1.0).empty()) continue;
+      SCOPED_TRACE(i);
+      check(cells, random);
+    }
+  }
+};
+
+TEST_F(MadeUpRuns, NoRowOfTheRunBeatsWhatIsPicked) {
+  for_each([](const auto& cells, auto&) {
+    for (const double most_leak : {1.0, 0.1}) {
+      AdviceRequest request;
+      if (most_leak < 1.0) request.demands = {limit("artefact.leak", most_leak)};
+      const Advice advice = advise(cells, request);
+      const std::vector<Row> rows = list_rows(cells, most_leak);
+      ASSERT_EQ(advice.keeping.empty(), rows.empty());
+      if (rows.empty()) continue;
+      for (const Pick& pick : analysis::list_picks(advice)) {
+        const Candidate& own = advice.keeping[pick.index];
+        constexpr double kRounding = 1e-12;
+        for (const auto& [cost, rmse] : rows)
+          EXPECT_FALSE(cost < own.cost.mean - kRounding && rmse <= own.rmse->value + kRounding) << cost << " " << rmse;
+      }
+    }
+  });
+}
+
+TEST_F(MadeUpRuns, ATighterLimitNeverLowersTheCost) {
+  for_each([](const auto& cells, auto& random) {
+    const double some = 0.002 * static_cast<double>(1 + random() % 50),
+                 more = some * (1.0 + 0.1 * static_cast<double>(random() % 9));
+    for (const char* field : {"error.rmse", "artefact.leak"})
+      EXPECT_GE(cost_of_fast(cells, {limit(field, some)}), cost_of_fast(cells, {limit(field, more)}));
+    const double own = advise(cells, {}).keeping.front().rmse->value;
+    EXPECT_GE(cost_of_fast(cells, {limit("error.rmse", 0.999 * own)}), cost_of_fast(cells, {})) << "than no limit";
+  });
+}
+
+TEST_F(MadeUpRuns, ADearerMachineChangesNoPick) {
+  for_each([](auto cells, auto&) {
+    const auto before = describe_picks(cells);
+    for (records::CellRecord& cell : cells)
+      if (auto& time = cell.time_ms.moving)
+        *time = {{8 * time->median, 8 * time->q1, 8 * time->q3, 9}, {8 * time->ci95.low, 8 * time->ci95.high}};
+    EXPECT_EQ(describe_picks(cells), before);
+  });
+}
+
+TEST_F(MadeUpRuns, ABeatenRowChangesNothing) {
+  for_each([](auto cells, auto& random) {
+    const auto before = describe_picks(cells);
+    const records::CellRecord beater = cells[random() % cells.size()];
+    for (std::size_t i = 0, end = cells.size(); i < end; ++i) {
+      records::CellRecord beaten = cells[i];
+      if (beaten.filter != beater.filter || beaten.map_size != beater.map_size || beaten.fit != beater.fit) continue;
+      beaten.filter = "beaten";
+      if (auto& rmse = beaten.error.rmse) *rmse *= 1.01;
+      if (auto& time = beaten.time_ms.moving) time->median *= 1.01;
+      cells.push_back(std::move(beaten));
+    }
+    EXPECT_EQ(describe_picks(cells), before);
+  });
 }
 
 TEST(IdlePlaces, AreThoseWhereNoFilterIsSeenToDiffer_UnlessAllAre) {

@@ -107,7 +107,7 @@ TEST(AdviceText, BeginsWithThePicks_ThenTheFastOne) {
               HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 that keep the "
                         "limits\nwith a kernel of 0.65 texels (medium), radius 4, store rg32f\n"));
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {})),
-              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2\n"));
+              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 on the front\n"));
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.001)})), StartsWith("Nothing fits.\n"));
 }
 

@@ -43,7 +43,6 @@ TEST(MixedMachines, NothingIsSaidInMilliseconds_ButInTheTablesOfEachScene) {
   ASSERT_NE(evidence, std::string::npos);
   EXPECT_FALSE(says_milliseconds(summary.substr(0, summary.find("### Columns of fronts.csv"))));
   EXPECT_THAT(summary, HasSubstr("lowest ratio to 'none'"));
-  EXPECT_THAT(summary, Not(HasSubstr("With a moving light slow costs")));
   EXPECT_THAT(summary.substr(evidence), HasSubstr("| machine |"));
   EXPECT_THAT(summary.substr(evidence), HasSubstr("| 80 \\[79.2, 80.8\\] ")) << "as it was measured";
   EXPECT_THAT(summary.substr(evidence), HasSubstr("A fast CPU, 64 cores, A GPU, GPU time (timer query) (1 cell)"));
@@ -51,7 +50,6 @@ TEST(MixedMachines, NothingIsSaidInMilliseconds_ButInTheTablesOfEachScene) {
   for (CellRecord& cell : alike) cell.machine = make_kind("A CPU");
   const std::string usual = write_and_read(alike, make_run(), "summary.md");
   EXPECT_TRUE(says_milliseconds(usual.substr(0, usual.find("### Columns of fronts.csv"))));
-  EXPECT_THAT(usual, HasSubstr("With a moving light slow costs 66.7 times what fast does"));
   EXPECT_THAT(usual, Not(HasSubstr("| machine |")));
   EXPECT_THAT(usual, Not(HasSubstr("Several kinds")));
 }
@@ -93,7 +91,7 @@ TEST(MixedMachines, FrontsAreDrawnAndWrittenOfRatios) {
 TEST(MixedMachines, AdviceHasRatiosAlone) {
   const std::vector<CellRecord> cells = *withhold_mixed_times(make_mixed_cells());
   const std::string text = make_advice_text(make_run(), advise(cells, {}));
-  EXPECT_THAT(text, HasSubstr("slow: 2 × none a frame, moving light; lowest ratio to 'none' of 2"));
+  EXPECT_THAT(text, HasSubstr("slow: 2 × none a frame, moving light; lowest ratio to 'none' of 1 on the front"));
   EXPECT_FALSE(says_milliseconds(text)) << text;
   const auto json = make_advice_json(make_run(), advise(cells, {}));
   EXPECT_EQ(json["asked"]["cheapest"], "ratio_to_none");
