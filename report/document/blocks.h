@@ -100,7 +100,8 @@ struct Bars {
   struct Row {
     std::string label;
     std::vector<Segment> segments;
-    double net = 0.0;  ///< where a tick marks the sum
+    double net = 0.0;        ///< where a tick marks the sum
+    std::string words = {};  ///< the segments in words, for who cannot see them; shown under a pointer
   };
   std::string title;
   std::vector<std::pair<std::string, std::string>> legend;  ///< colour and what it stands for

@@ -278,15 +278,16 @@ class HtmlWriter {
   /// The drawing is 1000 units wide and stretched to the page.
   static std::string write_row(const Bars& bars, const Bars::Row& row) {
     const std::string label = escape_html(row.label);
-    if (row.segments.empty()) return fmt::format("<li>{}</li>\n", label);
+    if (row.segments.empty()) return fmt::format("<li><span>{}</span></li>\n", label);
     const auto place = [&](double value) {
       return std::lround(1000.0 * std::clamp((value - bars.low) / (bars.high - bars.low), 0.0, 1.0));
     };
     std::string html = fmt::format(
-        "<li>{0}<svg viewBox=\"0 0 1000 24\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{0}\">"
+        "<li><span>{0}</span><svg viewBox=\"0 0 1000 24\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{0} · "
+        "{2}\"><title>{2}</title>"
         "<rect class=\"track\" x=\"0\" y=\"4\" width=\"1000\" height=\"16\"></rect>"
         "<rect class=\"zero\" x=\"{1}\" y=\"0\" width=\"2\" height=\"24\"></rect>",
-        label, place(0.0) - 1);
+        label, place(0.0) - 1, escape_html(row.words));
     for (const Bars::Segment& segment : row.segments)
       html += fmt::format("<rect x=\"{}\" y=\"4\" width=\"{}\" height=\"16\" fill=\"{}\"></rect>", place(segment.begin),
                           place(segment.end) - place(segment.begin), escape_html(segment.color));

@@ -62,7 +62,8 @@ std::string write_block(const Split& split) { return write_block(Gallery{{}, {sp
 
 std::string write_block(const Bars& bars) {
   std::vector<std::string> labels;
-  for (const Bars::Row& row : bars.rows) labels.push_back(row.label);
+  for (const Bars::Row& row : bars.rows)
+    labels.push_back(row.words.empty() ? row.label : row.label + " · " + row.words);
   return write_block(Sentences{bars.title, labels});
 }
 

@@ -96,11 +96,10 @@ std::string css_color(const std::array<float, 3>& color) {
 }
 
 document::Bars::Row make_bar_row(const analysis::CellGroup& group, const records::CellRecord& cell) {
-  const std::string head = fmt::format("{}: RMSE {}", group.names.name(cell), records::format_number(*cell.error.rmse));
+  const std::string head = fmt::format("{}: {}", group.names.name(cell), records::format_number(*cell.error.rmse));
   const auto bar = images::make_attribution_bar(cell);
   if (!bar) return {fmt::format("{} · no attribution: {}", head, records::explain_no_attribution(cell)), {}};
-  document::Bars::Row row{
-      fmt::format("{} · {}", head, records::describe_shares(*records::list_shares(cell))), {}, bar->net()};
+  document::Bars::Row row{head, {}, bar->net(), records::describe_shares(*records::list_shares(cell))};
   for (const images::BarSegment& segment : images::stack_segments(*bar))
     row.segments.push_back({segment.begin, segment.end, css_color(records::list_error_parts()[segment.part].color)});
   return row;
@@ -114,10 +113,9 @@ std::optional<document::Bars> make_bars(const analysis::CellGroup& group) {
   if (drawn.empty()) return std::nullopt;
   const images::BarScale scale = images::choose_bar_scale(drawn);
   document::Bars bars;
-  bars.title = fmt::format(
-      "Each part's share times RMSE. Parts left of the grey line offset the others. The "
-      "black tick is the RMSE, the full width {}.",
-      records::format_number(scale.length));
+  bars.title =
+      fmt::format("RMSE and its parts, to {}. The tick is the RMSE; parts left of the grey line offset others.",
+                  records::format_number(scale.length));
   for (const records::ErrorPart& part : records::list_error_parts())
     bars.legend.push_back({css_color(part.color), part.name});
   bars.low = -scale.below;
@@ -227,18 +225,18 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
 
 /// One filter's estimate as a bar of what adds up to it; its words have what does not.
 document::Bars::Row make_gpu_row(const analysis::GpuCost& cost) {
-  document::Bars::Row row{fmt::format("{}: {} us, lookup {} and prefilter {}", cost.configuration->name,
-                                      records::format_number(*cost.estimate_us), records::format_number(cost.lookup_us),
-                                      records::format_number(cost.prefilter_us)),
+  document::Bars::Row row{fmt::format("{}: {} us", cost.configuration->name, records::format_number(*cost.estimate_us)),
                           {},
-                          *cost.estimate_us};
+                          *cost.estimate_us,
+                          fmt::format("lookup {} and prefilter {}", records::format_number(cost.lookup_us),
+                                      records::format_number(cost.prefilter_us))};
   double end = 0.0;
   const auto add = [&](double us, std::size_t color) {
     if (us > 0.0) row.segments.push_back({end, end + us, document::style_of(color).color});
     end += us;
   };
   for (std::size_t i = 0; i < cost.slowest_us.size(); ++i) {
-    row.label += fmt::format("{}{} {}", i == 0 ? " · alone: " : ", ", analysis::kGpuResources[i],
+    row.words += fmt::format("{}{} {}", i == 0 ? " · alone: " : ", ", analysis::kGpuResources[i],
                              records::format_number(cost.alone_us[i]));
     add(cost.slowest_us[i], i + 1);
   }

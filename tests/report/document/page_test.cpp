@@ -34,7 +34,7 @@ TEST(Page, Html_HasEveryBlock_Escaped) {
                            "<div class=\"gallery wide\">",
                            "<img src=\"images/a%20b.png\" alt=\"a picture\" loading=\"lazy\">",
                            "<rect x=\"200\" y=\"4\" width=\"600\" height=\"16\" fill=\"#f0bf30\">",
-                           "<li>mine: no attribution</li>",
+                           "<li><span>mine: no attribution</span></li>",
                            "<figure class=\"chart\" id=\"choice\">",
                            "<figure class=\"chart\" id=\"single\">",
                            "<details><summary>More</summary>"})

@@ -104,7 +104,7 @@ TEST(Configurations, LengthsInUnitsOfAScenesMap_MakeNoDifference) {
 TEST(AdviceText, BeginsWithThePicks_ThenTheFastOne) {
   const auto cells = make_cells();
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
-              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 that keep the "
+              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 on the front that keep the "
                         "limits\nwith a kernel of 0.65 texels (medium), radius 4, store rg32f\n"));
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {})),
               HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 on the front\n"));

@@ -107,10 +107,10 @@ TEST(RunPage, Bars_HaveTheirNumbersAsText) {
   const std::string page = make_html(make_run(), {make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5}),
                                                   make_attributed_cell("esm", 0.04, {0.0, 0.0, 1.0, 0.0})});
   EXPECT_THAT(page,
-              HasSubstr("role=\"img\" aria-label=\"vsm: RMSE 0.04 · numeric 0 %, estimator 75 %, discretisation -25 %, "
+              HasSubstr("role=\"img\" aria-label=\"vsm: 0.04 · numeric 0 %, estimator 75 %, discretisation -25 %, "
                         "model 50 %; parts below 0 offset the others\""));
   EXPECT_THAT(page, HasSubstr("in [0,1]; shares add up to 100 %: parts below 0 offset the others<"));
-  EXPECT_THAT(page, HasSubstr("the full width 0.06"));  // 0.01 to the left, 0.05 to the right of the zero line
+  EXPECT_THAT(page, HasSubstr("RMSE and its parts, to 0.06."));  // 0.01 to the left, 0.05 to the right of the zero line
   EXPECT_THAT(page, HasSubstr("<rect x=\"167\" y=\"4\" width=\"500\" height=\"16\" fill=\"#f0bf30\">"));
   EXPECT_THAT(page, HasSubstr("discretisation and bias"));
   expect_balanced(page);
@@ -121,14 +121,14 @@ TEST(RunPage, BarsOfAnEstimate_AreWhatAddsUp_TheRestIsInWords) {
   cell.gpu = {{"one", {{{"lookup", 1, {}}}, records::GpuEstimateRecord{50, 10, 40, 4, 10, 6, "memory"}, ""}}};
   const std::string page = make_html(make_run(), {cell});
   EXPECT_THAT(page,
-              HasSubstr("vsm: 50 us, lookup 10 and prefilter 40 · alone: arithmetic 4, sampling 10, memory 6<svg"));
+              HasSubstr("vsm: 50 us · lookup 10 and prefilter 40 · alone: arithmetic 4, sampling 10, memory 6\""));
   EXPECT_THAT(page, ::testing::ContainsRegex("<rect x=\"0\" y=\"4\" width=\"200\"[^>]*></rect><rect x=\"200\" y=\"4\" "
                                              "width=\"800\"[^>]*></rect><rect class=\"net\""));
 }
 
 TEST(RunPage, BarsLength_IsWrittenWithoutRoundingErrors) {
   const records::CellRecord cell = make_attributed_cell("vsm", 0.3, {0.0, 1.0, 0.0, 0.0});
-  EXPECT_THAT(make_html(make_run(), {cell}), HasSubstr("the full width 0.3.<"));
+  EXPECT_THAT(make_html(make_run(), {cell}), HasSubstr("RMSE and its parts, to 0.3."));
 }
 
 TEST(RunPage, WithoutAttribution_ThereAreNoBarsOrAReason) {
@@ -138,7 +138,7 @@ TEST(RunPage, WithoutAttribution_ThereAreNoBarsOrAReason) {
   without.absent["attribution"] = "<no> model";
   const records::CellRecord with = make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5});
   const std::string page = make_html(make_run(), {with, without});
-  EXPECT_THAT(page, HasSubstr("RMSE 0.03 · no attribution: &lt;no&gt; model"));
+  EXPECT_THAT(page, HasSubstr("mine: 0.03 · no attribution: &lt;no&gt; model"));
   expect_balanced(page);
 }
 
