@@ -51,7 +51,7 @@ Observation observe(const AxisInputs& inputs, const filters::FilterRequest& requ
   SyntheticScene scene = make_halves(size);
   const std::vector<double> expected =
       size <= kLargestModelled
-          ? make_model_lookup(inputs, request, filters::Precision::kDouble)(scene, request.values).visibility
+          ? make_model_lookup(inputs, request, expected_precision(request.spec))(scene, request.values).visibility
           : keep_clear(scene, inputs, request);
   if (scene.receivers.empty()) return {};  // the kernel meets the edge or the border everywhere
   return judge(make_gl_lookup(inputs, request)(scene, request.values), {expected, kVisibleError, 0});
@@ -137,7 +137,7 @@ std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
 Axis make_map_size_axis() {
   using namespace map_size;
   Axis axis;
-  axis.title = "Size of the map: against the model in double up to 256 texels, then against the model of one depth";
+  axis.title = "Size of the map: against the scalar model up to 256 texels, then against the model of one depth";
   axis.quantity = "texels per side";
   axis.range = {1.0, 4096.0};
   axis.limits = {1.0, 8192.0};

@@ -27,7 +27,8 @@ TEST(ExtremeAxes, GlCases_MeetTheirTheories) {
   for (const char* id : {"map-edge", "map-size", "poisoned-input"}) {
     Axis axis = choose_axes(id)[0];
     if (axis.whole) axis.range.high = std::min(axis.range.high, 512.0);  // larger maps cost seconds
-    expect_theories_met(axis, make_gl_inputs("none,box3x3,poisson,esm,vsm"), Level::kGl, false);
+    expect_theories_met(axis, make_gl_inputs("none,box3x3,poisson,esm,vsm,msm_packed32,msm_packed64"), Level::kGl,
+                        false);
   }
 }
 
