@@ -41,8 +41,8 @@ Command make_bias_command() {
   command.about =
       "Draws the scene's first view under each of its lights with each filter under each mode of --bias (see 'run "
       "--help'), at 0 to 8 times the amount that theory asks for. Writes bias.html (the bias to ship, and charts of "
-      "acne and contact gap), bias.csv, bias.json and pictures. In the folder 'bias' of a report, whose answer then "
-      "has the bias to ship too.";
+      "acne and contact gap), bias.csv, bias.json and pictures. Written into the folder 'bias' of a report, it gives "
+      "that report's answer the bias to ship.";
   auto a = std::make_shared<BiasArguments>();
   a->size = "960x540";
   a->out = "report/out/bias";
