@@ -17,8 +17,10 @@
 #include "harness/render/filter_passes.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/shade_pass.h"
+#include "harness/run/merge.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
+#include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/images/grid.h"
 #include "report/images/hardest_edge.h"
@@ -32,46 +34,67 @@ constexpr double kFactors[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 constexpr double kTooLittle = 0.25, kTheory = 1.0, kTooMuch = 8.0;  // of the pictures
 constexpr double kPercentile = 0.95;
 
+/// The light's name; of the only one, which has none, what it is.
+std::string name_light(const scene::Scene& scene) {
+  return scene.light.name.empty() ? scene::describe_light(scene.light) : scene.light.name;
+}
+
+/// The record of a light that has no answer.
+records::BiasSweepRecord refuse(const options::RunOptions& options, const scene::Scene& scene, const std::string& why) {
+  records::BiasSweepRecord record;
+  record.scene = scene.name;
+  record.light = name_light(scene);
+  record.map_size = options.map_sizes.front();
+  record.width = options.width;
+  record.height = options.height;
+  record.refused = why;
+  return record;
+}
+
 /// One image of a mode, for its grid.
 struct Shot {
   records::BiasPoint point;
   images::Image visibility;
 };
 
+/// Says how far all lights have come.
+struct Steps {
+  options::Progress& progress;
+  std::string light = {};
+  int done = 0;
+
+  void show(const std::string& what) { progress.show(done, light + " · " + what); }
+};
+
+/// One light of a scene.
 class BiasSweep {
  public:
-  BiasSweep(const options::RunOptions& options, options::Progress& progress)
+  BiasSweep(const options::RunOptions& options, const scene::Scene& scene, measure::Renderer& renderer,
+            truth::TruthCache& cache, Steps& steps)
       : options_(options),
-        progress_(progress),
-        scene_(run::load_scene(options, options.scenes.front())),
-        renderer_(measure::make_renderer(options.backend, options.resources)),
-        cache_(options.cache, [&progress](const std::string& message) { progress.note("warning: " + message); }),
-        assets_(renderer_, options_, scene_, cache_, measure::largest_padding_texels(options.filters)),
+        steps_(steps),
+        scene_(scene),
+        renderer_(renderer),
+        assets_(renderer_, options_, scene_, cache, measure::largest_padding_texels(options.filters)),
         light_(assets_.light_map(scene_.cameras.front(), options.map_sizes.front())),
         target_("visibility", GL_R32F, options.width, options.height) {}
 
-  void run() {
-    measure::require_one_layer(light_, "bias", scene_.name);
-    const files::FolderLock lock(options_.out);  // a folder that cannot be written is better found now
-    progress_.begin(static_cast<int>(render::swept_modes().size() * options_.filters.size()), 0);
-    progress_.show(0, "truth");
+  /// Throws Error(kInput) where there is nothing to take a theoretical amount from.
+  records::BiasSweepRecord run() {
+    steps_.show("truth");
     make_masks();
     find_lit();
     describe();
     for (const render::SweptMode& mode : render::swept_modes()) record_.modes.push_back(sweep_mode(mode));
     renderer_.context->require_no_gl_errors();
-    lock.require_in_place();
-    pages::write_page(options_.out, "bias", pages::make_bias_page(record_));
-    write_text_file(options_.out / "bias.csv", pages::make_bias_csv(record_));
-    progress_.show(done_, "done");
+    return std::move(record_);
   }
 
  private:
-  const options::RunOptions& options_;
-  options::Progress& progress_;
-  scene::Scene scene_;
-  measure::Renderer renderer_;
-  truth::TruthCache cache_;
+  options::RunOptions options_;  ///< with the bias that is drawn at present
+  Steps& steps_;
+  const scene::Scene& scene_;
+  measure::Renderer& renderer_;
   measure::SceneAssets assets_;
   measure::LightMap& light_;
   render::ImageTarget target_;
@@ -80,7 +103,6 @@ class BiasSweep {
   std::vector<filters::Receiver> lit_;             ///< those of the acne mask
   std::map<std::string, images::Image> unbiased_;  ///< by label
   records::BiasSweepRecord record_;
-  int done_ = 0;
 
   const scene::Camera& camera() const { return scene_.cameras.front(); }
 
@@ -94,13 +116,12 @@ class BiasSweep {
     masks_ = *masks;
   }
 
-  render::LightSetup make_light(const render::Bias& bias) const {
-    return render::make_light_setup(light_.frustum(), scene_.light, bias, options_.seed);
-  }
-
   /// Finds the lit receivers, for which theory is computed.
   void find_lit() {
-    lit_ = render::read_receivers(renderer_.shaders, assets_.gbuffer(camera()), make_light({}));
+    for (const render::LightSetup& layer : measure::make_unbiased_light(options_, scene_.light, light_.layers)) {
+      const auto served = render::read_receivers(renderer_.shaders, assets_.gbuffer(camera()), layer);
+      lit_.insert(lit_.end(), served.begin(), served.end());
+    }
     std::erase_if(lit_, [&](const filters::Receiver& r) {
       return !masks_.acne[measure::find_pixel(r, options_.width, options_.height)];
     });
@@ -125,6 +146,7 @@ class BiasSweep {
   void describe() {
     record_.scene = scene_.name;
     record_.title = scene_.title;
+    record_.light = name_light(scene_);
     record_.view = camera().name;
     record_.map_size = options_.map_sizes.front();
     record_.width = options_.width;
@@ -162,9 +184,9 @@ class BiasSweep {
 
   images::Image draw(const filters::FilterRequest& request, const render::BiasRule& rule) {
     draw_map(rule.map);
-    const render::Bias bias = render::resolve_bias(rule, light_.frustum(), request.spec, request.values);
-    render::FilterPasses filter(renderer_.shaders, request, light_.map, make_light(bias));
-    return measure::draw_visibility(filter, light_.map, assets_.gbuffer(camera()), target_);
+    options_.bias = rule;
+    const auto filter = measure::make_filter_passes(renderer_, options_, scene_, light_, request);
+    return measure::draw_visibility(*filter, light_.map, assets_.gbuffer(camera()), target_);
   }
 
   /// A filter's visibility without any bias, drawn when it is first asked for.
@@ -228,14 +250,17 @@ class BiasSweep {
     }
     const filters::FilterRequest* shown = choose_shown(usable);
     for (const filters::FilterRequest* request : usable) {
-      progress_.show(done_++, fmt::format("{} · {}", mode.name, request->label()));
+      steps_.show(fmt::format("{} · {}", mode.name, request->label()));
+      ++steps_.done;
       records::BiasCurve& curve = record.curves.emplace_back();
       curve.filter = request->label();
+      curve.id = request->spec.id;
+      curve.params = measure::record_params(request->values);
       std::vector<Shot> shots = shoot_curve(mode, *request, curve);
       for (const Shot& shot : shots) curve.points.push_back(shot.point);
       if (request == shown) write_pictures(record, curve, std::move(shots));
     }
-    done_ += static_cast<int>(record.left_out.size());
+    steps_.done += static_cast<int>(record.left_out.size());
     return record;
   }
 
@@ -244,13 +269,11 @@ class BiasSweep {
     const std::string which = p.factor == kTooLittle ? "too little: "
                               : p.factor == kTooMuch ? "too much: "
                                                      : "theory: ";
-    const auto rate = [](const std::optional<double>& value) {
-      return value ? fmt::format("{:.3g} %", 100.0 * *value) : "absent";
-    };
     images::GridTile tile;
     tile.label = p.factor ? which + pages::name_factor(*p.factor) : mode.mode;
-    tile.caption = (p.factor ? fmt::format("{} {:.4g} · ", mode.key, p.setting) : std::string()) +
-                   fmt::format("acne {} · contact gap {}", rate(p.acne), rate(p.contact_gap));
+    tile.caption =
+        (p.factor ? fmt::format("{} {:.4g} · ", mode.key, p.setting) : std::string()) +
+        fmt::format("acne {} · contact gap {}", pages::format_rate(p.acne), pages::format_rate(p.contact_gap));
     tile.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), render::upload_image(shot.visibility),
                                  scene_, camera());
     tile.visibility = std::move(shot.visibility);
@@ -274,7 +297,8 @@ class BiasSweep {
     grid.crop =
         images::find_hardest_edge(images, images.size() - 1, images::choose_crop_size({truth.width, truth.height}));
     grid.columns = static_cast<int>(grid.tiles.size());
-    mode.picture = fmt::format("bias.{}.png", mode.mode);
+    const std::string light = scene_.light.name.empty() ? "" : files::make_file_stem(scene_.light.name) + ".";
+    mode.picture = fmt::format("bias.{}{}.png", light, mode.mode);
     mode.picture_caption = fmt::format(
         "{} under {}: picture and visibility{}, and the crop where it differs most; full size behind the link",
         curve.filter, mode.mode, mode.key.empty() ? "" : " at too little, as theory says, and too much");
@@ -282,10 +306,50 @@ class BiasSweep {
   }
 };
 
+/// The answer of the report that the folder lies in gets its row of the bias to ship.
+void tell_report(const options::RunOptions& options, options::Progress& progress) {
+  const std::filesystem::path folder = std::filesystem::absolute(options.out / "").lexically_normal().parent_path();
+  if (folder.filename() != "bias" || !std::filesystem::exists(folder.parent_path() / "results.json")) return;
+  try {
+    run::rewrite_report(folder.parent_path());
+  } catch (const Error& error) {
+    progress.note(fmt::format("warning: the answer of the report in {} does not have the bias to ship yet: {}",
+                              folder.parent_path().string(), error.what()));
+  }
+}
+
 }  // namespace
 
 void run_bias_sweep(const options::RunOptions& options, options::Progress& progress) {
-  BiasSweep(options, progress).run();
+  const std::vector<scene::Scene> lit = run::list_lit_scenes(options, run::load_scene(options, options.scenes.front()));
+  if (lit.empty()) run::fail_unknown_light(options);
+  measure::Renderer renderer = measure::make_renderer(options.backend, options.resources);
+  truth::TruthCache cache(options.cache,
+                          [&progress](const std::string& message) { progress.note("warning: " + message); });
+  const files::FolderLock lock(options.out);  // a folder that cannot be written is better found now
+  const int steps_of_light = static_cast<int>(render::swept_modes().size() * options.filters.size());
+  progress.begin(static_cast<int>(lit.size()) * steps_of_light, 0);
+  Steps steps{progress};
+  std::vector<records::BiasSweepRecord> sweeps;
+  for (const scene::Scene& scene : lit) {
+    steps.light = name_light(scene);
+    steps.done = static_cast<int>(sweeps.size()) * steps_of_light;
+    try {
+      sweeps.push_back(BiasSweep(options, scene, renderer, cache, steps).run());
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kInput || lit.size() == 1) throw;
+      progress.note("warning: " + std::string(error.what()));
+      sweeps.push_back(refuse(options, scene, error.what()));
+    }
+  }
+  if (std::ranges::all_of(sweeps, [](const auto& sweep) { return !sweep.refused.empty(); }))
+    throw Error(ErrorKind::kInput, sweeps.front().refused);
+  lock.require_in_place();
+  pages::write_page(options.out, "bias", pages::make_bias_page(sweeps));
+  write_text_file(options.out / "bias.csv", pages::make_bias_csv(sweeps));
+  write_text_file(options.out / "bias.json", records::make_bias_json(pages::list_bias_to_ship(sweeps)));
+  tell_report(options, progress);
+  progress.show(static_cast<int>(lit.size()) * steps_of_light, "done");
 }
 
 }  // namespace shadowbench::bias

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <tuple>
 
 #include "base/error.h"
@@ -62,6 +63,17 @@ void take_picture_options(const PictureArguments& arguments, options::RunOptions
   take_drawing_options(arguments, options);
   options.map_sizes = {parse_count(arguments.map_size, "--map-size")};
   std::tie(options.width, options.height) = parse_picture_size(arguments.size);
+}
+
+std::vector<filters::FilterRequest> parse_filters(const filters::Catalogue& catalogue, const std::string& text,
+                                                  const std::vector<std::string>& files) {
+  std::vector<filters::FilterRequest> requests = catalogue.parse_requests(text);
+  for (const std::string& file : files) {
+    const std::string id = std::filesystem::path(file).stem().string();
+    const auto is_it = [&](const filters::FilterRequest& request) { return request.spec.id == id; };
+    if (std::ranges::none_of(requests, is_it)) requests.push_back(catalogue.parse_requests(id).front());
+  }
+  return requests;
 }
 
 void require_distinct(const std::vector<filters::FilterRequest>& requests) {

@@ -73,6 +73,11 @@ void take_picture_options(const PictureArguments& arguments, options::RunOptions
 /// Names the built-in scenes.
 std::vector<std::string> list_builtin_scenes(const options::Resources& resources);
 
+/// Parses the filters that --filters names, and adds those of the user's files that it does not name, which the
+/// catalogue has.
+std::vector<filters::FilterRequest> parse_filters(const filters::Catalogue& catalogue, const std::string& text,
+                                                  const std::vector<std::string>& files);
+
 /// Refuses filters that are named twice with the same parameters.
 void require_distinct(const std::vector<filters::FilterRequest>& requests);
 

@@ -12,13 +12,22 @@ namespace {
 
 struct BiasArguments : PictureArguments {
   std::string scene = "fence";  ///< among the built-in scenes, this one has receivers for acne and for contact gaps
+  bool ground = false;
+  std::vector<std::string> light_names, filter_files;
 };
 
 int sweep_bias(const BiasArguments& arguments) {
   options::RunOptions options;
   take_picture_options(arguments, options);
   options.scenes = {arguments.scene};
-  options.filters = parse_builtin_filters(arguments.filters, options.resources);
+  options.ground = arguments.ground;
+  options.light_names = arguments.light_names;
+  options.filter_files = arguments.filter_files;
+  filters::Catalogue catalogue(options.resources.filters);
+  catalogue.add_user_files(options.filter_files);
+  options.filters = parse_filters(catalogue, arguments.filters, options.filter_files);
+  require_distinct(options.filters);
+  print_presets(options.filters);
   options.attribution = false;
   work_with_progress(options.out, [&](options::Progress& progress) { bias::run_bias_sweep(options, progress); });
   fmt::print("report: {}\n", (options.out / "bias.html").string());
@@ -30,13 +39,18 @@ int sweep_bias(const BiasArguments& arguments) {
 Command make_bias_command() {
   Command command{"bias", "Sweep every mode of depth bias over its amount, and write a page about it"};
   command.about =
-      "Draws the scene's first view with each filter under each mode of --bias (see 'run --help'), at 0 to 8 times the "
-      "amount that theory asks for, and writes bias.html (charts of acne and contact gap), bias.csv and pictures.";
+      "Draws the scene's first view under each of its lights with each filter under each mode of --bias (see 'run "
+      "--help'), at 0 to 8 times the amount that theory asks for. Writes bias.html (the bias to ship, and charts of "
+      "acne and contact gap), bias.csv, bias.json and pictures. Written into the folder 'bias' of a report, it gives "
+      "that report's answer the bias to ship.";
   auto a = std::make_shared<BiasArguments>();
   a->size = "960x540";
   a->out = "report/out/bias";
   add_scene_option(command, a->scene);
+  add_as_run(command, "--ground", &a->ground);
+  add_as_run(command, "--light-name", &a->light_names);
   add_builtin_filters_option(command, a->filters);
+  add_as_run(command, "--filter-file", &a->filter_files);
   add_picture_options(command, *a);
   add_drawing_options(command, *a);
   command.action = [a](const CommandLine&) { return sweep_bias(*a); };

@@ -27,6 +27,7 @@ using filters::ParamSpec;
 struct ListArguments {
   bool json = false;
   bool measure = false;
+  bool check = false;
   std::string backend = "auto";
 };
 
@@ -182,18 +183,23 @@ int list_metrics(const ListArguments& arguments) {
 int list_gpus(const ListArguments& arguments) {
   nlohmann::json json = nlohmann::json::array();
   for (const gpu::Gpu& gpu : gpu::load_gpus(options::find_resources().gpus)) {
-    const std::optional<std::string> family = run::find_family(gpu);
     nlohmann::json& each = json.emplace_back(nlohmann::json{{"name", gpu.name}, {"title", gpu.title}});
-    each["driver"] = family ? nlohmann::json(*family) : nlohmann::json();
+    const auto family = arguments.check ? run::find_family(gpu) : std::nullopt;
+    if (arguments.check) each["driver"] = family ? nlohmann::json(*family) : nlohmann::json();
     if (!arguments.json)
       fmt::print("{}  {}{}\n", gpu.name, gpu.title,
-                 family ? "" : ": left out, since no Vulkan driver of this machine compiles for it");
+                 !arguments.check ? ""
+                 : family         ? ": compiled for by this machine's Vulkan driver"
+                                  : ": left out, since no Vulkan driver of this machine compiles for it");
     gpu::visit_constants(gpu, [&](const char* key, const gpu::Constant& constant) {
       each[key] = {{"value", constant.value}, {"source", constant.source}};
       if (!arguments.json) fmt::print("  {:<14} {:<6} {}\n", key, constant.value, constant.source);
     });
   }
-  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  if (arguments.json)
+    fmt::print("{}\n", json.dump(2));
+  else
+    fmt::print("Not listed: {}.\n", gpu::kOtherGpus);
   return 0;
 }
 
@@ -225,7 +231,9 @@ Command make_list_command() {
   add("presets", "Filters as engines ship them, with their bias, and what of the engine they lack", list_presets);
   add("scenes", "Built-in scenes", list_scenes);
   add("metrics", "Numbers that a run reports, with unit, range and definition", list_metrics);
-  add("gpus", "GPUs whose costs a run estimates, as far as the Vulkan driver of this machine knows them", list_gpus);
+  add("gpus", "GPUs whose costs a run estimates", list_gpus);
+  command.commands.back().add("--check", &a->check,
+                              "also ask the Vulkan driver of this machine which of them it compiles for");
   add("gl", "The OpenGL context that a run would use", list_gl);
   command.commands.back().add("--measure", &a->measure, "what this GL really does, by experiment");
   add_backend_option(command.commands.back(), a->backend);

@@ -35,13 +35,8 @@ void choose_filters(options::RunOptions& options, RunArguments& arguments) {
   filters::Catalogue catalogue(options.resources.filters);
   catalogue.add_user_files(options.filter_files);
   options.reference = catalogue.parse_requests(kReferenceFilter).front();
-  options.filters = catalogue.parse_requests(options::find_told<std::string>(arguments.told, "--filters"));
-  for (const std::string& file : options.filter_files) {
-    const std::string id = std::filesystem::path(file).stem().string();
-    const auto is_it = [&](const filters::FilterRequest& request) { return request.spec.id == id; };
-    if (std::ranges::any_of(options.filters, is_it)) continue;
-    options.filters.push_back(catalogue.parse_requests(id).front());
-  }
+  options.filters =
+      parse_filters(catalogue, options::find_told<std::string>(arguments.told, "--filters"), options.filter_files);
   if (const auto& tuned = options::find_told<std::string>(arguments.told, "--tuned"); !tuned.empty())
     options.notes = tune::apply_tuned(options.filters, catalogue, tuned, options.map_sizes);
   require_distinct(options.filters);

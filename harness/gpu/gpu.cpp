@@ -62,8 +62,8 @@ std::vector<Gpu> choose_gpus(const std::vector<Gpu>& all, const std::vector<std:
     if (name == "none") throw Error(ErrorKind::kUsage, "--gpu: 'none' stands alone; leave it out beside other names");
     const auto found = std::ranges::find(all, name, &Gpu::name);
     if (found == all.end())
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("--gpu: '{}' is no GPU that is described{}", name, did_you_mean_or_known(name, known)));
+      throw Error(ErrorKind::kUsage, fmt::format("--gpu: '{}' is no GPU that is described{}; {}", name,
+                                                 did_you_mean_or_known(name, known), kOtherGpus));
     if (std::ranges::find(chosen, name, &Gpu::name) != chosen.end())
       throw Error(ErrorKind::kUsage, fmt::format("--gpu: '{}' is named twice; name each GPU once", name));
     chosen.push_back(*found);

@@ -6,6 +6,11 @@
 
 namespace shadowbench::gpu {
 
+/// What to do about a GPU that has no description, in words.
+inline constexpr const char* kOtherGpus =
+    "a browser times any other GPU: open a run's report there, choose 'Time on this GPU' in its section Live, save the "
+    "times, and give them to 'advise REPORT --times gpu-times.json'";
+
 /// A public number about a GPU, and where it was published.
 struct Constant {
   double value = 0.0;

@@ -110,8 +110,9 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
     if (is_unknown(outcome)) {
       const std::optional<std::string> known_family = find_family(gpu);
       if (!known_family || *known_family == family)
-        return refuse(fmt::format("this machine's Vulkan driver does not know {}; 'list gpus' shows what it knows",
-                                  fmt::join(gpu.families, " or ")));
+        return refuse(
+            fmt::format("this machine's Vulkan driver does not know {}; 'list gpus --check' shows what it knows",
+                        fmt::join(gpu.families, " or ")));
       family = *known_family;
       continue;
     }

@@ -111,6 +111,12 @@ std::vector<std::string> list_files(const records::CellRecord& cell) {
   return files;
 }
 
+void write_again(const std::filesystem::path& report, const records::Results& results) {
+  std::vector<std::string> keys;
+  for (const records::CellRecord& cell : results.cells) keys.push_back(cell.key);
+  pages::write_report(report, results.run, keys);
+}
+
 }  // namespace
 
 records::RunRecord join_runs(const std::vector<records::RunRecord>& runs) {
@@ -175,9 +181,13 @@ void merge_times(const std::filesystem::path& report, const std::vector<std::fil
                                                  place->second.string(), file.string(), times.renderer));
   }
   for (const auto& [place, file] : sources) copy_whole_file(file, place);
-  std::vector<std::string> keys;
-  for (const records::CellRecord& cell : results.cells) keys.push_back(cell.key);
-  pages::write_report(report, results.run, keys);
+  write_again(report, results);
+}
+
+void rewrite_report(const std::filesystem::path& report) {
+  const records::Results results = records::read_results(report / "results.json");
+  const files::FolderLock lock(report);
+  write_again(report, results);
 }
 
 }  // namespace shadowbench::run

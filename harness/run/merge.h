@@ -20,6 +20,10 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
 /// is of the first. Requires one run at least.
 records::RunRecord join_runs(const std::vector<records::RunRecord>& runs);
 
+/// Writes the pages and tables of a finished report again, with what lies in its folder by now. Throws Error(kInput)
+/// where there is no report, Error(kOutput) where another process has the folder.
+void rewrite_report(const std::filesystem::path& report);
+
 /// Joins times that browsers saved to a report, as costs of its page and of fronts.csv; those of a renderer that it
 /// has times of take their place. Throws Error(kInput) for a file that is none, or of another run, and Error(kUsage)
 /// where two are of one renderer.

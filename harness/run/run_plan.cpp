@@ -95,11 +95,6 @@ constexpr const char* kChanged =
     "the experiment is no longer what was submitted: scenes, filters, settings or the program have changed; submit it "
     "into another folder";
 
-/// Whether a light was asked for; all are where none was named.
-bool is_wanted(const options::RunOptions& options, const scene::Light& light) {
-  return options.light_names.empty() || std::ranges::count(options.light_names, light.name) > 0;
-}
-
 /// Whether one of the cells from `begin` on, up to `end` and without it, is to be measured.
 bool has_own_cell(const options::Part& part, int begin, int end) {
   return std::ranges::any_of(
@@ -148,8 +143,7 @@ std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
     for (const std::size_t i : needed) loaded.scenes.push_back(options.scenes[i]);
     std::vector<scene::Scene> scenes = load_scenes(loaded);
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-      for (const scene::Scene& lit : scene::separate_lights(scenes[i])) {
-        if (!is_wanted(options, lit.light)) continue;
+      for (const scene::Scene& lit : list_lit_scenes(options, scenes[i])) {
         for (const scene::FitRule& fit : options.fits) {
           framed.fit = fit;
           planned.push_back({framed, options.scenes[needed[i]], lit, first_place + needed[i]});
@@ -205,11 +199,7 @@ class Planner {
 
   RunPlan plan() {
     plan_.scenes = plan_scenes(options_);
-    if (plan_.scenes.empty()) {
-      throw Error(ErrorKind::kUsage, fmt::format("--light-name: no scene has a light '{}'; the lights of several have "
-                                                 "names in their scene's file",
-                                                 fmt::join(options_.light_names, "', '")));
-    }
+    if (plan_.scenes.empty()) fail_unknown_light(options_);
     require_views(options_, plan_.scenes);
     require_few_maps(plan_.scenes);
     plan_.scene_cells.resize(options_.sizes.size() * options_.scenes.size());

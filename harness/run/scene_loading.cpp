@@ -1,6 +1,7 @@
 #include "harness/run/scene_loading.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -34,6 +35,20 @@ scene::Scene load_scene(const options::RunOptions& options, const std::string& a
   scene::Scene scene = scene::load(argument, load);
   if (options.truth && options.map.blend_casters == render::BlendCasters::kOpaque) warn_of_blending(scene);
   return scene;
+}
+
+std::vector<scene::Scene> list_lit_scenes(const options::RunOptions& options, const scene::Scene& scene) {
+  std::vector<scene::Scene> lit = scene::separate_lights(scene);
+  const std::vector<std::string>& names = options.light_names;
+  std::erase_if(
+      lit, [&](const scene::Scene& each) { return !names.empty() && std::ranges::count(names, each.light.name) == 0; });
+  return lit;
+}
+
+void fail_unknown_light(const options::RunOptions& options) {
+  throw Error(ErrorKind::kUsage, fmt::format("--light-name: no scene has a light '{}'; the lights of several have "
+                                             "names in their scene's file",
+                                             fmt::join(options.light_names, "', '")));
 }
 
 std::vector<scene::Scene> load_scenes(const options::RunOptions& options) {

@@ -12,6 +12,13 @@ namespace shadowbench::run {
 /// Throws Error as scene::load().
 scene::Scene load_scene(const options::RunOptions& options, const std::string& argument);
 
+/// The scene under each of its lights that was asked for, by itself; all where none was named, none where it has none
+/// of these.
+std::vector<scene::Scene> list_lit_scenes(const options::RunOptions& options, const scene::Scene& scene);
+
+/// Throws Error(kUsage): no scene has a light that was asked for.
+[[noreturn]] void fail_unknown_light(const options::RunOptions& options);
+
 /// Loads all of a run's scenes, in its order. Throws Error as load_scene(), and Error(kUsage) where two have one name.
 std::vector<scene::Scene> load_scenes(const options::RunOptions& options);
 

@@ -78,6 +78,11 @@ SyntheticLookup make_model_lookup(const AxisInputs& inputs, const filters::Filte
   };
 }
 
+filters::Precision expected_precision(const filters::FilterSpec& spec) {
+  const bool packs = !spec.passes.empty() && spec.passes.back().is_integer();
+  return packs ? filters::Precision::kFloat : filters::Precision::kDouble;
+}
+
 double look_at_one_depth(const AxisInputs& inputs, const filters::FilterRequest& request, float stored,
                          float receiver) {
   const int size = 2 * static_cast<int>(std::ceil(filters::radius_texels(request.spec, request.values))) + 6;

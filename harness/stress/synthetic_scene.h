@@ -47,6 +47,12 @@ SyntheticLookup make_gl_lookup(const AxisInputs& inputs, const filters::FilterRe
 SyntheticLookup make_model_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
                                   filters::Precision precision = filters::Precision::kFloat);
 
+/// The precision in which a filter's scalar model says what the GL must see. It is exact, but for filters that pack
+/// numbers into whole ones, in steps far wider than those of floats: in single precision their models take the same
+/// steps. |seen - exact| <= |seen - packed| + |packed - exact|, and what a filter loses by packing, the second, is no
+/// matter of an axis that changes the map.
+filters::Precision expected_precision(const filters::FilterSpec& spec);
+
 /// What a filter's scalar model makes, in double, of a receiver before a map of one depth: the same for every size of
 /// map and for every place whose kernel lies inside. Requires a filter that has a model.
 double look_at_one_depth(const AxisInputs& inputs, const filters::FilterRequest& request, float stored, float receiver);

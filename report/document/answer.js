@@ -301,6 +301,7 @@ const startAnswer = (holder) => {
     element(head, "td");
     for (const title of ["Fast", "Balanced", "Best"]) element(head, "th", { scope: "col" }, title);
     run.scopes.forEach((scope) => addRow(scope, scope === all ? judged : judge(scope)));
+    addBiasRow(table.tBodies[0], pick(judged, all));
   };
   const show = () => {
     headline.textContent = "";

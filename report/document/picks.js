@@ -24,3 +24,13 @@ const pickThree = (keeping, { hasOthers, rmseOf, costOf, areComparable, areTied,
     { columns: [2], ...best, why: `least RMSE${times}` },
   ];
 };
+
+// What a sweep of the bias recommends for picks, as a row of their table; none where none was swept.
+const addBiasRow = (body, picks) => {
+  const biasOf = (column) => run.configurations[picks.find(({ columns }) => columns.includes(column))?.index]?.bias;
+  const biases = [0, 1, 2].map(biasOf);
+  if (!biases.some(Boolean)) return;
+  const row = element(body, "tr");
+  element(row, "th", { scope: "row" }, "bias to ship");
+  for (const bias of biases) element(row, "td", {}, bias || "–");
+};

@@ -5,117 +5,26 @@
 #include <algorithm>
 #include <set>
 
-#include "report/analysis/extremes.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv_tables.h"
 
 namespace shadowbench::pages {
 namespace {
 
-constexpr double kNarrowGap = 0.01, kWideGap = 0.1;
 constexpr double kNeverEnough = 1e6;  // weighs more than any amount swept
 
 using Rate = std::optional<double> records::BiasPoint::*;
 
-std::string format_rate(const std::optional<double>& rate) {
-  return rate ? fmt::format("{:.3g} %", 100.0 * *rate) : "absent";
+/// The scene without its light's name, which a scene with one light does not have.
+std::string name_scene(const records::BiasSweepRecord& sweep) {
+  const std::string end = "." + sweep.light;
+  return sweep.scene.ends_with(end) ? sweep.scene.substr(0, sweep.scene.size() - end.size()) : sweep.scene;
 }
 
 const records::BiasPoint* find_point(const records::BiasCurve& curve, double factor) {
   const auto found = std::find_if(curve.points.begin(), curve.points.end(),
                                   [&](const records::BiasPoint& p) { return p.factor == factor; });
   return found == curve.points.end() ? nullptr : &*found;
-}
-
-std::string explain_amounts() {
-  return fmt::format(
-      "The smallest amount swept, in theoretical ones, that leaves less than {:g} % acne, and the contact "
-      "gap there. \u2717: none does, or the gap is {:g} % or more.",
-      100.0 * kLittleAcne, 100.0 * kWideGap);
-}
-
-/// What a mode comes to for a filter, at the smallest amount swept that is enough where it takes an amount.
-struct BiasVerdict {
-  std::string text;
-  document::Grade grade = document::Grade::kBad;
-  std::optional<bool> free = {};  ///< of acne
-  std::optional<double> gap = {};
-};
-
-BiasVerdict judge_curve(const records::BiasCurve& curve) {
-  if (curve.points.empty()) return {"absent", document::Grade::kNone};
-  const auto enough = find_enough(curve);
-  const records::BiasPoint& point = enough ? *find_point(curve, *enough) : curve.points.back();
-  if (!point.acne || *point.acne >= kLittleAcne)
-    return point.acne ? BiasVerdict{"acne " + format_rate(point.acne), document::Grade::kBad, false}
-                      : BiasVerdict{"acne absent", document::Grade::kNone};
-  BiasVerdict verdict{(enough ? name_factor(*enough) + ", " : "") + "gap " + format_rate(point.contact_gap)};
-  verdict.free = true;
-  verdict.gap = point.contact_gap;
-  if (!verdict.gap)
-    verdict.grade = document::Grade::kNone;
-  else if (*verdict.gap < kWideGap)
-    verdict.grade = *verdict.gap < kNarrowGap ? document::Grade::kGood : document::Grade::kNear;
-  return verdict;
-}
-
-/// One rate of the modes, each with the filters that can use it.
-struct ComparedModes {
-  std::vector<analysis::Rated> modes;
-  int absent = 0, cells = 0;  ///< modes with a filter: those that lack the rate, and all that could have it
-
-  void add(const std::string& mode, double rate) { modes.push_back({mode, rate, format_rate(rate)}); }
-
-  std::string describe(const records::BiasSweepRecord& sweep) const {
-    const std::string why = fmt::format("fewer than {} receivers are left to rate", sweep.fewest_receivers);
-    if (modes.empty()) return absent > 0 ? "absent, since " + why : "none";
-    return analysis::describe_extremes(modes, "under", "modes") +
-           (absent > 0 ? fmt::format("; absent in {} of {} cells, where {}", absent, cells, why) : "");
-  }
-};
-
-/// Acne and contact gap each have a sentence: one mode can be the best of one, and the worst of the other.
-struct BiasHeadline {
-  ComparedModes acne, gap;
-
-  void add(const std::string& mode, const std::vector<BiasVerdict>& verdicts) {
-    int rated = 0, kept = 0;
-    std::optional<double> widest;
-    for (const BiasVerdict& verdict : verdicts) {
-      ++acne.cells;
-      ++(verdict.free ? rated : acne.absent);
-      if (verdict.free == false) ++kept;
-      if (verdict.free != true) continue;
-      ++gap.cells;
-      if (!verdict.gap) ++gap.absent;
-      if (verdict.gap) widest = std::max(widest.value_or(0.0), *verdict.gap);
-    }
-    if (rated > 0) acne.add(mode, static_cast<double>(kept) / rated);
-    if (widest) gap.add(mode, *widest);
-  }
-
-  std::string describe(const records::BiasSweepRecord& sweep) const {
-    if (acne.cells == 0) return "No filter of this run can use any bias.";
-    return fmt::format("Filters with acne: {}. Widest contact gap of those without: {}.", acne.describe(sweep),
-                       gap.describe(sweep));
-  }
-};
-
-document::Section make_bias_answer(const records::BiasSweepRecord& sweep) {
-  document::Table table{"Enough bias, and the contact gap it opens", {{"mode"}, {}}};
-  BiasHeadline headline;
-  for (const records::BiasModeRecord& mode : sweep.modes) {
-    std::vector<BiasVerdict> verdicts;
-    for (const records::BiasCurve& curve : mode.curves) {
-      verdicts.push_back(judge_curve(curve));
-      table.judge(mode.mode, curve.filter, verdicts.back().text, verdicts.back().grade);
-    }
-    headline.add(mode.mode, verdicts);
-  }
-  return {
-      "answer",
-      "",
-      {document::Paragraph{headline.describe(sweep)}, std::move(table), document::Paragraph{explain_amounts(), true}}};
 }
 
 records::TextTable make_amount_table(const records::BiasModeRecord& mode) {
@@ -192,15 +101,19 @@ document::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rat
 /// Filters that need most bias, or whose contacts that opens widest, say most, beside none.
 double weigh_curve(const records::BiasCurve& curve) {
   if (curve.filter == "none") return 2.0 * kNeverEnough;
-  const auto enough = find_enough(curve);
-  return enough ? *enough + find_point(curve, *enough)->contact_gap.value_or(0.0) : kNeverEnough;
+  const records::BiasPoint* enough = find_enough_point(curve);
+  return enough && enough->factor ? *enough->factor + enough->contact_gap.value_or(0.0) : kNeverEnough;
 }
 
-document::Section make_mode_section(const records::BiasModeRecord& mode, const records::BiasSweepRecord& sweep) {
-  document::Section section{mode.mode, mode.mode, {document::Paragraph{mode.meaning, true}}};
+/// `prefix`: of ids, which a page has once.
+document::Section make_mode_section(const records::BiasModeRecord& mode, const records::BiasSweepRecord& sweep,
+                                    const std::string& heading, const std::string& prefix) {
+  document::Section section{prefix + mode.mode, heading, {document::Paragraph{mode.meaning, true}}};
   if (mode.curves.empty()) section.blocks.emplace_back(document::Paragraph{"No filter of this run can use it."});
   if (!mode.key.empty() && !mode.curves.empty()) {
-    section.blocks.emplace_back(make_bias_chart(mode, sweep.filters));
+    document::Chart chart = make_bias_chart(mode, sweep.filters);
+    chart.id = "bias." + prefix + mode.mode;
+    section.blocks.emplace_back(std::move(chart));
     section.blocks.emplace_back(
         document::Table{"At theory: amount, move towards the light, rates", make_amount_table(mode)});
   }
@@ -219,6 +132,7 @@ std::string describe_texels(const records::BiasSweepRecord& sweep) {
 
 std::vector<std::pair<std::string, std::string>> list_bias_facts(const records::BiasSweepRecord& sweep) {
   return {{"scene", sweep.title.empty() ? sweep.scene : sweep.scene + ": " + sweep.title},
+          {"light", sweep.light},
           {"view", fmt::format("{}, {} x {} pixels", sweep.view, sweep.width, sweep.height)},
           {"shadow map", fmt::format("{0} x {0} texels of {1} m, depth range {2:.3g} m", sweep.map_size,
                                      describe_texels(sweep), sweep.depth_range_m)},
@@ -265,12 +179,6 @@ std::vector<std::string> define_bias_terms(const records::BiasSweepRecord& sweep
 
 }  // namespace
 
-std::optional<double> find_enough(const records::BiasCurve& curve) {
-  for (const records::BiasPoint& point : curve.points)
-    if (point.factor && point.acne && *point.acne < kLittleAcne) return point.factor;
-  return std::nullopt;
-}
-
 std::string name_factor(double factor) {
   return factor > 0.0 && factor < 1.0 ? fmt::format("1/{:.4g}", 1.0 / factor) : fmt::format("{:.4g}", factor);
 }
@@ -310,36 +218,50 @@ document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::
   return chart;
 }
 
-document::Page make_bias_page(const records::BiasSweepRecord& sweep) {
-  document::Page page{"Depth bias: acne against contact", {make_bias_answer(sweep)}, {}};
-  page.sections.push_back(make_engine_section(sweep));
-  for (const records::BiasModeRecord& mode : sweep.modes) page.sections.push_back(make_mode_section(mode, sweep));
-  page.sections.push_back(
-      {"data",
-       "",
-       {document::Details{"Settings, terms and data",
-                          {document::Facts{list_bias_facts(sweep)}, document::Sentences{{}, define_bias_terms(sweep)},
-                           link_data({"bias.csv"})}}}});
+document::Page make_bias_page(const std::vector<records::BiasSweepRecord>& sweeps) {
+  std::vector<std::string> lights;
+  for (const records::BiasSweepRecord& sweep : sweeps) lights.push_back(sweep.light);
+  const records::BiasSweepRecord& first = sweeps.front();
+  document::Page page{fmt::format("Depth bias on {} under {}, map {}, {} x {}", name_scene(first),
+                                  fmt::join(lights, ", "), first.map_size, first.width, first.height),
+                      {make_bias_answers(sweeps)},
+                      {}};
+  document::Details settings{"Settings, terms and data", {}};
+  for (const records::BiasSweepRecord& sweep : sweeps) {
+    if (!sweep.refused.empty()) continue;
+    const std::string prefix = sweeps.size() > 1 ? fmt::format("light{}-", &sweep - sweeps.data() + 1) : std::string();
+    page.sections.push_back(make_engine_section(sweep));
+    page.sections.back().id = prefix + page.sections.back().id;
+    page.sections.back().heading = name_light(sweeps, sweep, page.sections.back().heading);
+    for (const records::BiasModeRecord& mode : sweep.modes)
+      page.sections.push_back(make_mode_section(mode, sweep, name_light(sweeps, sweep, mode.mode), prefix));
+    settings.blocks.emplace_back(document::Facts{list_bias_facts(sweep)});
+    settings.blocks.emplace_back(document::Sentences{{}, define_bias_terms(sweep)});
+  }
+  settings.blocks.emplace_back(link_data({"bias.csv", "bias.json"}));
+  page.sections.push_back({"data", "", {std::move(settings)}});
   return page;
 }
 
-std::string make_bias_csv(const records::BiasSweepRecord& sweep) {
+std::string make_bias_csv(const std::vector<records::BiasSweepRecord>& sweeps) {
   const auto optional = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : std::string();
   };
   std::string csv =
       "scene,view,map_size,mode,key,filter,factor,setting,lift_depth,lift_texels,lift_m,acne,contact_gap\r\n";
-  for (const records::BiasModeRecord& mode : sweep.modes) {
-    for (const records::BiasCurve& curve : mode.curves) {
-      for (const records::BiasPoint& p : curve.points) {
-        const auto scaled = [&](double at_theory) {
-          return p.factor ? fmt::format("{}", *p.factor * at_theory) : std::string();
-        };
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", records::quote_csv(sweep.scene),
-                           records::quote_csv(sweep.view), sweep.map_size, mode.mode, mode.key,
-                           records::quote_csv(curve.filter), optional(p.factor),
-                           p.factor ? fmt::format("{}", p.setting) : "", scaled(curve.lift_depth),
-                           scaled(curve.lift_texels), scaled(curve.lift_m), optional(p.acne), optional(p.contact_gap));
+  for (const records::BiasSweepRecord& sweep : sweeps) {
+    for (const records::BiasModeRecord& mode : sweep.modes) {
+      for (const records::BiasCurve& curve : mode.curves) {
+        for (const records::BiasPoint& p : curve.points) {
+          const auto scaled = [&](double at_theory) {
+            return p.factor ? fmt::format("{}", *p.factor * at_theory) : std::string();
+          };
+          csv += fmt::format(
+              "{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", records::quote_csv(sweep.scene),
+              records::quote_csv(sweep.view), sweep.map_size, mode.mode, mode.key, records::quote_csv(curve.filter),
+              optional(p.factor), p.factor ? fmt::format("{}", p.setting) : "", scaled(curve.lift_depth),
+              scaled(curve.lift_texels), scaled(curve.lift_m), optional(p.acne), optional(p.contact_gap));
+        }
       }
     }
   }

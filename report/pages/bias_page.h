@@ -12,6 +12,13 @@ namespace shadowbench::pages {
 /// A filter with less acne than this, a pixel in a thousand, is said to have enough bias.
 inline constexpr double kLittleAcne = 0.001;
 
+/// Writes a rate in per cent; "absent" where there is none.
+std::string format_rate(const std::optional<double>& rate);
+
+/// The first point with less acne than kLittleAcne, of a mode that takes an amount or of one that takes none; null
+/// where none has.
+const records::BiasPoint* find_enough_point(const records::BiasCurve& curve);
+
 /// The smallest swept factor at which a filter has less acne than kLittleAcne; nothing where there is none.
 std::optional<double> find_enough(const records::BiasCurve& curve);
 
@@ -22,11 +29,25 @@ std::string name_factor(double factor);
 /// left out, and said where a whole kind is. A filter's place in `filters` gives it its colour and its mark.
 document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters);
 
-/// Makes the page of `shadowbench bias`.
-document::Page make_bias_page(const records::BiasSweepRecord& sweep);
+/// Recommends a bias for each filter under each light that has an answer: of the modes that leave less acne than
+/// kLittleAcne, at the least amount swept that does, the one with the smallest contact gap; of equal ones the first.
+std::vector<records::BiasToShip> list_bias_to_ship(const std::vector<records::BiasSweepRecord>& sweeps);
 
-/// Makes bias.csv (RFC 4180): one row per mode, filter and amount; what is absent is empty.
-std::string make_bias_csv(const records::BiasSweepRecord& sweep);
+/// Says it in a line: "constant:depth=0.002, contact gap 1.2 %".
+std::string describe_bias_to_ship(const records::BiasToShip& ship);
+
+/// Says whose light a text is of, where there are several.
+std::string name_light(const std::vector<records::BiasSweepRecord>& sweeps, const records::BiasSweepRecord& sweep,
+                       const std::string& text);
+
+/// The top of the page: what each mode comes to under each light, and the bias to ship.
+document::Section make_bias_answers(const std::vector<records::BiasSweepRecord>& sweeps);
+
+/// Makes the page of `shadowbench bias`. Requires the lights of one scene, one at least.
+document::Page make_bias_page(const std::vector<records::BiasSweepRecord>& sweeps);
+
+/// Makes bias.csv (RFC 4180): one row per light, mode, filter and amount; what is absent is empty.
+std::string make_bias_csv(const std::vector<records::BiasSweepRecord>& sweeps);
 
 /// The least bias without acne of each filter, in what engines call their settings, with how each was converted and
 /// from which source. Maps of suns alone: under a lamp an engine's texel is no length.

@@ -164,7 +164,7 @@ std::string write_request(const records::CellRecord& cell) {
 }
 
 json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters,
-                        const std::vector<CostChoice>& choices) {
+                        const std::vector<CostChoice>& choices, const std::vector<records::BiasToShip>& biases) {
   const records::CellRecord& cell = *configuration.cells.front();
   const document::ChartStyle style =
       document::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
@@ -181,6 +181,7 @@ json make_configuration(const analysis::Configuration& configuration, const std:
                {"teaching", cell.teaching.value_or(false)},
                {"surroundings", configuration.surroundings},
                {"color", style.color},
+               {"bias", describe_biases(configuration, biases)},
                {"hardens", cell.claims && std::ranges::count(*cell.claims, "contact-hardening") > 0}};
   for (const CostChoice& choice : choices) made[choice.field] = describe_cost(configuration.cells, choice);
   return made;
@@ -189,7 +190,7 @@ json make_configuration(const analysis::Configuration& configuration, const std:
 }  // namespace
 
 json make_run_data(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                   const analysis::AdviceRequest& request) {
+                   const analysis::AdviceRequest& request, const std::vector<records::BiasToShip>& biases) {
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   const std::vector<std::string> filters = analysis::list_filters(cells);
@@ -237,7 +238,7 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
     for (const records::CellRecord* cell : configuration.cells)
       data["cells"].push_back(
           make_cell(*cell, data["configurations"].size(), analysis::find_place(places, *cell), gpus, frame));
-    data["configurations"].push_back(make_configuration(configuration, filters, choices));
+    data["configurations"].push_back(make_configuration(configuration, filters, choices, biases));
   }
   data["scopes"] = std::ranges::any_of(cells, records::is_advised)
                        ? make_answer_data(cells, configurations, classes, choices)

@@ -314,11 +314,12 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
 }  // namespace
 
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& measured,
-                             const std::optional<Trade>& trade, const std::vector<records::GpuTimes>& machines) {
+                             const std::optional<Trade>& trade, const std::vector<records::GpuTimes>& machines,
+                             const std::vector<records::BiasToShip>& biases) {
   const auto withheld = analysis::withhold_mixed_times(measured);
   const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
   const analysis::AdviceRequest request = choose_request(cells);
-  document::Page page{"Shadow filters compared", {make_answer_section(run, cells, request)}, {}};
+  document::Page page{"Shadow filters compared", {make_answer_section(run, cells, request, biases)}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
   const auto without_external = analysis::leave_out_external(cells);
   const std::vector<records::CellRecord>& own = without_external ? *without_external : cells;
@@ -329,7 +330,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
     add({"viewer", "Look closer", {document::Mount{"viewer", {}}}});
     if (std::ranges::any_of(cells, [](const auto& cell) { return cell.images.frames.has_value(); }))
       add({"live", "Live", {document::Mount{"live", {}}}});
-    page.data = make_run_data(run, cells, request);
+    page.data = make_run_data(run, cells, request, biases);
     page.data["times"] = nlohmann::json::array();
     for (const records::GpuTimes& times : machines) {
       page.data["times"].push_back(records::gpu_times_json(times));

@@ -9,6 +9,7 @@
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"
 #include "report/pages/write_page.h"
+#include "report/records/bias_record.h"
 #include "report/records/csv_tables.h"
 #include "report/records/json_io.h"
 
@@ -38,6 +39,7 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
 void write_report(const std::filesystem::path& dir, records::RunRecord run,
                   const std::vector<records::CellRecord>& cells) {
   const std::vector<records::GpuTimes> machines = records::list_gpu_times(dir, cells, run.warnings);
+  const std::vector<records::BiasToShip> biases = records::list_bias_to_ship(dir, run.warnings);
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));
@@ -53,7 +55,7 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run,
     write_page(dir, "frames", make_frames_page(cells, run));
   else
     remove_page(dir, "frames");  // of another run into this folder
-  write_page(dir, "run", make_run_page(run, cells, trade, machines));
+  write_page(dir, "run", make_run_page(run, cells, trade, machines, biases));
   records::write_results(dir, run, cells);
 }
 

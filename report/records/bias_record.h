@@ -1,8 +1,11 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "report/records/records.h"
 
 namespace shadowbench::records {
 
@@ -22,6 +25,8 @@ struct BiasCurve {
   double lift_texels = 0.0;       ///< the same, in widths of a texel at the receiver that theory is taken from
   double lift_m = 0.0;            ///< the same, in metres
   std::vector<BiasPoint> points;  ///< by ascending factor
+  std::string id = {};            ///< of the filter
+  ParamMap params = {};           ///< complete
 };
 
 /// One mode of bias.
@@ -35,13 +40,15 @@ struct BiasModeRecord {
   std::string picture_caption;
 };
 
-/// Everything that a page about bias says.
+/// One light of a scene: all modes of bias.
 struct BiasSweepRecord {
   struct Span {
     double least = 0.0, most = 0.0;
   };
-  std::string scene;
+  std::string scene;  ///< as cells of a run name it: with the name of one of several lights
   std::string title;
+  std::string light;    ///< its name, or what it is where it has none
+  std::string refused;  ///< why the light has no answer; empty: it has one
   std::string view;
   int map_size = 0;
   int width = 0;   ///< pixels
@@ -60,5 +67,29 @@ struct BiasSweepRecord {
   int fewest_receivers = 0;    ///< a rate over fewer receivers is absent
   std::vector<BiasModeRecord> modes;
 };
+
+/// The bias that a sweep recommends for a filter under a light.
+struct BiasToShip {
+  std::string scene;  ///< as cells of a run name it
+  std::string light;  ///< as its sweep names it
+  int map_size = 0;
+  std::string filter;     ///< label
+  std::string id = {};    ///< of the filter
+  ParamMap params = {};   ///< complete
+  std::string bias = {};  ///< as --bias takes it; empty: under no mode the filter is free of acne
+  std::optional<double> contact_gap = {};
+
+  /// Whether it was measured as this cell was, but for the bias.
+  bool is_of(const CellRecord& cell) const {
+    return scene == cell.scene && map_size == cell.map_size && id == cell.filter && params == cell.params;
+  }
+};
+
+/// Makes the text of a bias.json.
+std::string make_bias_json(const std::vector<BiasToShip>& ships);
+
+/// Reads the bias.json that lies in the folder `bias` of a report; nothing where there is none. What cannot be read is
+/// left out, and `warnings` say why.
+std::vector<BiasToShip> list_bias_to_ship(const std::filesystem::path& report, std::vector<std::string>& warnings);
 
 }  // namespace shadowbench::records

@@ -18,7 +18,7 @@ const readCorrelation = (text) => /Over (\d+) configurations, the rank correlati
 
 test("EstimatesMeetTimes_OfTheGpuThatTheyAreFor", () => withBrowser(kMesa, async (browser) => {
   const { page, messages, shoot, close } = await openLive(pageOf("several"), browser, { viewport: kNarrow });
-  const data = await readData(page), moving = data.costs.find(({ id }) => id === "moving").field;
+  const data = await readData(page);
   const count = data.configurations.filter((each) => each[kEstimate] !== null).length, measured = page.locator("#gpus .measured");
   assert.ok(count > 4);
   assert.equal(readCorrelation(await load(page, forge(data, "Another GPU", (each) => each[kEstimate]))), undefined);
@@ -34,9 +34,8 @@ test("EstimatesMeetTimes_OfTheGpuThatTheyAreFor", () => withBrowser(kMesa, async
   await shoot("live.estimates");
   assert.ok((await measureOverflow(page)) <= 0);
   assert.deepEqual(await listViolations(page), []);
-  // The program's own sentence, of estimates and the run's times, is what the page says of the same times: ties too.
-  const own = (await page.locator("#gpus li").allTextContents()).map((text) => /^navi21: over (\d+) configurations, the rank correlation .* is (-?[\d.]+)\./.exec(text)).find(Boolean).slice(1).map(Number);
-  assert.deepEqual(readCorrelation(await load(page, forge(data, kRenderer, (each) => each[moving]))), own);
+  // The run's own times are a CPU's, which the program holds no estimate against.
+  assert.deepEqual((await page.locator("#gpus li").allTextContents()).filter((text) => text.includes("rank correlation")), []);
   const level = readCorrelation(await load(page, forge(data, kRenderer, () => 1)));
   assert.equal(level, undefined, "all alike have no order");
   assert.deepEqual(messages, []);

@@ -103,7 +103,9 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
     cost.configuration = &configuration;
     cost.record = &records->at(gpu);
     cost.estimate_us = mean_over(configuration, cost_spec({CostKind::kGpu, gpu}));
-    cost.measured_ms = mean_over(configuration, cost_spec(CostKind::kTime));
+    const auto is_of_cpu = [](const records::CellRecord* cell) { return cell->machine && cell->machine->software; };
+    if (std::ranges::none_of(configuration.cells, is_of_cpu))
+      cost.measured_ms = mean_over(configuration, cost_spec(CostKind::kTime));
     for (const records::CellRecord* cell : configuration.cells) {
       if (!cost.estimate_us) break;
       const records::GpuEstimateRecord& estimate = *cell->gpu->at(gpu).estimate;
@@ -165,8 +167,10 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
 
 records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
   records::TextTable table;
-  table.header = {"filter",   "estimate, us",     "measured here, ms", "lookup, us", "prefilter, us",
-                  "bound by", "own instructions", "own reads",         "registers",  "waves"};
+  table.header = {"filter",           "estimate, us", "lookup, us", "prefilter, us", "bound by",
+                  "own instructions", "own reads",    "registers",  "waves"};
+  const bool is_measured = std::ranges::any_of(costs, [](const GpuCost& cost) { return cost.measured_ms.has_value(); });
+  if (is_measured) table.header.insert(table.header.begin() + 2, "measured here, ms");
   std::vector<GpuCost> sorted = costs;
   std::ranges::stable_sort(sorted, {}, &GpuCost::estimate_us);
   for (const GpuCost& cost : sorted) {
@@ -174,11 +178,13 @@ records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
     const records::ShaderFacts* empty = find_facts(*cost.record, "empty");
     if (!lookup || !empty || !cost.estimate_us) continue;
     table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_us),
-                          records::format_number(cost.measured_ms), records::format_number(cost.lookup_us),
-                          records::format_number(cost.prefilter_us), cost.record->estimate->bound_by,
+                          records::format_number(cost.lookup_us), records::format_number(cost.prefilter_us),
+                          cost.record->estimate->bound_by,
                           fmt::format("{}", lookup->instructions - empty->instructions),
                           fmt::format("{}", lookup->reads() - empty->reads()),
                           fmt::format("{}", lookup->vector_registers), fmt::format("{}", lookup->waves_per_simd)});
+    std::vector<std::string>& row = table.rows.back();
+    if (is_measured) row.insert(row.begin() + 2, records::format_number(cost.measured_ms));
   }
   return table;
 }

@@ -25,7 +25,9 @@ struct GpuCost {
   double lookup_us = 0.0, prefilter_us = 0.0;  ///< the parts of it
   GpuResources slowest_us{};  ///< the lookup's part, by the resource that is the slowest in a cell: they add up to it
   GpuResources alone_us{};    ///< of each resource, were the others for nothing: they do not add up
-  std::optional<double> measured_ms;  ///< with a moving light, in the run's clock; nothing where a cell has none
+  /// With a moving light, in the run's clock; nothing where a cell has none, or a software rasteriser drew it: a CPU's
+  /// times say nothing of a GPU.
+  std::optional<double> measured_ms;
 };
 
 /// The costs of all configurations that have a record of the GPU and are right everywhere.
@@ -39,8 +41,8 @@ std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs);
 /// or guessed.
 std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs);
 
-/// One row for each configuration that the GPU's compiler took: the estimate beside what was measured here, and facts
-/// of its lookup, less those of the empty one.
+/// One row for each configuration that the GPU's compiler took: the estimate, beside the time of the GPU that drew the
+/// run if one did, and facts of its lookup minus those of the empty one.
 records::TextTable make_gpu_table(const std::vector<GpuCost>& costs);
 
 }  // namespace shadowbench::analysis

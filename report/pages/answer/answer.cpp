@@ -45,8 +45,22 @@ std::vector<std::string> make_row(const std::string& head, const analysis::Advic
   return row;
 }
 
+/// The bias of each pick; empty where none was swept.
+std::vector<std::string> make_bias_row(const analysis::Advice& advice, const std::vector<records::BiasToShip>& biases) {
+  std::vector<std::string> row(1 + kPicks.size(), records::kNothing);
+  bool is_any = false;
+  for (const analysis::Pick& pick : analysis::list_picks(advice)) {
+    const std::string bias = describe_biases(advice.keeping[pick.index].configuration, biases);
+    for (std::size_t i = 0; i < kPicks.size(); ++i)
+      if (std::ranges::count(pick.names, kPicks[i]) > 0 && !bias.empty()) row[1 + i] = bias;
+    is_any = is_any || !bias.empty();
+  }
+  row.front() = "bias to ship";
+  return is_any ? row : std::vector<std::string>();
+}
+
 document::Table make_table(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                           const analysis::Advice& advice) {
+                           const analysis::Advice& advice, const std::vector<records::BiasToShip>& biases) {
   document::Table table{"", {{"", "Fast", "Balanced", "Best"}, {}}};
   const std::vector<std::string> scenes = list_answered_scenes(cells);
   table.table.rows.push_back(
@@ -61,6 +75,7 @@ document::Table make_table(const records::RunRecord& run, const std::vector<reco
     const analysis::Advice own = analysis::advise(cells, request);
     if (!own.keeping.empty()) table.table.rows.push_back(make_row(scene, own, run.gl, false));
   }
+  if (auto row = make_bias_row(advice, biases); !row.empty()) table.table.rows.push_back(std::move(row));
   return table;
 }
 
@@ -119,7 +134,8 @@ std::vector<std::string> list_first_pictures(const std::vector<records::CellReco
 }
 
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                      const analysis::AdviceRequest& request) {
+                                      const analysis::AdviceRequest& request,
+                                      const std::vector<records::BiasToShip>& biases) {
   document::Section section{"answer", "Which filter?", {}};
   if (!can_advise(cells)) {
     section.blocks = {document::Paragraph{
@@ -132,7 +148,7 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
     mount.blocks.emplace_back(
         document::Paragraph{fmt::format("Nothing fits: {}.", analysis::describe_failure(advice))});
   } else {
-    mount.blocks.emplace_back(make_table(run, cells, advice));
+    mount.blocks.emplace_back(make_table(run, cells, advice, biases));
     if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
   }
   document::Sentences notes{{}, analysis::list_run_notes(advice, run.gl)};

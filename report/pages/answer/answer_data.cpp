@@ -1,6 +1,7 @@
 #include "report/pages/answer/answer_data.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -10,6 +11,7 @@
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/gains.h"
+#include "report/pages/bias_page.h"
 #include "report/pages/trade_charts.h"
 #include "report/records/format.h"
 
@@ -186,6 +188,15 @@ std::vector<std::string> list_answered_scenes(const std::vector<records::CellRec
   for (const records::CellRecord& cell : cells)
     if (records::is_advised(cell) && std::ranges::count(scenes, cell.scene) == 0) scenes.push_back(cell.scene);
   return scenes.size() < 2 || cells.size() > kMostCellsInDetail ? std::vector<std::string>() : scenes;
+}
+
+std::string describe_biases(const analysis::Configuration& configuration,
+                            const std::vector<records::BiasToShip>& biases) {
+  std::vector<std::string> texts;
+  for (const records::BiasToShip& bias : biases)
+    if (std::ranges::any_of(configuration.cells, [&](const auto* cell) { return bias.is_of(*cell); }))
+      texts.push_back(fmt::format("{}: {}", bias.scene, describe_bias_to_ship(bias)));
+  return fmt::format("{}", fmt::join(texts, "; "));
 }
 
 json make_answer_data(const std::vector<records::CellRecord>& cells,

@@ -9,6 +9,7 @@
 #include "report/analysis/configuration.h"
 #include "report/analysis/front.h"
 #include "report/analysis/limits.h"
+#include "report/records/bias_record.h"
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
@@ -41,6 +42,11 @@ std::array<double, 4> choose_part(const records::CellRecord& cell);
 
 /// The mean of a cost over cells; null where one has none.
 nlohmann::json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice);
+
+/// What a sweep of the bias recommends for a configuration, for each of its scenes that was swept; empty where none
+/// was.
+std::string describe_biases(const analysis::Configuration& configuration,
+                            const std::vector<records::BiasToShip>& biases);
 
 /// What the script of the answer judges by, for all scenes and for each by itself: per configuration its costs, its
 /// worst values, its RMSE over the places, and whether it is better than `none`; and what advise() says without limits

@@ -79,11 +79,42 @@ TEST_F(BiasCommand, Acne_IsThereWithoutBias_AndGoesWithTheTheoreticalAmount) {
   }
 }
 
+/// A sun, a spot light and a bulb, whose map has six layers.
+TEST_F(BiasCommand, AllLights_AreAnswered_OrThoseThatAreNamed) {
+  const std::string small = "bias --scene three_lights --size 160x90 --map-size 128 --filters none,pcf2x2 --out ";
+  const auto list_scenes = [&] {
+    std::set<std::string> scenes;
+    for (const auto& row : read_csv()) scenes.insert(row.at(0));
+    scenes.erase("scene");
+    return scenes;
+  };
+  ASSERT_EQ(run(small + "out").exit_code, 0);
+  EXPECT_THAT(list_scenes(), ::testing::ElementsAre("three_lights.bulb", "three_lights.spot", "three_lights.sun"));
+  EXPECT_THAT(read_text(folder() / "out" / "bias.html"),
+              HasSubstr("Depth bias on three_lights under sun, spot, bulb, map 128, 160 x 90"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "bias.bulb.constant.png"));
+  const std::string file = user_filter("nine_compares.glsl");
+  ASSERT_EQ(run(small + "out --light-name spot --ground --filter-file '" + file + "'").exit_code, 0);
+  EXPECT_THAT(list_scenes(), ::testing::ElementsAre("three_lights.spot"));
+  EXPECT_NE(acne("constant", "nine_compares", "1"), "no row");
+  expect_refusal(small + "none --light-name moon", 2, {"--light-name", "'moon'"});
+}
+
+TEST_F(BiasCommand, BesideAReport_ItsAnswerHasTheBiasToShip) {
+  const std::string same = " --scene fence --size 160x90 --map-size 128 --filters none,pcf2x2 --out out";
+  ASSERT_EQ(run("run --rounds 1 --phases 1" + same).exit_code, 0);
+  EXPECT_THAT(read_text(folder() / "out" / "summary.md"), ::testing::Not(HasSubstr("bias to ship")));
+  const Outcome outcome = run("bias" + same + "/bias");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read_text(folder() / "out" / "summary.md"), HasSubstr("| bias to ship | fence: "));
+}
+
 TEST_F(BiasCommand, BadInput_IsRefused) {
   expect_refusal("bias --out out --scene stepz", 2, {"'stepz'", "steps"});
   expect_refusal("bias --out out --scene no/such.toml", 3, {"no/such.toml"});
   expect_refusal("bias --out out --filters tent3", 2, {"'tent3'", "tent3x3"});
   expect_refusal("bias --out out --filters none,none", 2, {"names 'none' twice"});
+  expect_refusal("bias --out out --filter-file " + user_filter("broken_glsl.glsl"), 5, {"broken_glsl.glsl"});
   expect_refusal("bias --out out --map-size 0", 2, {"--map-size", "'0'"});
   expect_refusal("bias --out out --size 12", 2, {"--size", "'12'"});
   expect_refusal("bias --out out --size 8x8 --map-size 64 --filters none", 3,

@@ -5,13 +5,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/gpu/gpu.h"
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kGpuRun = "run --out out --fresh --scene cubes --rounds 1 --phases 1 --map-size ";
 
@@ -160,7 +163,18 @@ TEST_F(Gpus, WithNone_NothingIsCompiled) {
 TEST_F(Gpus, AreRefusedByName) {
   expect_refusal(kGpuRun + std::string("128 --size 96x54 --gpu navi22"), 2,
                  {"--gpu", "'navi22'", "did you mean 'navi2"});
+  expect_refusal(kGpuRun + std::string("128 --size 96x54 --gpu rtx3080"), 2, {"'rtx3080'", "advise REPORT --times"});
   expect_refusal(kGpuRun + std::string("128 --size 96x54 --gpu ''"), 2, {"--gpu"});
+}
+
+/// The driver's process takes seconds, and says what a list need not say.
+TEST_F(Gpus, AreListedWithoutADriver_UnlessItIsToBeChecked) {
+  const std::string nowhere = use_driver("/nowhere/driver.so");
+  const Outcome plain = run("list gpus", nowhere), checked = run("list gpus --check", nowhere);
+  EXPECT_THAT(plain.out, AllOf(HasSubstr("navi21"), HasSubstr(gpu::kOtherGpus), Not(HasSubstr("no Vulkan driver"))));
+  EXPECT_THAT(checked.out, HasSubstr("no Vulkan driver"));
+  EXPECT_FALSE(json::parse(run("list gpus --json", nowhere).out)[0].contains("driver"));
+  EXPECT_TRUE(json::parse(run("list gpus --json --check", nowhere).out)[0]["driver"].is_null());
 }
 
 TEST_F(Gpus, WhatVulkanRefuses_IsSaid_AndTheRunGoesOn) {

@@ -75,6 +75,7 @@ TEST(Gpus, AreChosenByName) {
   EXPECT_TRUE(choose_gpus(all, {"none"}).empty());
   EXPECT_EQ(choose_gpus(all, {"vega10", "navi21"}).front().name, "vega10");
   EXPECT_THAT(refusal({"navi12"}), HasSubstr("'navi12' is no GPU that is described; did you mean 'navi"));
+  EXPECT_THAT(refusal({"rtx3080"}), HasSubstr(kOtherGpus));
   EXPECT_THAT(refusal({"navi21", "navi21"}), HasSubstr("named twice"));
   EXPECT_THAT(refusal({"navi21", "none"}), HasSubstr("'none' stands alone"));
 }

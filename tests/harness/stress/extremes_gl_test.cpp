@@ -27,7 +27,8 @@ TEST(ExtremeAxes, GlCases_MeetTheirTheories) {
   for (const char* id : {"map-edge", "map-size", "poisoned-input"}) {
     Axis axis = choose_axes(id)[0];
     if (axis.whole) axis.range.high = std::min(axis.range.high, 512.0);  // larger maps cost seconds
-    expect_theories_met(axis, make_gl_inputs("none,box3x3,poisson,esm,vsm"), Level::kGl, false);
+    expect_theories_met(axis, make_gl_inputs("none,box3x3,poisson,esm,vsm,msm_packed32,msm_packed64"), Level::kGl,
+                        false);
   }
 }
 
@@ -36,6 +37,16 @@ TEST(MapSize, OneTexelIsAMap) {
     const Observation seen = find_case(make_gl_inputs(id), "map-size", id, "half").observe(1.0);
     EXPECT_EQ(seen.verdict, Verdict::kOk) << id << ": " << seen.why;
     EXPECT_TRUE(seen.measured);
+  }
+}
+
+/// A texel of 32 bits has 64 shares: by its own design, in a map of any size.
+TEST(MapSize, WhatAFilterPacks_IsNoFaultOfTheMap_ButIsSaid) {
+  const AxisInputs inputs = make_gl_inputs("msm_packed32,msm_packed64");
+  for (const char* id : {"msm_packed32", "msm_packed64"}) {
+    const Case item = find_case(inputs, "map-size", id, "half");
+    EXPECT_LT(item.observe(6.0).measured.value(), 1e-5) << id;
+    EXPECT_EQ(item.remark({}).size(), id == std::string("msm_packed32") ? 1u : 0u) << id;
   }
 }
 

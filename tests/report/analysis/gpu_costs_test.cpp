@@ -56,6 +56,19 @@ TEST(GpuCosts, OrdersAreComparedByRank) {
       correlate_ranks(Costs({make_gpu_cell("a", 1, 5), make_gpu_cell("b", 2, 5), make_gpu_cell("c", 3, 5)}).costs));
 }
 
+/// A CPU's times say nothing of a GPU: they are in no order, no sentence and no column.
+TEST(GpuCosts, OfASoftwareRasteriser_NoTimesStandBesideEstimates) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("b", 2, 20), make_gpu_cell("c", 3, 30)};
+  for (const bool software : {false, true}) {
+    for (CellRecord& cell : cells)
+      cell.machine = records::MachineKind{"CPU", 2, "renderer", software, records::TimerKind::kWallClock};
+    const Costs costs(cells);
+    EXPECT_EQ(correlate_ranks(costs.costs).has_value(), !software);
+    EXPECT_EQ(describe_gpu("one", costs.costs).size(), software ? 0u : 1u);
+    EXPECT_EQ(std::ranges::count(make_gpu_table(costs.costs).header, "measured here, ms"), software ? 0 : 1);
+  }
+}
+
 TEST(GpuCosts, TheFarthestFilterIsNamed_AndWhatIsGuessedOrRefused) {
   std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 30), make_gpu_cell("b", 2, 10), make_gpu_cell("c", 3, 20)};
   cells.push_back(make_gpu_cell("d", 4, 40));

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+
 #include "tests/report/pages/answer.h"
 
 namespace shadowbench::pages {
@@ -134,7 +136,7 @@ TEST(BiasPage, BeginsWithTheAnswer_WhichModeFreesOfAcne_AndWhatItCostsInContact)
   sweep.modes[0].curves.push_back(make_curve("esm", 100.0));
   sweep.modes[0].curves.push_back(make_curve("wide", 2.0));
   for (records::BiasPoint& point : sweep.modes[0].curves[2].points) point.contact_gap = 0.0;
-  const document::Page page = make_bias_page(sweep);
+  const document::Page page = make_bias_page({sweep});
   EXPECT_EQ(document::answer_of(page),
             "Filters with acne: from 20 % under constant to 100 % under midpoint. Widest contact gap of those without: "
             "50 % under constant.");
@@ -161,11 +163,11 @@ TEST(BiasPage, Headline_NamesTies_AndCountsWhatIsAbsent) {
   records::BiasSweepRecord sweep = make_sweep();
   sweep.modes[1].curves[0].points[0].acne = 0.0;
   EXPECT_EQ(
-      document::answer_of(make_bias_page(sweep)),
+      document::answer_of(make_bias_page({sweep})),
       "Filters with acne: 0 % under constant, midpoint, which tie. Widest contact gap of those without: 1 % under "
       "constant; absent in 1 of 3 cells, where fewer than 100 receivers are left to rate.");
   sweep.modes[1].curves[0].points[0].acne.reset();
-  EXPECT_THAT(document::answer_of(make_bias_page(sweep)),
+  EXPECT_THAT(document::answer_of(make_bias_page({sweep})),
               HasSubstr("Filters with acne: 0 % under constant; absent in 1 of 3 cells, where fewer than 100"));
 }
 
@@ -173,10 +175,10 @@ TEST(BiasPage, AbsentRates_AreSaid_NeverNumbers) {
   records::BiasSweepRecord sweep = make_sweep();
   make_gap_absent(sweep);
   sweep.contact_receivers = 7;
-  EXPECT_EQ(document::answer_of(make_bias_page(sweep)),
+  EXPECT_EQ(document::answer_of(make_bias_page({sweep})),
             "Filters with acne: from 0 % under constant to 100 % under midpoint. Widest contact gap of those without: "
             "absent, since fewer than 100 receivers are left to rate.");
-  const std::string html = document::write_html(make_bias_page(sweep));
+  const std::string html = document::write_html(make_bias_page({sweep}));
   EXPECT_THAT(html, HasSubstr("gap absent"));
   EXPECT_THAT(html, HasSubstr("Absent: a rate needs 100."));
   EXPECT_THAT(html, Not(HasSubstr("nan")));
@@ -189,13 +191,64 @@ TEST(BiasPage, Texts_AreEscaped) {
   sweep.filters[0] = sweep.modes[0].curves[0].filter = "<b>'x'";
   sweep.modes[0].meaning = sweep.modes[0].picture_caption = "a < b";
   sweep.modes[0].left_out = {"<s>"};
-  const std::string html = document::write_html(make_bias_page(sweep));
+  const std::string html = document::write_html(make_bias_page({sweep}));
   for (const char* raw : {"<i>", "<u>", "<b>'", "<s>", "a < b"}) EXPECT_THAT(html, Not(HasSubstr(raw)));
   EXPECT_THAT(html, HasSubstr("&lt;b&gt;&#39;x&#39;"));
 }
 
+/// Of a sun that needs little bias, and a lamp under which nothing could be swept.
+std::vector<records::BiasSweepRecord> make_two_lights() {
+  records::BiasSweepRecord sun = make_sweep(), lamp;
+  sun.scene = "city.sun";
+  sun.light = "sun";
+  lamp.scene = "city.lamp";
+  lamp.light = "lamp";
+  lamp.refused = "no receiver is lit";
+  sun.map_size = lamp.map_size = 512;
+  sun.width = lamp.width = 320;
+  sun.height = lamp.height = 180;
+  return {sun, lamp};
+}
+
+TEST(BiasPage, OfSeveralLights_NamesThem_AndHasAPartForEach) {
+  std::vector<records::BiasSweepRecord> sweeps = make_two_lights();
+  const document::Page page = make_bias_page(sweeps);
+  EXPECT_EQ(page.title, "Depth bias on city under sun, lamp, map 512, 320 x 180");
+  EXPECT_THAT(document::answer_of(page), ::testing::StartsWith("sun: Filters with acne: "));
+  EXPECT_THAT(document::write_markdown(page), HasSubstr("lamp: no receiver is lit"));
+  sweeps[1] = sweeps[0];
+  sweeps[1].light = "lamp";
+  std::set<std::string> ids;
+  for (const document::Section& section : make_bias_page(sweeps).sections) ids.insert(section.id);
+  EXPECT_EQ(ids.size(), 2u + 2u * 3u) << "an answer, the data, and for each light its modes and its engines";
+}
+
+TEST(BiasPage, TheBiasToShip_OpensTheNarrowestGap_OfThoseThatAreEnough) {
+  std::vector<records::BiasSweepRecord> sweeps = make_two_lights();
+  sweeps[0].modes[1].curves[0].points[0].acne = 0.0;  // midpoint frees `none`, and nobody knows its gap
+  records::BiasModeRecord plane = sweeps[0].modes[0];
+  plane.mode = "plane";
+  plane.key = "texels";
+  plane.curves = {make_curve("none", 0.25)};
+  for (records::BiasPoint& point : plane.curves[0].points) point.contact_gap = 0.005;
+  sweeps[0].modes.push_back(plane);
+  const auto find = [&](const std::string& filter) {
+    for (const records::BiasToShip& ship : list_bias_to_ship(sweeps))
+      if (ship.filter == filter) return describe_bias_to_ship(ship);
+    return std::string("none");
+  };
+  EXPECT_EQ(find("none"), "plane:texels=0.125, contact gap 0.5 %");
+  EXPECT_EQ(find("pcf2x2"), "constant:depth=0.25, contact gap 1 %");
+  for (records::BiasPoint& point : sweeps[0].modes[2].curves[0].points) point.acne = 0.5;
+  EXPECT_EQ(find("none"), "constant:depth=0.5, contact gap 1 %");
+  sweeps[0].modes.resize(1);
+  for (records::BiasPoint& point : sweeps[0].modes[0].curves[0].points) point.acne = 0.5;
+  EXPECT_EQ(find("none"), "no mode removes its acne");
+  EXPECT_EQ(list_bias_to_ship(sweeps).size(), 2u) << "none of the lamp";
+}
+
 TEST(BiasPage, LoadsNothingButItsPictures) {
-  const std::string html = document::write_html(make_bias_page(make_sweep()));
+  const std::string html = document::write_html(make_bias_page({make_sweep()}));
   EXPECT_THAT(html, HasSubstr("src=\"bias.constant.png\""));
   for (const char* loaded : {"src=\"http", "href=\"http", "url(http", "<link rel=\"stylesheet"})
     EXPECT_THAT(html, Not(HasSubstr(loaded)));
@@ -205,7 +258,7 @@ TEST(BiasPage, LoadsNothingButItsPictures) {
 TEST(BiasPage, Csv_HasARowPerAmount_AbsentIsEmpty) {
   records::BiasSweepRecord sweep = make_sweep();
   sweep.modes[0].curves[1].filter = "poisson (taps 8, radius 2)";
-  const std::string csv = make_bias_csv(sweep);
+  const std::string csv = make_bias_csv({sweep});
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 + 1);
   EXPECT_THAT(csv, HasSubstr("steps,,0,constant,depth,none,0.5,0.25,0.005,1,0.2,0.25,0.01\r\n"));
   EXPECT_THAT(csv, HasSubstr("\"poisson (taps 8, radius 2)\""));

@@ -103,6 +103,20 @@ TEST(RunPage, HostileNames_AreEscaped) {
   expect_balanced(page);
 }
 
+/// A row of the answer, and words of the configuration for the script that makes it anew.
+TEST(RunPage, TheBiasToShip_HasARow_WhereItWasSwept) {
+  const std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 1.0)};
+  records::BiasToShip ship{"cubes", "a sun",         cells[0].map_size, "none",
+                           "none",  cells[0].params, "plane:texels=1",  0.01};
+  const auto write = [&] {
+    return document::write_html(make_run_page(make_run(), cells, make_trade(cells), {}, {ship}));
+  };
+  EXPECT_THAT(write(), HasSubstr("bias to ship</td><td>cubes: plane:texels=1, contact gap 1 %"));
+  EXPECT_EQ(read_data(write())["configurations"][0]["bias"], "cubes: plane:texels=1, contact gap 1 %");
+  ship.map_size *= 2;
+  EXPECT_THAT(write(), Not(HasSubstr("bias to ship</td>")));
+}
+
 TEST(RunPage, Bars_HaveTheirNumbersAsText) {
   const std::string page = make_html(make_run(), {make_attributed_cell("vsm", 0.04, {0.0, 0.75, -0.25, 0.5}),
                                                   make_attributed_cell("esm", 0.04, {0.0, 0.0, 1.0, 0.0})});

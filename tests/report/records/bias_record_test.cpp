@@ -1,0 +1,45 @@
+// What `bias` recommends, as a report's folder keeps it.
+
+#include "report/records/bias_record.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "base/temporary_files.h"
+
+namespace shadowbench::records {
+namespace {
+
+TEST(BiasToShip, IsReadFromTheReportsFolder_AsItWasWritten) {
+  const ScratchFolder report(
+      make_temporary_folder_path(std::filesystem::temp_directory_path() / "shadowbench", "bias"));
+  std::vector<std::string> warnings;
+  EXPECT_TRUE(list_bias_to_ship(report.path(), warnings).empty());
+  std::filesystem::create_directories(report.path() / "bias");
+  const auto write = [&](const std::string& text) { std::ofstream(report.path() / "bias" / "bias.json") << text; };
+  const BiasToShip ship{"city.sun",       "sun", 512, "vsm (radius=6)", "vsm", {{"radius", 6.0}, {"store", "rg32f"}},
+                        "plane:texels=1", {}};
+  write(make_bias_json({ship}));
+  const auto read = list_bias_to_ship(report.path(), warnings);
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(make_bias_json(read), make_bias_json({ship}));
+  EXPECT_TRUE(warnings.empty());
+  CellRecord cell;
+  cell.scene = "city.sun";
+  cell.map_size = 512;
+  cell.filter = "vsm";
+  cell.params = ship.params;
+  EXPECT_TRUE(read[0].is_of(cell));
+  cell.params["radius"] = 5.0;
+  EXPECT_FALSE(read[0].is_of(cell));
+  for (const char* text : {"no JSON", "{}", R"({"schema": "shadowbench bias 1", "bias_to_ship": [{"scene": 3}]})"}) {
+    warnings.clear();
+    write(text);
+    EXPECT_TRUE(list_bias_to_ship(report.path(), warnings).empty());
+    EXPECT_EQ(warnings.size(), 1u) << text;
+  }
+}
+
+}  // namespace
+}  // namespace shadowbench::records
