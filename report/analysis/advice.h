@@ -10,6 +10,7 @@
 
 #include "report/analysis/configuration.h"
 #include "report/analysis/front.h"
+#include "report/analysis/gains.h"
 #include "report/analysis/limits.h"
 #include "report/records/records.h"
 
@@ -109,12 +110,12 @@ struct Obstacle {
 struct Advice {
   AdviceRequest request;
   std::vector<Place> places;
-  std::set<std::string> teaching;   ///< filters of the run that show a mistake, and are left out
-  std::vector<Place> idle;          ///< left out: the choice does not matter there
-  std::vector<Candidate> keeping;   ///< all demands, cheapest first: the first is advised, the second the runner-up
-  std::vector<Candidate> no_gain;   ///< likewise, but no better than `none`, where nothing that is seen is limited
-  bool compares_with_none = false;  ///< whether some were found to be better than `none`
-  std::vector<Candidate> failing;   ///< cheapest first
+  std::set<std::string> teaching;      ///< filters of the run that show a mistake, and are left out
+  std::vector<LeftOutPlace> left_out;  ///< not tested, or the choice does not matter there
+  std::vector<Candidate> keeping;      ///< all demands, cheapest first: the first is advised, the second the runner-up
+  std::vector<Candidate> no_gain;      ///< likewise, but no better than `none`, where nothing that is seen is limited
+  bool compares_with_none = false;     ///< whether some were found to be better than `none`
+  std::vector<Candidate> failing;      ///< cheapest first
   std::vector<Unjudged> unjudged;
   std::vector<Obstacle> obstacles;     ///< one per demand
   std::optional<std::size_t> closest;  ///< index into `failing`: fails the fewest demands, among those by the least
