@@ -22,10 +22,8 @@
 #include "harness/run/task_run.h"
 #include "harness/run/time_forecast.h"
 #include "harness/run/worker_process.h"
-#include "harness/scene/mesh_tools.h"
 #include "harness/scene/unseen_light.h"
 #include "harness/spirv/webgl.h"
-#include "reference/truth/occluders.h"
 #include "reference/truth/truth_cache.h"
 #include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"
@@ -294,32 +292,6 @@ class Experiment {
     progress_.note("warning: " + message);
   }
 
-  /// Single precision is spent on the distance from the origin: rays then start far off their surfaces, and miss
-  /// contacts.
-  void warn_of_distance(const scene::Scene& scene) {
-    const scene::Bounds bounds = scene.bounds();
-    const glm::vec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)), size = bounds.max - bounds.min;
-    const float farthest = std::max({largest.x, largest.y, largest.z});
-    const float offset = truth::origin_offset(farthest, farthest);
-    if (offset < 1e-4f * std::max({size.x, size.y, size.z})) return;
-    warn(fmt::format(
-        "{}: {} m from the origin, single precision leaves positions uncertain, and rays start {} m off their "
-        "surfaces: what is smaller is not seen; move the scene to the origin",
-        scene.name, farthest, offset));
-  }
-
-  /// A mesh that encloses no volume casts no shadow, or only a part of one, where front faces are culled.
-  void warn_of_open_meshes(const scene::Scene& scene) {
-    if (!options_.bias.map.cull_front) return;
-    for (const scene::Mesh& mesh : scene.meshes) {
-      if (!mesh.casts_shadow || !mesh.may_cull_front || scene::is_closed(mesh)) continue;
-      warn(fmt::format(
-          "{}: '{}' is open or single-sided: with front-cull it vanishes from the shadow map where it faces the "
-          "light; set may_cull_front = false on it",
-          scene.name, mesh.name));
-    }
-  }
-
   void warn_of_light_below(const scene::Scene& scene) {
     const scene::Bounds bounds = scene.bounds();
     const glm::vec3 middle = 0.5f * (bounds.min + bounds.max);
@@ -365,8 +337,6 @@ class Experiment {
       if (!options_.part.is_worker() && told_.insert(whole + note).second) progress_.note(whole + note);
     for (const std::string& warning : scene.warnings)
       if (told_.insert(whole + warning).second) warn(whole + warning);
-    warn_of_open_meshes(scene);
-    if (options_.truth && !options_.part.is_worker()) warn_of_distance(scene);
     warn_of_tests_without_effect(scene);
   }
 

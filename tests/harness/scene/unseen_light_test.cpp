@@ -57,8 +57,8 @@ TEST(UnseenLight, AViewThatLooksAway_GetsACameraBesideIt) {
   EXPECT_THAT(again[0], HasSubstr("name = \"sun\", light = \"sun\"")) << "that camera is for the lamp";
 }
 
-TEST(UnseenLight, ASmallLitPlace_IsSeen) {
-  const std::string far = "[camera]\nposition = [0, 400, 1]\ntarget = [0, 0, 0]\n";
+TEST(UnseenLight, ALitPlaceOfAFewPixels_IsSeen) {
+  const std::string far = "[camera]\nposition = [0, 3000, 1]\ntarget = [0, 0, 0]\n";
   EXPECT_THAT(list_advice(write_scene("position = [2, 3, 0]", far)), testing::Each(IsEmpty()));
 }
 
