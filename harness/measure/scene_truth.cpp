@@ -24,6 +24,8 @@ void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
     squares += static_cast<double>(truth.standard_errors[i]) * static_cast<double>(truth.standard_errors[i]);
     gaps += gap * gap;
     unanimous += area.unanimous[i];
+    truth.lit += area.visibility[i] > 0.0f;
+    truth.penumbra += area.rays[i] != truth::kRaysOfSettledPixel;
     count += 1.0;
   }
   truth.standard_error = std::sqrt(squares / count);
@@ -111,7 +113,7 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
   const images::Rect tile = images::find_hardest_tile(flip);
   record.images.hardest = records::TileRecord{tile.x, tile.y, tile.width, tile.height};
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
-  record.truth = {truth.standard_error, truth.unanimous, truth.weight_rmse};
+  record.truth = {truth.standard_error, truth.unanimous, truth.weight_rmse, truth.lit, truth.penumbra};
   if (truth.weight_rmse > kTellingWeight) record.warnings.push_back(warn_of_weight(record, truth.weight_rmse));
   return flip;
 }

@@ -30,8 +30,10 @@ struct SceneTruth {
   std::vector<std::uint8_t> mask;              ///< 1 where a pixel counts: a surface that faces the light
   std::vector<float> standard_errors;          ///< of `area`, pixel by pixel
   double standard_error = 0.0;                 ///< root mean square over the pixels that count
-  double weight_rmse = 0.0;  ///< between the fraction of the light that is seen and `ratio`, over the same pixels
-  double unanimous = 0.0;    ///< share of them whose rays all agree, and which therefore have no standard error
+  double weight_rmse = 0.0;   ///< between the fraction of the light that is seen and `ratio`, over the same pixels
+  double unanimous = 0.0;     ///< share of them whose rays all agree, and which therefore have no standard error
+  std::int64_t lit = 0;       ///< of them: those that see any of the light
+  std::int64_t penumbra = 0;  ///< of them: those whose rays disagree with each other or with a neighbour's
 };
 
 /// Traces the receivers of a view; the pictures are left empty.

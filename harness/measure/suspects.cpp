@@ -93,11 +93,6 @@ void check_drawing(MeasuredCell& cell, gl::Context& context) {
   check_values(cell);
   check_reads(cell);
   check_loops(cell, context);
-  if (cell.record.receivers == 0)
-    cell.record.warnings.push_back(
-        fmt::format("{}: no surface in the view '{}' faces the light, so that nothing is compared; move the camera or "
-                    "the light",
-                    cell.record.scene, cell.record.view));
 }
 
 void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {
@@ -110,11 +105,6 @@ void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {
     lit += truth.area.texels[i] == 1.0f;
     blocked += truth.area.texels[i] == 0.0f;
   }
-  if (blocked > 0 && blocked == std::ranges::count(truth.mask, std::uint8_t{1}))
-    cell.record.warnings.push_back(
-        fmt::format("{}: no receiver in view sees the light: does it stand inside a caster, "
-                    "or below the ground?",
-                    cell.record.scene));
   if (std::min(lit, blocked) < metrics::kFewestReceivers || span.least > span.most) return;
   if (span.most - span.least > kRounding) return;
   suspect(cell, fmt::format("its visibility is {} at every receiver, though {} of them are wholly lit in truth and {} "

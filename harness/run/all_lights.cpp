@@ -27,19 +27,14 @@ struct Lit {
   images::ExrFile file;
 };
 
-/// The scene's name without its light's.
-std::string base_name(const scene::Scene& scene) {
-  return scene.name.substr(0, scene.name.size() - scene.light.name.size() - 1);
-}
-
 /// Tasks that differ in the light alone.
 std::vector<std::vector<Lit>> group_lights(const RunPlan& plan) {
   std::map<std::tuple<std::string, std::string, int, std::string, int, int>, std::vector<Lit>> groups;
   for (const PlannedTask& task : plan.tasks) {
     const PlannedScene& scene = plan.scenes[task.scene];
     if (scene.scene.light.name.empty()) continue;
-    groups[{base_name(scene.scene), task.task.camera->name, task.task.map_size, scene::describe_fit(scene.options.fit),
-            scene.options.width, scene.options.height}]
+    groups[{scene::name_without_light(scene.scene), task.task.camera->name, task.task.map_size,
+            scene::describe_fit(scene.options.fit), scene.options.width, scene.options.height}]
         .push_back({&scene, &task, {}, {}});
   }
   std::vector<std::vector<Lit>> list;
@@ -103,7 +98,7 @@ images::Grid make_grid(const std::vector<Lit>& lights, const records::GlRecord& 
   images::Grid grid;
   std::vector<std::string> names;
   for (const Lit& lit : lights) names.push_back(lit.scene->scene.light.name);
-  grid.title = fmt::format("{}: all lights at once", base_name(lights.front().scene->scene));
+  grid.title = fmt::format("{}: all lights at once", scene::name_without_light(lights.front().scene->scene));
   grid.subtitle = fmt::format("{}: {}; ambient light counts once. Each is measured by itself", names.size(),
                               fmt::join(names, ", "));
   const auto add = [&](const std::string& label, const std::string& caption, const std::string& part) {
@@ -128,7 +123,7 @@ void draw_all_lights(const options::RunOptions& options, const RunPlan& plan, co
     if (grid.tiles.empty()) continue;
     const Lit& first = lights.front();
     const std::string stem = task_stem(first.scene->options, first.task->task);
-    const std::string file = files::make_file_stem(base_name(first.scene->scene)) +
+    const std::string file = files::make_file_stem(scene::name_without_light(first.scene->scene)) +
                              stem.substr(files::make_file_stem(first.scene->scene.name).size()) +
                              ".all_lights.grid.png";
     images::write_grid(options.out / file, grid);

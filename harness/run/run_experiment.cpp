@@ -22,9 +22,8 @@
 #include "harness/run/task_run.h"
 #include "harness/run/time_forecast.h"
 #include "harness/run/worker_process.h"
-#include "harness/scene/mesh_tools.h"
+#include "harness/scene/unseen_light.h"
 #include "harness/spirv/webgl.h"
-#include "reference/truth/occluders.h"
 #include "reference/truth/truth_cache.h"
 #include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"
@@ -77,11 +76,12 @@ class Experiment {
     announce(plan);
     if (!options_.part.is_task()) lock_.emplace(options_.out);
     require_writable(options_.out);
-    if (plan.finished == plan.own_cells && (options_.part.is_task() || has_report(plan))) {
-      progress_.note("nothing is left to do");
+    const bool is_done = plan.finished == plan.own_cells && (options_.part.is_task() || has_report(plan));
+    if (is_done) progress_.note("nothing is left to do");
+    if (!is_done || options_.part.is_task())
+      std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
+    if (is_done) {
       if (!options_.part.is_task()) records::write_filter_mistakes(options_.out, {});
-      if (options_.part.is_task())
-        std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
       return run_;
     }
     try {
@@ -292,32 +292,6 @@ class Experiment {
     progress_.note("warning: " + message);
   }
 
-  /// Single precision is spent on the distance from the origin: rays then start far off their surfaces, and miss
-  /// contacts.
-  void warn_of_distance(const scene::Scene& scene) {
-    const scene::Bounds bounds = scene.bounds();
-    const glm::vec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)), size = bounds.max - bounds.min;
-    const float farthest = std::max({largest.x, largest.y, largest.z});
-    const float offset = truth::origin_offset(farthest, farthest);
-    if (offset < 1e-4f * std::max({size.x, size.y, size.z})) return;
-    warn(fmt::format(
-        "{}: {} m from the origin, single precision leaves positions uncertain, and rays start {} m off their "
-        "surfaces: what is smaller is not seen; move the scene to the origin",
-        scene.name, farthest, offset));
-  }
-
-  /// A mesh that encloses no volume casts no shadow, or only a part of one, where front faces are culled.
-  void warn_of_open_meshes(const scene::Scene& scene) {
-    if (!options_.bias.map.cull_front) return;
-    for (const scene::Mesh& mesh : scene.meshes) {
-      if (!mesh.casts_shadow || !mesh.may_cull_front || scene::is_closed(mesh)) continue;
-      warn(fmt::format(
-          "{}: '{}' is open or single-sided: with front-cull it vanishes from the shadow map where it faces the "
-          "light; set may_cull_front = false on it",
-          scene.name, mesh.name));
-    }
-  }
-
   void warn_of_light_below(const scene::Scene& scene) {
     const scene::Bounds bounds = scene.bounds();
     const glm::vec3 middle = 0.5f * (bounds.min + bounds.max);
@@ -330,6 +304,17 @@ class Experiment {
                     "in the scene or with --light",
                     scene.name, name, records::format_number(glm::degrees(std::asin(-static_cast<double>(up))))));
     if (told_.insert(warning).second) warn(warning);
+  }
+
+  void warn_of_unseen_light(const PlannedScene& planned) {
+    const std::vector<const scene::Camera*> chosen = choose_views(options_, planned.scene);
+    std::vector<scene::Camera> views;
+    for (const scene::Camera* each : chosen) views.push_back(*each);
+    const double aspect = static_cast<double>(planned.options.width) / planned.options.height;
+    const std::string advice = scene::advise_on_unseen_light(planned.scene, views, aspect);
+    if (views.empty() || advice.empty()) return;
+    warn(fmt::format("{}: the light reaches no surface in view, so that nothing is tested under it; {}",
+                     planned.scene.name, advice));
   }
 
   /// The map of a sun has no behind, and a light without a cone shines there too.
@@ -345,11 +330,13 @@ class Experiment {
     const auto is_it = [&](const records::SceneRecord& known) { return known.name == scene.name; };
     if (std::any_of(run_.scenes.begin(), run_.scenes.end(), is_it)) return;
     run_.scenes.push_back({scene.name, scene.title, list_view_words(planned)});
-    if (!options_.part.is_worker())
-      for (const std::string& note : scene.notes) progress_.note(scene.name + ": " + note);
-    for (const std::string& warning : scene.warnings) warn(scene.name + ": " + warning);
-    warn_of_open_meshes(scene);
-    if (options_.truth && !options_.part.is_worker()) warn_of_distance(scene);
+    if (!options_.part.is_worker()) warn_of_unseen_light(planned);
+    // What is said of the scene holds for all its lights.
+    const std::string whole = scene::name_without_light(scene) + ": ";
+    for (const std::string& note : scene.notes)
+      if (!options_.part.is_worker() && told_.insert(whole + note).second) progress_.note(whole + note);
+    for (const std::string& warning : scene.warnings)
+      if (told_.insert(whole + warning).second) warn(whole + warning);
     warn_of_tests_without_effect(scene);
   }
 
@@ -370,7 +357,6 @@ class Experiment {
 
   void run_scene(const RunPlan& plan, std::size_t index) {
     const PlannedScene& planned = plan.scenes[index];
-    note_scene(planned);
     std::optional<measure::SceneAssets> assets;
     for (const PlannedTask& each : plan.tasks) {
       if (each.scene != index || each.task.filters.empty()) continue;

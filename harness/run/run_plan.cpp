@@ -155,17 +155,6 @@ std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
   return planned;
 }
 
-/// The views that were asked for; all where none was.
-std::vector<const scene::Camera*> choose_views(const options::RunOptions& options, const scene::Scene& scene) {
-  std::vector<const scene::Camera*> views;
-  for (const scene::Camera& camera : scene.cameras) {
-    const bool wanted = options.views.empty() ||
-                        std::find(options.views.begin(), options.views.end(), camera.name) != options.views.end();
-    if (wanted) views.push_back(&camera);
-  }
-  return views;
-}
-
 void require_views(const options::RunOptions& options, const std::vector<PlannedScene>& scenes) {
   if (options.part.is_task()) return;  // the scenes that have it may be others' work
   std::set<std::string> known;
@@ -291,6 +280,16 @@ class Planner {
 
 RunPlan make_plan(const options::RunOptions& options, const std::string& renderer) {
   return Planner(options, renderer).plan();
+}
+
+std::vector<const scene::Camera*> choose_views(const options::RunOptions& options, const scene::Scene& scene) {
+  std::vector<const scene::Camera*> views;
+  for (const scene::Camera& camera : scene.cameras) {
+    const bool wanted = options.views.empty() ||
+                        std::find(options.views.begin(), options.views.end(), camera.name) != options.views.end();
+    if (wanted) views.push_back(&camera);
+  }
+  return views;
 }
 
 std::string name_view(const PlannedScene& planned, const scene::Camera& camera) {

@@ -90,13 +90,16 @@ std::vector<SkyAngles> look_around(const SkyAngles& usual, double other_elevatio
   return places;
 }
 
-/// What is framed: the scene without its triangles.
-Scene without_triangles(const Scene& scene) {
+/// What is framed: the scene without its triangles, or these points of it where there are any.
+Scene make_shape(const Scene& scene, const std::vector<glm::vec3>& points = {}) {
   Scene shape;
   shape.cameras = scene.cameras;
   shape.light = scene.light;
-  shape.other_lights = scene.other_lights;
-  for (const Mesh& mesh : scene.meshes) shape.meshes.emplace_back().vertices = mesh.vertices;
+  if (points.empty())
+    for (const Mesh& mesh : scene.meshes) shape.meshes.emplace_back().vertices = mesh.vertices;
+  else
+    for (std::vector<Vertex>& vertices = shape.meshes.emplace_back().vertices; const glm::vec3& point : points)
+      vertices.push_back({point});
   return shape;
 }
 
@@ -124,21 +127,26 @@ class ViewSearch {
  public:
   ViewSearch(const Scene& scene, const ViewFreedom& free) : free_(free), meter_(scene) {}
 
-  /// Counts under one sun for each place of the camera. `shape` is what is framed: the scene, or its outline.
-  std::vector<EdgeCount> count(Scene& shape, const SkyAngles& sun, const std::vector<SkyAngles>& cameras) {
-    if (free_.sun) shape.light = place_in_sky(shape.light, sun);
-    std::vector<Light> lights = shape.other_lights;
-    lights.push_back(shape.light);
+  /// Counts under one sun for each place of the camera. `whole` is the scene or its outline, `framed` that or a part.
+  std::vector<EdgeCount> count(Scene& whole, const Scene& framed, const SkyAngles& sun,
+                               const std::vector<SkyAngles>& cameras) {
+    if (free_.sun) whole.light = place_in_sky(whole.light, sun);
     std::optional<Mesh> floor;
-    if (free_.ground_y) floor = make_floor(place_floor(shape, *free_.ground_y));
+    if (free_.ground_y) floor = make_floor(place_floor(whole, *free_.ground_y));
     meter_.set_floor(floor ? &*floor : nullptr);
     std::vector<EdgeCount> counts(cameras.size());
     tbb::parallel_for(std::size_t{0}, cameras.size(), [&](std::size_t i) {
       const std::vector<Camera> views =
-          free_.camera ? std::vector{frame_camera(shape, cameras[i], kPictureAspect, free_.ground_y)} : shape.cameras;
-      for (const Camera& view : views) counts[i] += meter_.count(view, lights, kPictureAspect);
+          free_.camera ? std::vector{frame_camera(framed, cameras[i], kPictureAspect, free_.ground_y)} : whole.cameras;
+      for (const Camera& view : views) counts[i] += meter_.count(view, whole.light, kPictureAspect);
     });
     return counts;
+  }
+
+  /// What the light shines on near by; empty for one at infinity.
+  std::vector<glm::vec3> find_lit_points(const Light& light) const {
+    const std::optional<Beam> lamp = find_beam(light);
+    return lamp && free_.camera ? meter_.find_lit_points(*lamp) : std::vector<glm::vec3>();
   }
 
  private:
@@ -158,14 +166,14 @@ struct Attempt {
   std::vector<SkyAngles> cameras;
 };
 
-/// All views worth a try; the usual one comes first, whatever it is.
-std::vector<Attempt> list_attempts(const Scene& scene, const ViewFreedom& free, const ViewAngles& usual) {
-  const Bounds bounds = scene.bounds();
+/// All views of a scene, or of a part of it, that are worth a try; the usual one comes first, whatever it is.
+std::vector<Attempt> list_attempts(const Scene& framed, const ViewFreedom& free, const ViewAngles& usual) {
+  const Bounds bounds = framed.bounds();
   const glm::vec3 center = 0.5f * (bounds.min + bounds.max);
   std::vector<Attempt> attempts;
   for (const SkyAngles& sun : free.sun ? look_around(usual.sun, kLowSunDeg) : std::vector{usual.sun}) {
     Attempt& attempt = attempts.emplace_back(Attempt{sun, {}});
-    const glm::dvec3 light = to_light(free.sun ? place_in_sky(scene.light, sun) : scene.light, center);
+    const glm::dvec3 light = to_light(free.sun ? place_in_sky(framed.light, sun) : framed.light, center);
     for (const SkyAngles& camera :
          free.camera ? look_around(usual.camera, kHighCameraDeg) : std::vector{usual.camera}) {
       const glm::dvec3 forward = light_direction(camera.azimuth_deg, camera.elevation_deg);
@@ -193,25 +201,29 @@ Scene with_floor(Scene scene, float ground_y) {
   return scene;
 }
 
-/// Adds the usual sun and camera, where they are free, and puts the lights where they were asked for.
-Scene with_usual_view(Scene scene, const ViewFreedom& free, const Completion& completion) {
-  const ViewAngles usual = usual_view(scene.bounds());
-  if (completion.needs_sun) scene.light = place_in_sky({}, usual.sun);
+/// Adds the usual sun, where there is none, and puts the lights where they were asked for.
+Scene with_placed_lights(Scene scene, const Completion& completion) {
+  if (completion.needs_sun) scene.light = place_in_sky({}, usual_view(scene.bounds()).sun);
   const auto place = [&](Light& light) {
     if (completion.light) light = place_in_sky(light, *completion.light);
   };
   place(scene.light);
   std::ranges::for_each(scene.other_lights, place);
-  if (free.camera) scene.cameras.push_back(frame_camera(scene, usual.camera, completion.aspect, free.ground_y));
   return scene;
 }
 
-Scene with_chosen_view(Scene scene, const ViewFreedom& free, double aspect) {
-  const ViewChoice choice = choose_view(scene, free);
+/// Chooses what is free of the view of one light: `lit` is the scene with that light alone.
+void choose_for_light(Scene& scene, const Scene& lit, const ViewFreedom& free, double aspect) {
+  const std::string& light = scene.other_lights.empty() ? std::string() : lit.light.name;
+  const ViewChoice choice = choose_view(lit, free);
   if (free.sun) scene.light = place_in_sky(scene.light, choice.angles.sun);
-  if (free.camera) scene.cameras = {frame_camera(scene, choice.angles.camera, aspect, free.ground_y)};
-  (choice.shows_edges() ? scene.notes : scene.warnings).push_back(describe_choice(choice, free));
-  return scene;
+  if (free.camera) {
+    scene.cameras.push_back(frame_choice(free.sun ? scene : lit, choice, aspect, free));
+    if (!light.empty()) scene.cameras.back().name = scene.cameras.back().light = light;
+  }
+  // Of a light that reaches nothing in view, who draws the scene says more: advise_on_unseen_light().
+  if (choice.tried > 0 && choice.edges.lit == 0) return;
+  (choice.shows_edges() ? scene.notes : scene.warnings).push_back(describe_choice(choice, free, light));
 }
 
 }  // namespace
@@ -282,29 +294,45 @@ ViewChoice choose_view(const Scene& scene, const ViewFreedom& free) {
   choice.angles = usual;
   if (scene.triangle_count() > kMostTriangles) return choice;
   ViewSearch search(scene, free);
-  Scene shape = without_triangles(scene);
-  Scene outline = thinned(shape);
+  Scene whole = make_shape(scene), outline = thinned(whole);
+  const std::vector<glm::vec3> near_light = search.find_lit_points(scene.light);
+  std::vector<Scene> shapes = {outline};
+  if (!near_light.empty()) shapes.push_back(make_shape(scene, near_light));
   double best = -1.0;
-  for (const auto& [sun, cameras] : list_attempts(scene, free, usual)) {
-    const std::vector<EdgeCount> counts = search.count(outline, sun, cameras);
-    choice.tried += static_cast<int>(counts.size());
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-      if (!(counts[i].share() > best)) continue;
-      best = counts[i].share();
-      choice.angles = {cameras[i], sun};
+  for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+    for (const auto& [sun, cameras] : list_attempts(shapes[shape], free, usual)) {
+      const std::vector<EdgeCount> counts = search.count(outline, shapes[shape], sun, cameras);
+      choice.tried += static_cast<int>(counts.size());
+      for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (!(counts[i].share() > best)) continue;
+        best = counts[i].share();
+        choice.angles = {cameras[i], sun};
+        choice.near_light = shape > 0 ? near_light : std::vector<glm::vec3>();
+      }
     }
   }
   // The outline is framed a little otherwise: what is said, and that it is no worse, holds for the scene itself.
-  choice.usual_edges = search.count(shape, usual.sun, {usual.camera}).front();
-  choice.edges = search.count(shape, choice.angles.sun, {choice.angles.camera}).front();
+  const auto count = [&](const ViewAngles& angles, const std::vector<glm::vec3>& framed) {
+    if (framed.empty()) return search.count(whole, whole, angles.sun, {angles.camera}).front();
+    return search.count(whole, make_shape(scene, framed), angles.sun, {angles.camera}).front();
+  };
+  choice.usual_edges = count(usual, {});
+  choice.edges = count(choice.angles, choice.near_light);
   choice.is_usual = !(choice.edges.share() > choice.usual_edges.share());
-  if (choice.is_usual) choice.angles = usual, choice.edges = choice.usual_edges;
+  if (choice.is_usual) choice.angles = usual, choice.edges = choice.usual_edges, choice.near_light.clear();
   return choice;
 }
 
-std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free) {
+Camera frame_choice(const Scene& scene, const ViewChoice& choice, double aspect, const ViewFreedom& free) {
+  const Scene shape = make_shape(scene, choice.near_light);
+  return frame_camera(shape, choice.angles.camera, aspect, free.ground_y);
+}
+
+std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free, const std::string& light) {
   std::string text;
-  if (free.camera) text = "camera from " + name_angles(choice.angles.camera);
+  if (free.camera)
+    text = fmt::format("camera{} from {}{}", light.empty() ? "" : fmt::format(" for the light '{}'", light),
+                       name_angles(choice.angles.camera), choice.near_light.empty() ? "" : ", near the light");
   if (free.sun) text += (free.camera ? "; " : "") + ("sun from " + name_angles(choice.angles.sun));
   if (choice.tried == 0)
     return fmt::format("{}: the usual view; no other is tried with more than {} triangles", text, kMostTriangles);
@@ -319,10 +347,16 @@ std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free) {
 }
 
 Scene complete(Scene scene, const Completion& completion, const std::string& where) {
-  ViewFreedom free{.camera = scene.cameras.empty(), .sun = completion.needs_sun && !completion.light};
+  ViewFreedom free{.sun = completion.needs_sun && !completion.light};
   if (completion.ground) free.ground_y = ground_height(scene);
-  scene = validate(with_usual_view(std::move(scene), free, completion), where);
-  if (free.camera || free.sun) scene = with_chosen_view(std::move(scene), free, completion.aspect);
+  scene = validate(with_placed_lights(std::move(scene), completion), where);
+  for (const Scene& lit : separate_lights(scene)) {
+    free.camera = lit.cameras.empty();
+    if (free.camera || free.sun) choose_for_light(scene, lit, free, completion.aspect);
+  }
+  // Who shows one light alone takes the first, and its first view.
+  std::ranges::stable_partition(
+      scene.cameras, [&](const Camera& each) { return each.light.empty() || each.light == scene.light.name; });
   return free.ground_y ? with_floor(std::move(scene), *free.ground_y) : scene;
 }
 

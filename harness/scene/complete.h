@@ -46,8 +46,9 @@ struct ViewChoice {
   ViewAngles angles;
   EdgeCount edges{};
   bool is_usual = true;
-  EdgeCount usual_edges{};  ///< in the usual view
-  int tried = 0;            ///< views; none in a scene of too many triangles
+  EdgeCount usual_edges{};            ///< in the usual view
+  int tried = 0;                      ///< views; none in a scene of too many triangles
+  std::vector<glm::vec3> near_light;  ///< what the camera frames; empty: the whole scene
 
   /// Whether the edge of any shadow is seen; of a view that was not tried nothing is known.
   bool shows_edges() const { return tried == 0 || edges.at_edge > 0; }
@@ -60,20 +61,26 @@ struct ViewFreedom {
   std::optional<float> ground_y{};  ///< of a floor that will be added
 };
 
-/// Chooses camera and sun so that edges of shadows touch as many of the surfaces as they can (EdgeCount::share).
+/// Chooses camera and sun so that edges of the light's shadows touch as many of the surfaces as they can
+/// (EdgeCount::share).
 ///
 /// Tried are eight directions of the camera in two heights with each of eight directions of the sun in two heights, or
-/// what of it is free. Views towards the light, and those that would be thin (would_be_thin), are left out. The usual
+/// what of it is free; of a lamp that stands in the scene each direction twice: of the whole scene, and of what it
+/// shines on near by. Views towards the light, and those that would be thin (would_be_thin), are left out. The usual
 /// view is the first, whatever it is, and stays the choice unless another is better; of equal ones the first is taken.
 /// What is counted is a picture of 16:9, so that the directions do not depend on a picture's size. Of several cameras
-/// or lights of the scene itself all are counted. A scene of more than 2^20 triangles gets the usual view.
+/// of the scene itself all are counted, of several lights the first. A scene of more than 2^20 triangles gets the usual
+/// view.
 ///
 /// Requires validated geometry, and cameras where they are not free. Cost: 0.6 s of CPU time for 300 000 triangles, 1.0
 /// s with a floor.
 ViewChoice choose_view(const Scene& scene, const ViewFreedom& free);
 
-/// The choice in words, for the user; where no edge is seen, with what to do.
-std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free);
+/// The camera of a choice, for a picture of the given width / height.
+Camera frame_choice(const Scene& scene, const ViewChoice& choice, double aspect, const ViewFreedom& free);
+
+/// The choice in words, for the user; where no edge is seen, with what to do. `light` names the one of several.
+std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free, const std::string& light = {});
 
 /// What a scene gets beside its geometry.
 struct Completion {
@@ -83,8 +90,9 @@ struct Completion {
   std::optional<SkyAngles> light{};  ///< put every light there
 };
 
-/// Returns a checked scene that has all it lacked: a sun and a camera by choose_view(), where it has none, which a note
-/// names, and a floor. Cameras and lights that the scene has, and a place that was asked for, stay as they are.
+/// Returns a checked scene that has all it lacked: a sun, a camera for each light that has none, by choose_view(),
+/// which a note names, and a floor. Of several lights each has its camera, called as the light. Cameras and lights that
+/// the scene has, and a place that was asked for, stay as they are.
 ///
 /// Requires validated geometry. Throws kInput, at `where`, as validate() does.
 Scene complete(Scene scene, const Completion& completion, const std::string& where);

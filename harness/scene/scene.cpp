@@ -49,8 +49,15 @@ std::vector<Scene> separate_lights(const Scene& scene) {
     lit.name += "." + light.name;
     lit.title += ": " + light.name;
     lit.light = std::move(light);
+    std::erase_if(lit.cameras, [&](const Camera& each) { return !each.light.empty() && each.light != lit.light.name; });
   }
   return scenes;
+}
+
+std::string name_without_light(const Scene& scene) {
+  const std::string end = "." + scene.light.name;
+  const bool is_separate = !scene.light.name.empty() && scene.name.ends_with(end);
+  return is_separate ? scene.name.substr(0, scene.name.size() - end.size()) : scene.name;
 }
 
 std::vector<truth::OccluderMesh> list_occluders(const Scene& scene, bool casts_shadow) {

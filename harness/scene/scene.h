@@ -58,6 +58,7 @@ struct Camera {
   glm::vec3 up_ws{0.0f, 1.0f, 0.0f};        ///< unit length, not parallel to forward_ws
   float vertical_fov_rad = 0.8f;
   float orthographic_height_m = 0.0f;  ///< full height of the view; 0: perspective
+  std::string light;                   ///< the one of several lights that is seen from here; empty: all
 };
 
 /// An axis-aligned box; empty while min > max.
@@ -93,8 +94,12 @@ struct Scene {
   std::size_t triangle_count() const;
 };
 
-/// A copy of a scene for each of its lights, which alone shines there; called SCENE.LIGHT where there are several.
+/// A copy of a scene for each of its lights, which alone shines there, with the cameras for that light; called
+/// SCENE.LIGHT where there are several.
 std::vector<Scene> separate_lights(const Scene& scene);
+
+/// The name of such a scene without its light's.
+std::string name_without_light(const Scene& scene);
 
 /// What rays can hit of a scene: every mesh that casts a shadow, with the holes or the transparency of its material;
 /// or, without `casts_shadow`, the other meshes.

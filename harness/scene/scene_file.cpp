@@ -156,6 +156,10 @@ class SceneBuilder {
   void add_camera(const TomlTable& table) {
     const Camera camera = read_camera(table);
     take_name(camera.name, "cameras", table);
+    const std::set<std::string>& lights = names_["lights"];
+    if (!camera.light.empty() && !lights.contains(camera.light))
+      throw table.error("light", fmt::format("there is no light '{}'{}", camera.light,
+                                             did_you_mean_or_known(camera.light, {lights.begin(), lights.end()})));
     scene_.cameras.push_back(camera);
   }
 
@@ -250,9 +254,10 @@ class SceneBuilder {
 }  // namespace
 
 Camera read_camera(const TomlTable& table) {
-  table.require_known_keys({"name", "position", "target", "up", "vertical_fov_deg", "orthographic_height"});
+  table.require_known_keys({"name", "light", "position", "target", "up", "vertical_fov_deg", "orthographic_height"});
   Camera camera;
   camera.name = table.string("name", camera.name);
+  camera.light = table.string("light", "");
   const glm::dvec3 position = table.vec3("position", kAnyNumber);
   const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;
   if (glm::length(ahead) == 0.0) throw table.error("target", "the camera's target is its position");

@@ -33,6 +33,7 @@ toml::table write_camera(const Camera& camera) {
                     {"position", write_vec3(camera.position_ws)},
                     {"target", std::move(target)},
                     {"up", write_vec3(camera.up_ws)}};
+  if (!camera.light.empty()) table.insert("light", camera.light);
   if (camera.orthographic_height_m > 0.0f)
     table.insert("orthographic_height", write_number(camera.orthographic_height_m));
   else

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "harness/scene/scene.h"
@@ -11,32 +12,25 @@
 namespace shadowbench::scene {
 namespace {
 
-constexpr int kWidth = 96;
 constexpr double kFewestSurfaces = 0.5;  ///< of the pixels
 
-/// A ray of a pixel; its direction is not of unit length.
-struct PixelRay {
-  glm::dvec3 origin;
-  glm::dvec3 direction;
-};
-
 /// The rays of a camera's pixels, row by row from the top.
-std::vector<PixelRay> make_rays(const Camera& camera, int width, int height) {
+std::vector<SceneRay> make_rays(const Camera& camera, int width, int height) {
   const ViewAxes view(camera);
   const bool is_flat = view.half_height > 0.0;
   const double step = 2.0 * (is_flat ? view.half_height : view.tangent) / height;
-  std::vector<PixelRay> rays;
+  std::vector<SceneRay> rays;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const glm::dvec3 across = step * ((x + 0.5 - 0.5 * width) * view.right + (0.5 * height - y - 0.5) * view.up);
-      rays.push_back(is_flat ? PixelRay{view.eye + across, view.forward} : PixelRay{view.eye, view.forward + across});
+      rays.push_back(is_flat ? SceneRay{view.eye + across, view.forward} : SceneRay{view.eye, view.forward + across});
     }
   }
   return rays;
 }
 
 /// What a ray meets, with the normal turned against the ray.
-truth::ReceiverPoint make_receiver(const PixelRay& ray, float distance, const glm::dvec3& normal) {
+truth::ReceiverPoint make_receiver(const SceneRay& ray, float distance, const glm::dvec3& normal) {
   const glm::dvec3 towards_viewer = glm::normalize(glm::dot(normal, ray.direction) > 0.0 ? -normal : normal);
   return {ray.origin + ray.direction * static_cast<double>(distance), towards_viewer, true};
 }
@@ -60,6 +54,7 @@ double EdgeCount::share() const {
 EdgeCount& EdgeCount::operator+=(const EdgeCount& other) {
   pixels += other.pixels;
   surfaces += other.surfaces;
+  lit += other.lit;
   at_edge += other.at_edge;
   return *this;
 }
@@ -87,10 +82,8 @@ std::vector<const EdgeMeter::Part*> EdgeMeter::parts() const {
   return all;
 }
 
-truth::ReceiverImage EdgeMeter::look(const Camera& camera, double aspect) const {
-  const int height = std::clamp(static_cast<int>(std::lround(kWidth / aspect)), 1, 8 * kWidth);
-  const std::vector<PixelRay> rays = make_rays(camera, kWidth, height);
-  truth::ReceiverImage image{kWidth, height, std::vector<truth::ReceiverPoint>(rays.size())};
+std::vector<truth::ReceiverPoint> EdgeMeter::trace(std::span<const SceneRay> rays) const {
+  std::vector<truth::ReceiverPoint> points(rays.size());
   for (std::size_t first = 0; first < rays.size(); first += truth::RayPacket::kSize) {
     const std::size_t lanes = std::min<std::size_t>(truth::RayPacket::kSize, rays.size() - first);
     truth::RayPacket packet;
@@ -101,14 +94,36 @@ truth::ReceiverImage EdgeMeter::look(const Camera& camera, double aspect) const 
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         if (!(hits.distances[lane] < packet.reach[lane])) continue;
         packet.reach[lane] = hits.distances[lane];
-        image.points[first + lane] = make_receiver(rays[first + lane], hits.distances[lane], hits.normal(lane));
+        points[first + lane] = make_receiver(rays[first + lane], hits.distances[lane], hits.normal(lane));
       }
     }
   }
-  return image;
+  return points;
 }
 
-EdgeCount EdgeMeter::count(truth::ReceiverImage seen, const Light& light) const {
+std::vector<glm::vec3> EdgeMeter::find_lit_points(const Beam& lamp) const {
+  constexpr int kRays = 2048;
+  std::vector<SceneRay> rays;
+  for (int i = 0; i < kRays; ++i) {  // evenly over the sphere, along a spiral of golden angles
+    const double y = 1.0 - (2.0 * i + 1.0) / kRays, across = std::sqrt(1.0 - y * y);
+    const double angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
+    const glm::dvec3 direction(across * std::cos(angle), y, across * std::sin(angle));
+    if (lamp.cone_at(lamp.position_ws + direction) > 0.0) rays.push_back({lamp.position_ws, direction});
+  }
+  std::vector<glm::vec3> points;
+  for (const truth::ReceiverPoint& each : trace(rays))
+    if (each.counts) points.push_back(each.position_ws);
+  const auto distance = [&](const glm::vec3& point) { return glm::distance(glm::vec3(lamp.position_ws), point); };
+  std::ranges::sort(points, {}, distance);
+  if (points.empty()) return points;
+  const float reach = 2.0f * distance(points[points.size() / 2]);
+  std::erase_if(points, [&](const glm::vec3& point) { return distance(point) > reach; });
+  return points;
+}
+
+EdgeCount EdgeMeter::count(const Camera& camera, const Light& light, double aspect, int width) const {
+  const int height = std::clamp(static_cast<int>(std::lround(width / aspect)), 1, 8 * width);
+  truth::ReceiverImage seen{width, height, trace(make_rays(camera, width, height))};
   EdgeCount result;
   result.pixels = static_cast<int>(seen.points.size());
   result.surfaces = static_cast<int>(std::ranges::count(seen.points, true, &truth::ReceiverPoint::counts));
@@ -127,20 +142,14 @@ EdgeCount EdgeMeter::count(truth::ReceiverImage seen, const Light& light) const 
     if (visibility[a] == visibility[b] || !is_same_surface(seen.points[a], seen.points[b])) return;
     at_edge[a] = at_edge[b] = true;
   };
-  const auto width = static_cast<std::size_t>(seen.width);
+  const auto across = static_cast<std::size_t>(width);
   for (std::size_t i = 0; i < seen.points.size(); ++i) {
-    if ((i + 1) % width != 0) compare(i, i + 1);
-    if (i + width < seen.points.size()) compare(i, i + width);
+    result.lit += seen.points[i].counts && visibility[i] > 0.0f;
+    if ((i + 1) % across != 0) compare(i, i + 1);
+    if (i + across < seen.points.size()) compare(i, i + across);
   }
   result.at_edge = static_cast<int>(std::ranges::count(at_edge, true));
   return result;
-}
-
-EdgeCount EdgeMeter::count(const Camera& camera, std::span<const Light> lights, double aspect) const {
-  const truth::ReceiverImage seen = look(camera, aspect);
-  EdgeCount sum;
-  for (const Light& light : lights) sum += count(seen, light);
-  return sum;
 }
 
 }  // namespace shadowbench::scene

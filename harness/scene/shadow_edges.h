@@ -15,13 +15,20 @@ struct EdgeCount {
   int pixels = 0;
   int surfaces = 0;  ///< lit, in a shadow, or turned away from the light
   int at_edge = 0;
+  int lit = 0;  ///< the light's centre is seen from them
 
   /// The share of the surfaces that touch an edge, in [0,1]. They are taken for half the picture where they are fewer:
   /// a view that shows little does not win by a few pixels, and neither does one of sides that face away from the
   /// light.
   double share() const;
 
-  EdgeCount& operator+=(const EdgeCount& other);
+  EdgeCount& operator+=(const EdgeCount& other);  ///< of another view
+};
+
+/// A ray through a scene; its direction is of any length.
+struct SceneRay {
+  glm::dvec3 origin;
+  glm::dvec3 direction;
 };
 
 /// Finds the edges of shadows in coarse views of a scene, by one ray for each pixel and one to the light's centre.
@@ -33,10 +40,15 @@ class EdgeMeter {
   /// Takes a floor in place of the last one, or takes that away.
   void set_floor(const Mesh* floor);
 
-  /// Counts in a picture of the given width / height. Two pixels beside each other touch an edge where one is lit and
-  /// the other is not, and both are receivers on the same smooth surface: their normals differ by less than about 25
-  /// degrees, and each lies near the other's plane. Safe to call from many threads.
-  EdgeCount count(const Camera& camera, std::span<const Light> lights, double aspect) const;
+  /// Points of the surfaces that a lamp shines on, but for those beyond twice their median distance.
+  std::vector<glm::vec3> find_lit_points(const Beam& lamp) const;
+
+  static constexpr int kCoarseWidth = 96;
+
+  /// Counts in a picture of so many pixels across and the given width / height. Two pixels beside each other touch an
+  /// edge where one is lit and the other is not, and both are receivers on the same smooth surface: their normals
+  /// differ by less than about 25 degrees, and each lies near the other's plane. Safe to call from many threads.
+  EdgeCount count(const Camera& camera, const Light& light, double aspect, int width = kCoarseWidth) const;
 
  private:
   /// Surfaces that are traced together.
@@ -49,8 +61,8 @@ class EdgeMeter {
   std::optional<Part> floor_;
 
   std::vector<const Part*> parts() const;
-  truth::ReceiverImage look(const Camera& camera, double aspect) const;
-  EdgeCount count(truth::ReceiverImage receivers, const Light& light) const;
+  /// What each ray meets: a point that does not count where that is nothing.
+  std::vector<truth::ReceiverPoint> trace(std::span<const SceneRay> rays) const;
 };
 
 }  // namespace shadowbench::scene

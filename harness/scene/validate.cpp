@@ -189,7 +189,6 @@ Scene validate(Scene scene, const std::string& where) {
   scene.light = checked_light(scene.light, where);
   for (Light& light : scene.other_lights) light = checked_light(light, where);
   scene = validate_geometry(std::move(scene), where);
-  if (scene.cameras.empty()) fail_input("the scene has no camera", where);
   for (Camera& camera : scene.cameras) camera = checked_camera(camera, where);
   std::vector<std::string*> names;
   for (Camera& camera : scene.cameras) names.push_back(&camera.name);

@@ -29,6 +29,7 @@ ViewState make_view_state(options::RunOptions options, const std::string& scene_
   state.scene_argument = scene_argument;
   state.scene = run::load_scene(state.options, scene_argument);
   state.cameras = state.scene.cameras;
+  for (scene::Camera& camera : state.cameras) camera.light.clear();  // from each, any light is looked at
   state.lights = {state.scene.light};
   for (scene::Light& light : state.scene.other_lights) state.lights.push_back(std::move(light));
   state.scene.other_lights.clear();
@@ -45,6 +46,9 @@ void choose_light(ViewState& state, const std::string& name) {
     throw Error(ErrorKind::kUsage, fmt::format("--light-name: '{}' is no light of {}{}", name, state.scene.name,
                                                did_you_mean_or_known(name, names)));
   state.light = static_cast<std::size_t>(found - names.begin());
+  const auto view = std::ranges::find_if(
+      state.scene.cameras, [&](const scene::Camera& each) { return each.light.empty() || each.light == name; });
+  state.camera = static_cast<std::size_t>(view - state.scene.cameras.begin());
   apply(state, state);
 }
 

@@ -54,7 +54,7 @@ struct ViewState : ViewSettings {
 ViewState make_view_state(options::RunOptions options, const std::string& scene_argument,
                           std::array<Side, kSides> sides);
 
-/// Lets the light of that name shine. Throws Error(kUsage) where the scene has none.
+/// Lets the light of that name shine, seen from its first view. Throws Error(kUsage) where the scene has none.
 void choose_light(ViewState& state, const std::string& name);
 
 /// Takes over other settings: the scene gets its light, and the options the filters of both sides, each once: their

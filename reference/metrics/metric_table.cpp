@@ -68,6 +68,12 @@ std::vector<Metric> list_errors() {
        "what weighing the truth changes",
        "root mean square, over receivers, of the share of the light's area that is seen less the share of its "
        "unshadowed light that arrives; see --truth-weight"},
+      {"truth.lit", at<&V::truth, &TruthRecord::lit>, "pixels", kPositive, kNeither, "lit receivers",
+       "receivers that see any of the light"},
+      {"truth.penumbra", at<&V::truth, &TruthRecord::penumbra>, "pixels", kPositive, kNeither,
+       "receivers at a penumbra",
+       "receivers in a penumbra or beside one: those whose rays to the light disagree with each other or with a "
+       "neighbour's"},
       {"receivers", at<&V::receivers>, "pixels", kPositive, kNeither, "receivers",
        "pixels whose surface faces the light: those that count", kCount},
       {"nan", at<&V::nan>, "pixels", kPositive, kLess, "not finite", "pixels whose visibility is not finite", kCount},

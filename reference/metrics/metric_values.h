@@ -40,6 +40,8 @@ struct TruthRecord {
   std::optional<double> se;
   std::optional<double> unanimous;
   std::optional<double> weight_rmse;
+  std::optional<std::int64_t> lit;
+  std::optional<std::int64_t> penumbra;
 };
 
 /// How well the map's texels are spent on the view.

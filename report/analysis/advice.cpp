@@ -61,10 +61,12 @@ void require_claim(const std::vector<records::CellRecord>& cells, const AdviceRe
                      did_you_mean(wanted, {known.begin(), known.end()}), fmt::join(known, ", ")));
 }
 
-// The cells that are asked about, but for those where the choice does not matter.
-std::vector<const records::CellRecord*> drop_idle(std::vector<const records::CellRecord*> chosen, Advice& advice) {
-  advice.idle = list_idle_places(chosen);
-  std::erase_if(chosen, [&](const auto* cell) { return std::ranges::count(advice.idle, place_of(*cell)) > 0; });
+// The cells that are asked about, but for those of places that say nothing of which filter is better.
+std::vector<const records::CellRecord*> leave_out(std::vector<const records::CellRecord*> chosen, Advice& advice) {
+  advice.left_out = list_left_out(chosen);
+  std::erase_if(chosen, [&](const auto* cell) {
+    return std::ranges::count(advice.left_out, place_of(*cell), &LeftOutPlace::place) > 0;
+  });
   return chosen;
 }
 
@@ -87,12 +89,12 @@ std::vector<const records::CellRecord*> choose_cells(const std::vector<records::
   if (chosen.empty() && !advice.teaching.empty())
     refuse(fmt::format("the run has filters for teaching alone ({}), which are not advised",
                        fmt::join(advice.teaching, ", ")));
-  return drop_idle(std::move(chosen), advice);
+  return leave_out(std::move(chosen), advice);
 }
 
 std::vector<const records::CellRecord*> choose_class(std::vector<const records::CellRecord*> cells,
                                                      const std::string& width_class) {
-  if (width_class.empty()) return cells;
+  if (width_class.empty() || cells.empty()) return cells;
   std::erase_if(cells, [&](const records::CellRecord* cell) { return cell->kernel.width_class != width_class; });
   if (cells.empty())
     refuse(fmt::format("--class: the run has no {} kernel; its tables say of each filter which it has", width_class));

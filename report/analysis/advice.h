@@ -10,6 +10,7 @@
 
 #include "report/analysis/configuration.h"
 #include "report/analysis/front.h"
+#include "report/analysis/gains.h"
 #include "report/analysis/limits.h"
 #include "report/records/records.h"
 
@@ -114,8 +115,8 @@ struct Obstacle {
 struct Advice {
   AdviceRequest request;
   std::vector<Place> places;
-  std::set<std::string> teaching;  ///< filters of the run that show a mistake, and are left out
-  std::vector<Place> idle;         ///< left out: the choice does not matter there
+  std::set<std::string> teaching;      ///< filters of the run that show a mistake, and are left out
+  std::vector<LeftOutPlace> left_out;  ///< not tested, or the choice does not matter there
   std::string unfiltered;          ///< the cheapest configuration without a filter, by its name; empty: none is judged
   std::vector<Candidate> keeping;  ///< all demands, unbeaten, cheapest first: the first is advised
   std::vector<Candidate> beaten;   ///< keep all demands, but one that does so too beats them; cheapest first

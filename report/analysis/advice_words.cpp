@@ -166,6 +166,12 @@ void add_notes_of_nothing_to_see(std::vector<std::string>& notes, const Advice& 
   }
 }
 
+std::string describe_left_out(const LeftOutPlace& left_out, const Advice& advice) {
+  std::vector<Place> all = advice.places;
+  for (const LeftOutPlace& each : advice.left_out) all.push_back(each.place);
+  return fmt::format("{} {}", describe_place(left_out.place, all), describe_state(left_out.state));
+}
+
 }  // namespace
 
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl) {
@@ -231,8 +237,26 @@ std::string describe_closest(const Advice& advice) {
   return fmt::format("{} comes closest, and breaks {}", closest.configuration.name, fmt::join(broken, " and "));
 }
 
+JudgedLights count_judged_lights(const Advice& advice) {
+  std::set<std::string> tested, all;
+  for (const Place& place : advice.places) tested.insert(place.scene);
+  for (const LeftOutPlace& each : advice.left_out) (each.is_tested() ? tested : all).insert(each.place.scene);
+  all.insert(tested.begin(), tested.end());
+  return {tested.size(), all.size()};
+}
+
+std::string describe_judged_lights(const Advice& advice) {
+  const auto [judged, of] = count_judged_lights(advice);
+  if (judged == of) return {};
+  std::vector<std::string> untested;
+  for (const LeftOutPlace& each : advice.left_out)
+    if (!each.is_tested()) untested.push_back(describe_left_out(each, advice));
+  return fmt::format("{} of {} lights judged; {}", judged, of, fmt::join(untested, "; "));
+}
+
 std::string describe_failure(const Advice& advice) {
   assert(advice.keeping.empty());
+  if (advice.places.empty()) return describe_judged_lights(advice);
   const std::size_t total = advice.failing.size() + advice.unjudged.size();
   if (advice.failing.empty())
     return fmt::format("none of {} configurations can be judged: {}", total, fmt::join(count_unjudged(advice), "; "));
@@ -250,6 +274,9 @@ std::vector<std::string> list_run_notes(const Advice& advice, const records::GlR
     notes.push_back(
         fmt::format("Left out, for they show a mistake and are for teaching: {}.", fmt::join(advice.teaching, ", ")));
   }
+  const bool is_said = !describe_judged_lights(advice).empty();  // of what was not tested
+  for (const LeftOutPlace& each : advice.left_out)
+    if (each.is_tested() || !is_said) notes.push_back(describe_left_out(each, advice) + ".");
   const std::vector<const records::CellRecord*> cells = list_judged_cells(advice);
   if (uses_time(advice.request)) add_time_notes(notes, cells, gl, advice.request);
   add_setting_notes(notes, cells);
@@ -264,11 +291,6 @@ std::vector<std::string> list_advice_notes(const Advice& advice, const records::
   if (!advice.beaten.empty())
     notes.push_back(
         fmt::format("Left out, as another is no dearer and has no larger RMSE: {}.", list_names(advice.beaten)));
-  if (!advice.idle.empty()) {
-    std::vector<std::string> names;
-    for (const Place& place : advice.idle) names.push_back(describe_place(place, advice.idle));
-    notes.push_back(fmt::format("The choice does not matter on {}: {} there.", fmt::join(names, ", "), kIdle));
-  }
   for (std::string& note : list_run_notes(advice, gl)) notes.push_back(std::move(note));
   add_notes_of_nothing_to_see(notes, advice);
   if (advice.keeping.empty()) return notes;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -34,6 +35,18 @@ std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl
 
 /// Which demands the closest of those that fail breaks, and by what. Requires that there is one.
 std::string describe_closest(const Advice& advice);
+
+/// Of how many lights of a run is known which filter is better.
+struct JudgedLights {
+  std::size_t judged = 0;
+  std::size_t of = 0;
+};
+
+/// Counts them: all that were tested in a view, also where the choice does not matter.
+JudgedLights count_judged_lights(const Advice& advice);
+
+/// Says it on one line, with the lights that were not tested and why; empty where all were.
+std::string describe_judged_lights(const Advice& advice);
 
 /// Says on one line which demands are in the way. Requires that nothing keeps them all.
 std::string describe_failure(const Advice& advice);

@@ -1,5 +1,7 @@
 #include "report/analysis/gains.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "report/analysis/cell_group.h"
@@ -8,7 +10,16 @@
 namespace shadowbench::analysis {
 namespace {
 
-constexpr double kSeenFlip = 0.001;  // as kIdle says
+constexpr double kSeenFlip = 0.01;  // per receiver at a penumbra
+
+/// What one cell says of its place; nothing where it has no truth.
+std::optional<PlaceState> judge_cell(const records::CellRecord& cell) {
+  if (cell.receivers == 0 || cell.truth.lit == 0) return PlaceState::kUnlit;
+  if (cell.truth.penumbra == 0) return PlaceState::kEdgeless;
+  if (!cell.truth.penumbra || !cell.error.flip) return std::nullopt;
+  const double sum = *cell.error.flip * cell.width * cell.height;
+  return sum < kSeenFlip * static_cast<double>(*cell.truth.penumbra) ? PlaceState::kIdle : PlaceState::kMatters;
+}
 
 }  // namespace
 
@@ -21,16 +32,40 @@ std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord
   return estimates.empty() ? std::nullopt : std::optional(list_error_measures().front().combine(estimates));
 }
 
-std::vector<Place> list_idle_places(const std::vector<const records::CellRecord*>& cells) {
-  const std::vector<Place> places = list_places(cells);
-  std::vector<Place> idle;
-  for (const Place& place : places) {
-    const auto is_seen = [&](const records::CellRecord* cell) {
-      return place_of(*cell) == place && !(cell->error.flip && *cell->error.flip < kSeenFlip);
-    };
-    if (std::ranges::none_of(cells, is_seen)) idle.push_back(place);
+PlaceState judge_place(const std::vector<const records::CellRecord*>& cells, const Place& place) {
+  std::optional<PlaceState> known;  // of the cells that say something, that which matters most
+  bool any_unknown = false;
+  for (const records::CellRecord* cell : cells) {
+    if (place_of(*cell) != place) continue;
+    const std::optional<PlaceState> own = judge_cell(*cell);
+    any_unknown = any_unknown || !own;
+    if (own) known = std::min(*own, known.value_or(*own));
   }
-  return idle.size() < places.size() ? idle : std::vector<Place>();
+  const bool may_matter = !known || (*known == PlaceState::kIdle && any_unknown);
+  return may_matter ? PlaceState::kMatters : *known;
+}
+
+std::vector<LeftOutPlace> list_left_out(const std::vector<const records::CellRecord*>& cells) {
+  std::vector<LeftOutPlace> left_out;
+  bool any_matters = false;
+  for (const Place& place : list_places(cells)) {
+    const PlaceState state = judge_place(cells, place);
+    any_matters = any_matters || state == PlaceState::kMatters;
+    if (state != PlaceState::kMatters) left_out.push_back({place, state});
+  }
+  if (!any_matters) std::erase_if(left_out, &LeftOutPlace::is_tested);
+  return left_out;
+}
+
+std::string describe_state(PlaceState state) {
+  switch (state) {
+    case PlaceState::kMatters: return "matters";
+    case PlaceState::kIdle:
+      return fmt::format("does not matter: every filter's FLIP is below {} per receiver at a penumbra", kSeenFlip);
+    case PlaceState::kUnlit: return "not tested: no receiver in view sees it";
+    case PlaceState::kEdgeless: return "not tested: no edge of its shadows is in view";
+  }
+  return {};
 }
 
 }  // namespace shadowbench::analysis

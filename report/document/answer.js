@@ -229,7 +229,7 @@ const startAnswer = (holder) => {
     );
   const explainNothing = (failing) => {
     const none = "Nothing can be judged: a value, a time or a scene is missing for every filter.";
-    headline.textContent = failing.length > 0 ? "Nothing keeps these limits." : none;
+    headline.textContent = failing.length > 0 ? "Nothing keeps these limits." : all.judged || none;
     const [nearest] = failing
       .map((each) => ({ ...each, excess: measureExcess(each) }))
       .sort((a, b) => a.broken.length - b.broken.length || (a.excess === b.excess ? 0 : a.excess - b.excess));
@@ -285,7 +285,7 @@ const startAnswer = (holder) => {
     const title = scope.scene ?? (places.length > 1 ? "all scenes" : places[0]);
     const head = element(row, "th", { scope: "row", dir: "auto" });
     for (const part of title.split(/(?<=[._-])/)) head.append(part, document.createElement("wbr"));
-    if (scope.idle) return element(row, "td", { colSpan: 3 }, `does not matter: ${scope.idle}`);
+    if (scope.left_out) return element(row, "td", { colSpan: 3 }, scope.left_out);
     if (judged.keeping.length === 0) return element(row, "td", { colSpan: 3 }, "nothing keeps the limits");
     const picks = pick(judged, scope);
     for (const column of [0, 1, 2]) {
@@ -304,7 +304,7 @@ const startAnswer = (holder) => {
     addBiasRow(table.tBodies[0], pick(judged, all));
   };
   const show = () => {
-    headline.textContent = "";
+    headline.textContent = all.judged;
     reasons.replaceChildren();
     const judged = judge();
     showTable(judged);

@@ -64,9 +64,9 @@ const compare = async (page, run) => {
 // Each scene's row is what the command says with --scene.
 const compareScenes = async (page, run) => {
   const command = await readCommand(page), data = await readData(page);
-  for (const { scene, idle } of data.scopes.slice(1)) {
+  for (const { scene, left_out: leftOut } of data.scopes.slice(1)) {
     const row = page.locator(".picks tbody tr").filter({ has: page.locator("th", { hasText: scene }) });
-    if (idle) continue;
+    if (leftOut) continue;
     const { status, advice } = runAdvice(command, "--scene", scene), text = (await row.locator("td").allTextContents()).join(" ");
     if (status === 1) assert.match(text, /nothing keeps the limits/);
     for (const each of advice.picks ?? []) assert.ok(text.includes(data.configurations[findConfiguration(run, data, each.settings)].label), `${command}, ${scene}: ${each.name} ${each.label}: ${text}`);

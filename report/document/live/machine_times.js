@@ -50,9 +50,9 @@ const timeOfFrame = (parts, isStatic) =>
 
 // The mean over the cells of a configuration that a scope counts, and its largest; null where one has no time.
 const combineTimes = (times, isStatic, index, scope) => {
-  const idle = run.scopes.filter((each) => each.idle).map(({ scene }) => scene);
+  const leftOut = run.scopes.filter((each) => each.left_out).map(({ scene }) => scene);
   const counts = ({ place }) =>
-    scope.scene ? run.places[place].scene === scope.scene : !idle.includes(run.places[place].scene);
+    scope.scene ? run.places[place].scene === scope.scene : !leftOut.includes(run.places[place].scene);
   const own = run.cells.filter((cell) => cell.configuration === index && counts(cell));
   const all = own.map(({ key, place }) => ({ place, ...timeOfFrame(times.cells[key], isStatic) }));
   if (all.length === 0 || all.some(({ value }) => value === undefined)) return null;

@@ -221,9 +221,13 @@ Json names_json(const std::vector<analysis::Candidate>& candidates) {
   return list;
 }
 
-Json idle_json(const analysis::Advice& advice) {
+Json left_out_json(const analysis::Advice& advice) {
   Json list = Json::array();
-  for (const analysis::Place& each : advice.idle) list.push_back({{"scene", each.scene}, {"view", each.view}});
+  for (const analysis::LeftOutPlace& each : advice.left_out)
+    list.push_back({{"scene", each.place.scene},
+                    {"view", each.place.view},
+                    {"tested", each.is_tested()},
+                    {"why", analysis::describe_state(each.state)}});
   return list;
 }
 
@@ -263,7 +267,9 @@ Json make_advice_json(const records::RunRecord& run, const analysis::Advice& adv
   for (std::size_t i = 0; i < advice.obstacles.size(); ++i) json["limits"].push_back(obstacle_json(advice, i));
   json["beaten"] = names_json(advice.beaten);
   json["no_better_than_none"] = names_json(advice.no_gain);
-  json["idle"] = idle_json(advice);
+  json["left_out"] = left_out_json(advice);
+  const auto [judged, of] = analysis::count_judged_lights(advice);
+  json["lights"] = {{"judged", judged}, {"of", of}};
   json["keep"] = advice.keeping.size();
   json["fail"] = advice.failing.size();
   json["not_judged"] = unjudged_json(advice);

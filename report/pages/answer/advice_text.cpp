@@ -210,6 +210,7 @@ std::string describe_nearest(const analysis::Advice& advice) {
 }  // namespace
 
 std::string make_advice_text(const records::RunRecord& run, const analysis::Advice& advice) {
+  if (advice.places.empty()) return wrap(fmt::format("Nothing fits: {}.", analysis::describe_failure(advice)));
   std::vector<std::string> sections;
   if (advice.keeping.empty()) {
     sections = {"Nothing fits.\n", list_obstacles(advice), describe_nearest(advice)};
@@ -218,6 +219,8 @@ std::string make_advice_text(const records::RunRecord& run, const analysis::Advi
                 list_cells(run, advice), describe_second(run, advice), list_relaxations(run, advice)};
   }
   sections.push_back(list_remarks(run, advice));
+  if (const std::string judged = analysis::describe_judged_lights(advice); !judged.empty())
+    sections.insert(sections.begin(), wrap(judged + "."));
   std::erase(sections, "");
   return fmt::format("{}", fmt::join(sections, "\n"));
 }

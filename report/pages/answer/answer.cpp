@@ -67,7 +67,9 @@ document::Table make_table(const records::RunRecord& run, const std::vector<reco
       make_row(scenes.empty() ? advice.places.front().scene : "all scenes", advice, run.gl, true));
   for (const std::string& scene : scenes) {
     if (std::ranges::count(advice.places, scene, &analysis::Place::scene) == 0) {
-      table.table.rows.push_back({scene, fmt::format("does not matter: {}", analysis::kIdle), "", ""});
+      const auto left_out =
+          std::ranges::find(advice.left_out, scene, [](const auto& each) { return each.place.scene; });
+      table.table.rows.push_back({scene, analysis::describe_state(left_out->state), "", ""});
       continue;
     }
     analysis::AdviceRequest request = advice.request;
@@ -148,6 +150,8 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
     mount.blocks.emplace_back(
         document::Paragraph{fmt::format("Nothing fits: {}.", analysis::describe_failure(advice))});
   } else {
+    if (const std::string judged = analysis::describe_judged_lights(advice); !judged.empty())
+      mount.blocks.emplace_back(document::Paragraph{judged + "."});
     mount.blocks.emplace_back(make_table(run, cells, advice, biases));
     if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
   }

@@ -70,10 +70,11 @@ json list_ties(const analysis::Advice& advice, std::size_t rank) {
 struct Scope {
   std::vector<std::string> scenes;  ///< empty: all
   std::vector<analysis::Configuration> configurations;
+  std::vector<analysis::LeftOutPlace> left_out;
 };
 
 Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Configuration>& configurations) {
-  Scope scope{std::move(scenes), configurations};
+  Scope scope{std::move(scenes), configurations, {}};
   std::vector<const records::CellRecord*> advised;
   for (analysis::Configuration& each : scope.configurations) {
     std::erase_if(each.cells, [&](const records::CellRecord* cell) {
@@ -82,10 +83,11 @@ Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Co
     for (const records::CellRecord* cell : each.cells)
       if (records::is_advised(*cell)) advised.push_back(cell);
   }
-  const std::vector<analysis::Place> idle = analysis::list_idle_places(advised);
+  scope.left_out = analysis::list_left_out(advised);
   for (analysis::Configuration& each : scope.configurations)
-    std::erase_if(each.cells,
-                  [&](const auto* cell) { return std::ranges::count(idle, analysis::place_of(*cell)) > 0; });
+    std::erase_if(each.cells, [&](const auto* cell) {
+      return std::ranges::count(scope.left_out, analysis::place_of(*cell), &analysis::LeftOutPlace::place) > 0;
+    });
   return scope;
 }
 
@@ -209,16 +211,25 @@ json make_answer_data(const std::vector<records::CellRecord>& cells,
     for (const records::CellRecord* cell : configurations[i].cells) indices[cell] = i;
   std::vector<Scope> scopes = {make_scope({}, configurations)};
   for (const std::string& scene : list_answered_scenes(cells)) scopes.push_back(make_scope({scene}, configurations));
-  const auto is_judged = [&](const std::string& scene) {  // in the choice for all scenes
-    return std::ranges::any_of(scopes.front().configurations, [&](const analysis::Configuration& each) {
+  const auto explain_absence = [&](const std::string& scene) -> json {  // from the choice for all scenes
+    const auto is_counted = [&](const analysis::Configuration& each) {
       return std::ranges::count(each.cells, scene, &records::CellRecord::scene) > 0;
-    });
+    };
+    const auto found =
+        std::ranges::find(scopes.front().left_out, scene, [](const auto& each) { return each.place.scene; });
+    const bool is_left_out = found != scopes.front().left_out.end();
+    if (!is_left_out || std::ranges::any_of(scopes.front().configurations, is_counted)) return nullptr;
+    return analysis::describe_state(found->state);
   };
   json data = json::array();
   for (const Scope& scope : scopes) {
     const std::string scene = scope.scenes.empty() ? "" : scope.scenes.front();
+    analysis::AdviceRequest request;
+    request.scenes = scope.scenes;
+    const std::string judged = analysis::describe_judged_lights(analysis::advise(cells, request));
     data.push_back({{"scene", scene.empty() ? json() : json(scene)},
-                    {"idle", scene.empty() || is_judged(scene) ? json() : json(analysis::kIdle)},
+                    {"left_out", explain_absence(scene)},
+                    {"judged", judged.empty() ? judged : judged + "."},
                     {"rows", list_rows(scope, places, choices)},
                     {"advice", list_advice(cells, scope, list_classes_of(scope, classes), choices, indices)}});
   }

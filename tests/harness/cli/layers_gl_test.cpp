@@ -116,7 +116,7 @@ TEST_F(LayersRun, ALampInsideACaster_IsWarnedOf) {
   scene.replace(scene.find(place), place.size(), "position = [-1.5, 0.35, 1.2]");
   const auto file = write("inside.toml", scene);
   run_cells("--filters none --scene " + file.string());
-  EXPECT_THAT(all()["warnings"].dump(), HasSubstr("no receiver in view sees the light"));
+  EXPECT_THAT(all()["warnings"].dump(), HasSubstr("the light reaches no surface in view"));
 }
 
 TEST_F(LayersRun, CommandsThatFollowOneMap_SayTheyDoNotTakeMore) {

@@ -82,7 +82,7 @@ TEST_F(OddInput, LightThatNoSurfaceFaces_IsWarnedOf) {
         "elevation_deg = 20\n[[object]]\nshape = \"box\"\nsize = [20, 20, 1]\n");
   const Outcome outcome = draw("--scene away.toml");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("away: no surface in the view 'main' faces the light"));
+  EXPECT_THAT(outcome.err, HasSubstr("away: the light reaches no surface in view"));
 }
 
 TEST_F(OddInput, Strict_TurnsWarningsIntoExitCode1_AndWritesTheReport) {

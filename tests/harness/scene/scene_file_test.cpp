@@ -366,6 +366,18 @@ TEST(SceneFileTest, SeveralLights_AreSeparated_EachUnderItsName) {
   EXPECT_TRUE(lit[0].other_lights.empty() && lit[1].other_lights.empty());
 }
 
+TEST(SceneFileTest, ACameraForOneLight_IsSeenUnderThatAlone) {
+  const std::string camera =
+      "[[camera]]\nname = \"close\"\nlight = \"lamp\"\nposition = [0, 2, 5]\ntarget = [0, 0, 0]\n";
+  const std::vector<Scene> lit = separate_lights(load_text(kTwoLights + camera));
+  ASSERT_EQ(lit[0].cameras.size(), 1u);
+  EXPECT_EQ(lit[0].cameras[0].name, "sun") << "chosen, for it has none";
+  ASSERT_EQ(lit[1].cameras.size(), 1u);
+  EXPECT_EQ(lit[1].cameras[0].name, "close");
+  EXPECT_THAT(complaint_about(kTwoLights + replaced(camera, "light = \"lamp\"", "light = \"lump\"")).message,
+              HasSubstr("there is no light 'lump'; did you mean 'lamp'?"));
+}
+
 TEST(SceneFileTest, SeveralLights_NeedNamesOfTheirOwn) {
   std::string text = kTwoLights;
   text.replace(text.find("\"lamp\""), 6, "\"sun\"");

@@ -33,7 +33,7 @@ Scene make_sheet_over_floor() {
   return scene;
 }
 
-EdgeCount count(const Scene& scene) { return EdgeMeter(scene).count(scene.cameras[0], std::vector{scene.light}, 1.0); }
+EdgeCount count(const Scene& scene) { return EdgeMeter(scene).count(scene.cameras[0], scene.light, 1.0); }
 
 TEST(EdgeMeter, CountsThePixelsAlongAShadowsEdge) {
   // 96 pixels to 6 m: the outline of a shadow of 1 m x 1 m is 64 pixels long, and has a pixel on either side. Its four
@@ -128,9 +128,9 @@ TEST(EdgeMeter, FloorIsSeenAndShadowed_AndCanBeTakenAway) {
   scene.meshes.erase(scene.meshes.begin());
   EdgeMeter meter(scene);
   meter.set_floor(&floor);
-  EXPECT_EQ(meter.count(scene.cameras[0], std::vector{scene.light}, 1.0).at_edge, on_mesh.at_edge);
+  EXPECT_EQ(meter.count(scene.cameras[0], scene.light, 1.0).at_edge, on_mesh.at_edge);
   meter.set_floor(nullptr);
-  EXPECT_EQ(meter.count(scene.cameras[0], std::vector{scene.light}, 1.0).at_edge, 0);
+  EXPECT_EQ(meter.count(scene.cameras[0], scene.light, 1.0).at_edge, 0);
 }
 
 TEST(EdgeCount, ViewThatShowsLittle_DoesNotWinByAFewPixels) {

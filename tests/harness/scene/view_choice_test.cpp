@@ -203,5 +203,29 @@ size = [1, 1, 1]
   EXPECT_THAT(scene.notes, ElementsAre(AllOf(HasSubstr("camera from"), Not(HasSubstr("sun")))));
 }
 
+TEST(Completion, EachOfSeveralLights_HasAViewOfItsOwn_ALampFromNearBy) {
+  Scene wide = make_bare({make_plane({40.0f, 40.0f}, 1), moved(make_box({1.0f, 1.0f, 1.0f}, 1), {8.0, 0.5, 8.0}),
+                          moved(make_box({2.0f, 6.0f, 2.0f}, 1), {-10.0, 3.0, -10.0})});
+  wide.light = place_in_sky({}, {60.0, 35.0});
+  wide.light.name = "sun";
+  Light& spot = wide.other_lights.emplace_back();
+  spot.name = "spot";
+  spot.kind = Spot{.position_ws = {10.0f, 3.0f, 9.0f}, .target_ws = {8.0f, 0.0f, 8.0f}};
+  const std::vector<Scene> lit = separate_lights(complete(wide, {}, "x"));
+  ASSERT_EQ(lit.size(), 2U);
+  double shares[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(lit[i].cameras.size(), 1U);
+    EXPECT_EQ(lit[i].cameras[0].name, lit[i].light.name);
+    shares[i] = EdgeMeter(lit[i]).count(lit[i].cameras[0], lit[i].light, 16.0 / 9.0).share();
+  }
+  EXPECT_GT(shares[1], 5.0 * EdgeMeter(lit[1]).count(lit[0].cameras[0], lit[1].light, 16.0 / 9.0).share())
+      << "than in the sun's view";
+  EXPECT_GT(shares[1], 0.02);
+  EXPECT_THAT(lit[0].notes, ElementsAre(HasSubstr("camera for the light 'sun' from azimuth"),
+                                        AllOf(HasSubstr("camera for the light 'spot' from azimuth"),
+                                              HasSubstr("near the light: edges of shadows touch"))));
+}
+
 }  // namespace
 }  // namespace shadowbench::scene

@@ -13,6 +13,7 @@
 #include <set>
 #include <tuple>
 
+#include "report/analysis/advice_words.h"
 #include "report/analysis/gains.h"
 #include "tests/report/records/synthetic.h"
 
@@ -114,7 +115,8 @@ TEST(Picks, ALimitOnAnError_LetsNoneThrough) {
   request.demands = {{&*spec, 0.06, {}}};
   EXPECT_THAT(list_picks(cells, request), ElementsAre("fast: none", "balanced: pcf", "best: pcss"));
   request.demands = {{&cost_spec(CostKind::kTime), 5.0, {}}};
-  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast and best: pcf")) << "a limit on the cost asks for no gain less";
+  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast and best: pcf"))
+      << "a limit on the cost asks for no gain less";
 }
 
 TEST(Picks, WithoutErrors_TheCheapestIsFast_AndNothingIsBest) {
@@ -277,17 +279,69 @@ TEST_F(MadeUpRuns, ABeatenRowChangesNothing) {
   });
 }
 
-TEST(IdlePlaces, AreThoseWhereNoFilterIsSeenToDiffer_UnlessAllAre) {
-  std::vector<records::CellRecord> cells = {make_picked({"none", 1, 0.1}, 0.0, "bright"),
-                                            make_picked({"none", 1, 0.1}, 0.0, "dim")};
-  cells[0].error.flip = 0.01;
-  cells[1].error.flip = 0.0009;
-  EXPECT_THAT(list_idle_places(point_to(cells)), ElementsAre(Place{"dim", "main"}));
+/// A cell of 100 x 100 pixels, of which so many are receivers at a penumbra, with this FLIP of the picture.
+records::CellRecord make_judged(const char* scene, std::int64_t penumbra, std::optional<double> flip,
+                                std::int64_t lit = 5000) {
+  records::CellRecord cell = make_picked({"none", 1, 0.1}, 0.0, scene);
+  cell.width = cell.height = 100;
+  cell.receivers = 6000;
+  cell.truth.lit = lit;
+  cell.truth.penumbra = penumbra;
+  cell.error.flip = flip;
+  return cell;
+}
+
+PlaceState judge(const std::vector<records::CellRecord>& cells) {
+  return judge_place(point_to(cells), place_of(cells.front()));
+}
+
+TEST(PlaceStates, ASmallShadowMatters_ThoughTheMeanOverThePictureIsLow) {
+  EXPECT_EQ(judge({make_judged("spot", 100, 0.0002)}), PlaceState::kMatters) << "0.02 at each receiver of its penumbra";
+  EXPECT_EQ(judge({make_judged("dim", 5000, 0.0009)}), PlaceState::kIdle);
+  EXPECT_EQ(judge({make_judged("dim", 5000, 0.0009), make_judged("dim", 5000, 0.009)}), PlaceState::kMatters)
+      << "one filter is seen to differ";
+}
+
+TEST(PlaceStates, WhatNothingInViewReceives_WasNotTested) {
+  EXPECT_EQ(judge({make_judged("lamp", 0, 0.0, 0)}), PlaceState::kUnlit);
+  EXPECT_EQ(judge({make_judged("lamp", 0, 0.02, 0)}), PlaceState::kUnlit) << "a filter that leaks shows no edge";
+  EXPECT_EQ(judge({make_judged("open", 0, 0.0)}), PlaceState::kEdgeless);
+  records::CellRecord away = make_picked({"none", 1, 0.1});
+  away.receivers = 0;
+  EXPECT_EQ(judge({away}), PlaceState::kUnlit) << "a run without truth knows it too";
+}
+
+TEST(PlaceStates, OfWhatHasNoTruth_NobodyKnows) {
+  const records::CellRecord unknown = make_picked({"none", 1, 0.1}, 0.0, "dim");
+  EXPECT_EQ(judge({unknown}), PlaceState::kMatters);
+  EXPECT_EQ(judge({make_judged("dim", 5000, 0.0009), unknown}), PlaceState::kMatters);
+  EXPECT_EQ(judge({make_judged("dim", 0, 0.0, 0), unknown}), PlaceState::kUnlit) << "that of a filter that failed";
+}
+
+TEST(LeftOutPlaces, IdleOnesCount_WhereNoOtherMatters_AndUntestedOnesNever) {
+  const LeftOutPlace dim{{"dim", "main"}, PlaceState::kIdle}, lamp{{"lamp", "main"}, PlaceState::kUnlit};
+  std::vector<records::CellRecord> cells = {make_judged("sun", 1000, 0.01), make_judged("dim", 5000, 0.0009),
+                                            make_judged("lamp", 0, 0.0, 0)};
+  EXPECT_THAT(list_left_out(point_to(cells)), ElementsAre(dim, lamp));
   EXPECT_EQ(advise(cells, {}).places.size(), 1u);
+  EXPECT_EQ(describe_judged_lights(advise(cells, {})),
+            "2 of 3 lights judged; lamp not tested: no receiver in view sees it");
   cells[0].error.flip = 0.0;
-  EXPECT_THAT(list_idle_places(point_to(cells)), IsEmpty());
-  cells[1].error.flip.reset();
-  EXPECT_THAT(list_idle_places(point_to(cells)), ElementsAre(Place{"bright", "main"})) << "nobody knows of the other";
+  EXPECT_THAT(list_left_out(point_to(cells)), ElementsAre(lamp));
+  cells.erase(cells.end() - 1);
+  EXPECT_EQ(describe_judged_lights(advise(cells, {})), "");
+}
+
+TEST(LeftOutPlaces, WithAllLightsUnseen_NothingIsPicked_AndItIsSaidWhy) {
+  const std::vector<records::CellRecord> cells = {make_judged("lamp", 0, 0.0, 0), make_judged("open", 0, 0.0)};
+  const Advice advice = advise(cells, {});
+  EXPECT_THAT(advice.keeping, IsEmpty());
+  EXPECT_EQ(describe_failure(advice),
+            "0 of 2 lights judged; lamp not tested: no receiver in view sees it; open not tested: no edge of its "
+            "shadows is in view");
+  AdviceRequest soft;
+  soft.width_class = "soft";
+  EXPECT_EQ(describe_failure(advise(cells, soft)), describe_failure(advice));
 }
 
 }  // namespace

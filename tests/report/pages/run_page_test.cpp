@@ -192,28 +192,35 @@ TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
   EXPECT_EQ(data["scopes"].size(), 1u) << "one scene is all scenes";
 }
 
-TEST(RunPage, AnswersForEachScene_AndSaysWhereTheChoiceDoesNotMatter) {
+TEST(RunPage, AnswersForEachScene_AndSaysWhereTheChoiceDoesNotMatterOrWasNotTested) {
   std::vector<records::CellRecord> cells;
   for (const auto& [scene, filter, rmse, flip] : {std::tuple{"sun", "none", 0.09, 0.02},
                                                   {"sun", "soft", 0.05, 0.01},
                                                   {"spot", "none", 0.05, 0.02},
                                                   {"spot", "soft", 0.09, 0.03},
                                                   {"dim", "none", 0.2, 0.0002},
-                                                  {"dim", "soft", 0.1, 0.0004}}) {
+                                                  {"dim", "soft", 0.1, 0.0004},
+                                                  {"lamp", "none", 0.0, 0.0},
+                                                  {"lamp", "soft", 0.0, 0.0}}) {
     cells.push_back(make_attributed_cell(filter, rmse, {0.0, 0.1, 0.1, 0.8}));
     cells.back().scene = scene;
     cells.back().error.flip = flip;
+    cells.back().truth.lit = std::string(scene) == "lamp" ? 0 : 100000;
+    cells.back().truth.penumbra = std::string(scene) == "lamp" ? 0 : 50000;
     const double ms = std::string(filter) == "none" ? 1.0 : 2.0;
     cells.back().time_ms.moving = records::OwnTime{{ms, ms, ms, 9}, {ms, ms}};
   }
   const std::string page = make_html(make_run(), cells);
   EXPECT_THAT(page, HasSubstr(">sun</td><td>soft, RMSE 0.05</td>"));
   EXPECT_THAT(page, HasSubstr(">spot</td><td>none, RMSE 0.05</td>"));
-  EXPECT_THAT(page, HasSubstr(">dim</td><td>does not matter: every filter&#39;s FLIP is below 0.001<"));
+  EXPECT_THAT(page, HasSubstr(">dim</td><td>does not matter: every filter&#39;s FLIP is below 0.01 per receiver"));
+  EXPECT_THAT(page, HasSubstr(">lamp</td><td>not tested: no receiver in view sees it<"));
+  EXPECT_THAT(page, HasSubstr("<p>3 of 4 lights judged; lamp not tested: no receiver in view sees it.</p>"));
   const nlohmann::json data = read_data(page);
-  ASSERT_EQ(data["scopes"].size(), 4u);
-  EXPECT_EQ(data["scopes"][3]["idle"], "every filter's FLIP is below 0.001");
-  EXPECT_TRUE(data["scopes"][1]["idle"].is_null());
+  ASSERT_EQ(data["scopes"].size(), 5u);
+  EXPECT_EQ(data["scopes"][0]["judged"], "3 of 4 lights judged; lamp not tested: no receiver in view sees it.");
+  EXPECT_EQ(data["scopes"][4]["left_out"], "not tested: no receiver in view sees it");
+  EXPECT_TRUE(data["scopes"][1]["left_out"].is_null());
   EXPECT_EQ(data["scopes"][0]["rows"][1]["rmse"]["value"], std::sqrt((0.05 * 0.05 + 0.09 * 0.09) / 2.0))
       << "without the scene that does not matter";
 }
