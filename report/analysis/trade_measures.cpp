@@ -44,12 +44,6 @@ Measured read_ratio(const records::CellRecord& cell, LightMotion light) {
   return {Estimate{ratio->median, ratio->ci95.low, ratio->ci95.high}, {}};
 }
 
-Estimate mean_of(const std::vector<Estimate>& estimates) {
-  double sum = 0.0;
-  for (const Estimate& each : estimates) sum += each.value;
-  return exact(sum / static_cast<double>(estimates.size()));
-}
-
 Estimate worst_of(const std::vector<Estimate>& estimates) {
   const auto less = [](const Estimate& a, const Estimate& b) { return a.value < b.value; };
   return exact(std::max_element(estimates.begin(), estimates.end(), less)->value);
@@ -83,21 +77,7 @@ Estimate root_mean_square(const std::vector<Estimate>& estimates) {
   return {rms, std::max(0.0, rms - reach), rms + reach, std::move(replicates)};
 }
 
-// The distances of the intervals' ends add up in quadrature, as logarithms of independent measurements do.
-Estimate geometric_mean(const std::vector<Estimate>& estimates) {
-  double sum = 0.0, below = 0.0, above = 0.0;
-  for (const Estimate& each : estimates) {
-    if (!(each.low > 0.0)) return mean_of(estimates);
-    const double middle = std::log(each.value);
-    sum += middle;
-    below += std::pow(middle - std::log(each.low), 2);
-    above += std::pow(std::log(each.high) - middle, 2);
-  }
-  const double count = static_cast<double>(estimates.size());
-  const double middle = sum / count;
-  return {std::exp(middle), std::exp(middle - std::sqrt(below) / count), std::exp(middle + std::sqrt(above) / count)};
-}
-
+constexpr const char* kMean = "mean over the scenes";
 constexpr const char* kRmse = "error.rmse";
 
 Measure make_measure(std::string_view path, const char* interval, const char* over_scenes,
@@ -114,7 +94,7 @@ Measure make_measure(std::string_view path, const char* interval, const char* ov
 }
 
 Measure make_time_measure(const char* id, const char* name, const char* meaning) {
-  return {id, name, meaning, "geometric mean over the scenes", geometric_mean, nullptr, true, false};
+  return {id, name, meaning, kMean, mean_over_scenes, nullptr, true, false};
 }
 
 Measure make_ratio_measure(const char* id, const char* name, const char* frame) {
@@ -124,8 +104,8 @@ Measure make_ratio_measure(const char* id, const char* name, const char* frame) 
                       "on a map of another size it is the ratio to another 'none', so that each size of map has fronts "
                       "of its own; interval: 95 % of the median",
                       frame),
-          "geometric mean over the scenes",
-          geometric_mean,
+          kMean,
+          mean_over_scenes,
           nullptr,
           false,
           false,
@@ -152,13 +132,25 @@ std::array<Measure, 2> list_ratio_measures() {
 
 }  // namespace
 
+Estimate mean_over_scenes(const std::vector<Estimate>& estimates) {
+  double sum = 0.0, below = 0.0, above = 0.0;
+  for (const Estimate& each : estimates) {
+    sum += each.value;
+    below += std::pow(each.value - each.low, 2);
+    above += std::pow(each.high - each.value, 2);
+  }
+  const double count = static_cast<double>(estimates.size());
+  const double mean = sum / count;
+  return {mean, mean - std::sqrt(below) / count, mean + std::sqrt(above) / count};
+}
+
 const std::array<Measure, kErrorMeasures>& list_error_measures() {
   static const char* const kRootMeanSquare = "root mean square over the scenes";
   static const std::array<Measure, kErrorMeasures> kMeasures = {
       make_measure(kRmse, "interval: 95 %, over the phases of the map's grid", kRootMeanSquare, root_mean_square),
       make_measure("error.kernel_rmse", "no interval", kRootMeanSquare, root_mean_square),
       make_measure("artefact.leak", "no interval", "the worst scene", worst_of),
-      make_measure("error.flip", "no interval", "mean over the scenes", mean_of)};
+      make_measure("error.flip", "no interval", kMean, mean_over_scenes)};
   return kMeasures;
 }
 
@@ -171,17 +163,17 @@ std::vector<std::string> list_gpus(const std::vector<const records::CellRecord*>
 }
 
 std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells) {
-  Measure bytes = make_measure("cost.map_bytes", "exact", "the largest of the scenes", worst_of);
+  Measure bytes = make_measure("cost.map_bytes", "exact", kMean, mean_over_scenes);
   bytes.id = "bytes";
   bytes.is_bytes = true;
   const auto frame = mixes_machines(cells) ? list_ratio_measures() : list_time_measures();
   std::vector<Measure> measures = {frame[kMovingCost], frame[kStaticCost],
-                                   make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
+                                   make_measure("cost.fetches", "no interval", kMean, mean_over_scenes), bytes};
   for (const std::string& gpu : list_gpus(point_to(cells))) {
     measures.push_back({"gpu_" + gpu, fmt::format("estimate on {}, us", gpu),
                         "microseconds of the prefilter and of a million receivers' lookups on that GPU, which was not "
                         "there: made of its compiler's facts; no interval",
-                        "mean over the scenes", mean_of, nullptr, false, false, gpu});
+                        kMean, mean_over_scenes, nullptr, false, false, gpu});
   }
   return measures;
 }

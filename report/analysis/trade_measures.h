@@ -30,6 +30,10 @@ struct Measure {
   bool is_ratio = false;  ///< to the time of `none` on a map and a picture of the same size
 };
 
+/// The arithmetic mean over scenes, each of which counts the same. They are measured independently, so that the
+/// distances to the ends of their intervals add up in quadrature. Requires at least one scene.
+Estimate mean_over_scenes(const std::vector<Estimate>& estimates);
+
 /// Lists the errors: rmse, kernel_rmse, leak, flip.
 const std::array<Measure, kErrorMeasures>& list_error_measures();
 

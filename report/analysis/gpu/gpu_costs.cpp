@@ -7,20 +7,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/analysis/limits.h"
+#include "report/analysis/advice.h"
 #include "report/records/format.h"
 
 namespace shadowbench::analysis {
 namespace {
 
-std::optional<double> mean_over(const Configuration& configuration, const LimitSpec& spec) {
-  double sum = 0.0;
-  for (const records::CellRecord* cell : configuration.cells) {
-    const auto value = spec.read(*cell, LightMotion::kMoving);
-    if (!value) return std::nullopt;
-    sum += *value;
-  }
-  return sum / static_cast<double>(configuration.cells.size());
+std::optional<double> find_mean(const Configuration& configuration, const CostKind& kind) {
+  const auto cost = measure_cost(configuration.cells, kind, LightMotion::kMoving);
+  return cost ? std::optional(cost->mean) : std::nullopt;
 }
 
 /// The costs that were estimated and measured.
@@ -102,8 +97,8 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
     GpuCost cost;
     cost.configuration = &configuration;
     cost.record = &records->at(gpu);
-    cost.estimate_us = mean_over(configuration, cost_spec({CostKind::kGpu, gpu}));
-    cost.measured_ms = mean_over(configuration, cost_spec(CostKind::kTime));
+    cost.estimate_us = find_mean(configuration, {CostKind::kGpu, gpu});
+    cost.measured_ms = find_mean(configuration, CostKind::kTime);
     for (const records::CellRecord* cell : configuration.cells) {
       if (!cost.estimate_us) break;
       const records::GpuEstimateRecord& estimate = *cell->gpu->at(gpu).estimate;
