@@ -313,7 +313,7 @@ std::pair<int, int> size_of(const Configuration& configuration) {
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
   const Cost &a = cheaper.cost, &b = dearer.cost;
   CostGap gap{b.mean - a.mean, a.mean > 0.0 ? (b.mean - a.mean) / a.mean : 0.0, b.mean <= a.mean, Basis::kExact};
-  if (!kind.is_of_frame()) return gap;
+  if (!kind.is_measured()) return gap;
   const bool alike = cheaper.configuration.surroundings == dearer.configuration.surroundings;
   if (kind == CostKind::kRatio && !alike) {
     gap.tied = true;

@@ -25,6 +25,9 @@ inline std::string format_kept(double value, double most) { return format_within
 /// Says behind a cost what it is paid for: " a frame, moving light"; empty where that is not time.
 std::string describe_frame(const AdviceRequest& request);
 
+/// Says of which frame its cost is, and what is left out; empty where the cost is of none.
+std::string describe_cost(const Advice& advice);
+
 /// What makes the advised one the advised one, to precede "of those that keep the limits": "cheapest". Requires
 /// one that keeps the demands.
 std::string describe_choice(const Advice& advice);

@@ -9,6 +9,7 @@
 
 #include "report/analysis/advice.h"
 #include "report/records/format.h"
+#include "report/records/gpu_frame.h"
 
 namespace shadowbench::analysis {
 namespace {
@@ -27,9 +28,9 @@ struct Pairs {
 Pairs list_pairs(const std::vector<GpuCost>& costs) {
   Pairs pairs;
   for (const GpuCost& cost : costs) {
-    if (!cost.estimate_us || !cost.measured_ms) continue;
+    if (!cost.estimate_ms || !cost.measured_ms) continue;
     pairs.costs.push_back(&cost);
-    pairs.estimated.push_back(*cost.estimate_us);
+    pairs.estimated.push_back(*cost.estimate_ms);
     pairs.measured.push_back(*cost.measured_ms);
   }
   return pairs;
@@ -76,8 +77,8 @@ std::vector<const GpuCost*> find_level_group(const std::vector<GpuCost>& costs) 
   for (const GpuCost& first : costs) {
     std::vector<const GpuCost*> group;
     for (const GpuCost& other : costs) {
-      const bool is_level = first.estimate_us && other.estimate_us && *other.estimate_us >= *first.estimate_us &&
-                            *other.estimate_us <= 1.01 * *first.estimate_us;
+      const bool is_level = first.estimate_ms && other.estimate_ms && *other.estimate_ms >= *first.estimate_ms &&
+                            *other.estimate_ms <= 1.01 * *first.estimate_ms;
       if (is_level && other.record->estimate->bound_by == first.record->estimate->bound_by) group.push_back(&other);
     }
     if (group.size() > largest.size()) largest = group;
@@ -97,18 +98,19 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
     GpuCost cost;
     cost.configuration = &configuration;
     cost.record = &records->at(gpu);
-    cost.estimate_us = find_mean(configuration, {CostKind::kGpu, gpu});
+    cost.estimate_ms = find_mean(configuration, {CostKind::kGpu, gpu});
     cost.measured_ms = find_mean(configuration, CostKind::kTime);
     for (const records::CellRecord* cell : configuration.cells) {
-      if (!cost.estimate_us) break;
+      if (!cost.estimate_ms) break;
       const records::GpuEstimateRecord& estimate = *cell->gpu->at(gpu).estimate;
       const auto count = static_cast<double>(configuration.cells.size());
       const GpuResources alone = {estimate.arithmetic_us, estimate.sampling_us, estimate.memory_us.value_or(0.0)};
       const auto slowest = static_cast<std::size_t>(std::ranges::max_element(alone) - alone.begin());
-      for (std::size_t i = 0; i < alone.size(); ++i) cost.alone_us[i] += alone[i] / count;
-      cost.slowest_us[slowest] += estimate.lookup_us / count;
-      cost.lookup_us += estimate.lookup_us / count;
-      cost.prefilter_us += estimate.prefilter_us / count;
+      const double lookup = records::frame_ms(estimate, false);
+      for (std::size_t i = 0; i < alone.size(); ++i) cost.alone_ms[i] += records::lookups_ms(alone[i]) / count;
+      cost.slowest_ms[slowest] += lookup / count;
+      cost.lookup_ms += lookup / count;
+      cost.prefilter_ms += (records::frame_ms(estimate, true) - lookup) / count;
     }
     costs.push_back(cost);
   }
@@ -137,8 +139,8 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
   if (const auto level = find_level_group(costs); !level.empty()) {
     std::vector<std::string> names;
     for (const GpuCost* cost : level) names.push_back(cost->configuration->name);
-    sentences.push_back(fmt::format("{}: {} cost the same, {} us: what bounds them all is {}.", gpu,
-                                    fmt::join(names, ", "), records::format_number(level.front()->estimate_us),
+    sentences.push_back(fmt::format("{}: {} cost the same, {} ms: what bounds them all is {}.", gpu,
+                                    fmt::join(names, ", "), records::format_number(level.front()->estimate_ms),
                                     level.front()->record->estimate->bound_by));
   }
   std::vector<std::string> looped, spilled;
@@ -160,17 +162,17 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
 
 records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
   records::TextTable table;
-  table.header = {"filter",   "estimate, us",     "measured here, ms", "lookup, us", "prefilter, us",
+  table.header = {"filter",   "estimate, ms",     "measured here, ms", "lookup, ms", "prefilter, ms",
                   "bound by", "own instructions", "own reads",         "registers",  "waves"};
   std::vector<GpuCost> sorted = costs;
-  std::ranges::stable_sort(sorted, {}, &GpuCost::estimate_us);
+  std::ranges::stable_sort(sorted, {}, &GpuCost::estimate_ms);
   for (const GpuCost& cost : sorted) {
     const records::ShaderFacts* lookup = find_facts(*cost.record, "lookup");
     const records::ShaderFacts* empty = find_facts(*cost.record, "empty");
-    if (!lookup || !empty || !cost.estimate_us) continue;
-    table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_us),
-                          records::format_number(cost.measured_ms), records::format_number(cost.lookup_us),
-                          records::format_number(cost.prefilter_us), cost.record->estimate->bound_by,
+    if (!lookup || !empty || !cost.estimate_ms) continue;
+    table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_ms),
+                          records::format_number(cost.measured_ms), records::format_number(cost.lookup_ms),
+                          records::format_number(cost.prefilter_ms), cost.record->estimate->bound_by,
                           fmt::format("{}", lookup->instructions - empty->instructions),
                           fmt::format("{}", lookup->reads() - empty->reads()),
                           fmt::format("{}", lookup->vector_registers), fmt::format("{}", lookup->waves_per_simd)});
