@@ -203,9 +203,10 @@ std::string describe_frame(const AdviceRequest& request) {
 
 std::string describe_cost(const Advice& advice) {
   const AdviceRequest& request = advice.request;
-  if (!request.cheapest.is_of_frame()) return "";
+  const auto* counted = cost_spec(request.cheapest).metric;
   return fmt::format("Cost: {}.",
-                     make_frame_measure(request.cheapest, request.light, list_judged_cells(advice)).meaning);
+                     counted ? std::string(counted->definition)
+                             : make_frame_measure(request.cheapest, request.light, list_judged_cells(advice)).meaning);
 }
 
 std::string describe_choice(const Advice& advice) {

@@ -386,7 +386,7 @@ const startAnswer = (holder) => {
   // Of what stood there without the script, the notes stay, folded.
   const own = [headline, controls, stated, table.parentNode, picture.figure, folded];
   const before = [...holder.children].filter((child) => !own.includes(child));
-  const notes = before.pop();
+  const notes = before.find(({ localName }) => localName === "ul");
   before.forEach((child) => child.remove());
   if (notes) folded.append(notes);
   window.addEventListener("hashchange", openLink);

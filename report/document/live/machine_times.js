@@ -82,7 +82,9 @@ const addScopeTimes = (times, { id, field, isStatic, title }, scope) => {
   const [{ id: own }] = run.costs.filter(({ gpu }) => !gpu); // those that were timed, estimates or not
   for (const [wide, { order, unjudged }] of Object.entries(scope.advice[own])) {
     const timed = order.map(({ index }) => ({ index, cost: costs[index] }));
-    const ranked = timed.filter(({ cost }) => cost).sort((a, b) => a.cost.value - b.cost.value);
+    const rmseOf = ({ index }) => scope.rows[index].rmse?.value ?? Infinity;
+    const compare = (a, b) => a.cost.value - b.cost.value || rmseOf(a) - rmseOf(b);
+    const ranked = timed.filter(({ cost }) => cost).sort(compare);
     const missing = timed.filter(({ cost }) => !cost).map(({ index }) => ({ index, gap: `no time by ${title}` }));
     advice[wide] = { order: listTies(ranked), unjudged: [...unjudged, ...missing] };
   }

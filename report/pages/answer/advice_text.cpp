@@ -183,7 +183,7 @@ std::string list_remarks(const records::RunRecord& run, const analysis::Advice& 
   std::string text = wrap(fmt::format("{} of {} configurations judged, on {}.", judged, judged + advice.unjudged.size(),
                                       fmt::join(places, ", ")));
   for (const std::string& reason : analysis::count_unjudged(advice)) text += wrap("Not judged, " + reason + ".");
-  if (const std::string cost = analysis::describe_cost(advice); !cost.empty()) text += wrap(cost);
+  text += wrap(analysis::describe_cost(advice));
   for (const std::string& note : analysis::list_advice_notes(advice, run.gl)) text += wrap(note);
   return text;
 }

@@ -125,9 +125,8 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
     mount.blocks.emplace_back(make_table(run, cells, advice));
     if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
   }
-  document::Sentences notes{{}, analysis::list_run_notes(advice, run.gl)};
-  notes.items.insert(notes.items.begin(), analysis::describe_cost(advice));
-  mount.blocks.emplace_back(std::move(notes));
+  mount.blocks.emplace_back(document::Paragraph{analysis::describe_cost(advice), true});
+  mount.blocks.emplace_back(document::Sentences{{}, analysis::list_run_notes(advice, run.gl)});
   section.blocks.emplace_back(std::move(mount));
   return section;
 }
