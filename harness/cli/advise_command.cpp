@@ -17,6 +17,7 @@
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/machines/machine_kinds.h"
+#include "report/analysis/trade_measures.h"
 #include "report/pages/answer/advice_text.h"
 #include "report/records/gpu_times.h"
 #include "report/records/json_io.h"
@@ -35,7 +36,7 @@ struct AdviseArguments {
   std::string size;
   std::string width_class;
   std::string light_motion = "moving";
-  std::string cheapest = "time";
+  std::string cheapest;
   std::string times;
   bool json = false;
 };
@@ -77,7 +78,7 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
   }
   for (const std::string& claim : arguments.claims) request.demands.push_back({nullptr, 0.0, claim});
   request.light = kLightMotions.at(arguments.light_motion);
-  request.cheapest = parse_cost(arguments.cheapest);
+  if (!arguments.cheapest.empty()) request.cheapest = parse_cost(arguments.cheapest);
   request.scenes = arguments.scenes;
   request.width_class = arguments.width_class;
   if (!arguments.size.empty()) request.size = parse_picture_size(arguments.size);
@@ -85,11 +86,25 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
   return request;
 }
 
+/// Unless another is asked for, the cost is the one that the run's page begins with, or the time of the GPU whose times
+/// are given. Milliseconds are limited as they are told: a frame's time or its estimate.
+void choose_cost(AdviceRequest& request, const AdviseArguments& arguments,
+                 const std::vector<records::CellRecord>& cells) {
+  const analysis::CostKind usual =
+      arguments.times.empty() ? analysis::choose_cost(cells) : analysis::CostKind(analysis::CostKind::kTime);
+  if (arguments.cheapest.empty()) request.cheapest = usual;
+  const analysis::CostKind& frame = request.cheapest.is_of_frame() ? request.cheapest : usual;
+  if (frame.kind != analysis::CostKind::kGpu) return;
+  for (analysis::Demand& demand : request.demands)
+    if (demand.spec == &analysis::cost_spec(analysis::CostKind::kTime)) demand.spec = &analysis::cost_spec(frame);
+}
+
 int advise(const AdviseArguments& arguments) {
-  const AdviceRequest request = make_request(arguments);
+  AdviceRequest request = make_request(arguments);
   records::Results results = records::read_results(find_results(arguments.run));
   if (!arguments.times.empty()) records::apply_gpu_times(results, records::read_gpu_times(arguments.times));
   if (auto withheld = analysis::withhold_mixed_times(results.cells)) results.cells = std::move(*withheld);
+  choose_cost(request, arguments, results.cells);
   const analysis::Advice advice = analysis::advise(results.cells, request);
   if (arguments.json) {
     const auto json = pages::make_advice_json(results.run, advice);
@@ -138,7 +153,8 @@ Command make_advise_command() {
       .one_of({"moving", "static"});
   command
       .add("--cheapest", &a->cheapest,
-           "the cost that is to be small: time, bytes, fetches, or gpu:NAME, the estimate for a GPU of the run")
+           "the cost that is to be small: time, bytes, fetches, or gpu:NAME, the estimate for a GPU of the run [time; "
+           "where no GPU drew, the first estimate]")
       .such_as({"time", "bytes", "fetches"});
   command
       .add("--times", &a->times,

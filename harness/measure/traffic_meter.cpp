@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "report/records/gpu_frame.h"
+
 namespace shadowbench::measure {
 namespace {
 
-constexpr int kFrameRows = 1080;
+constexpr int kFrameRows = records::kGpuFrameHeight;
 constexpr double kMostTexels = 1.5;  ///< of the map, under a pixel of half the rows: more, and lines are missed
 
 /// Every how many rows and columns of the frame are asked.

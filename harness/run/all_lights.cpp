@@ -10,6 +10,8 @@
 
 #include "harness/run/float_images.h"
 #include "harness/run/task_images.h"
+#include "report/analysis/advice_words.h"
+#include "report/analysis/trade_measures.h"
 #include "report/files/file_name.h"
 #include "report/images/grid.h"
 #include "report/images/picture_io.h"
@@ -73,17 +75,17 @@ images::Image add_up(const std::vector<Lit>& lights, const std::string& part) {
 
 /// What a frame costs whose lights all move; nothing where several kinds of machine measured the lights.
 std::string describe_frame(const std::vector<Lit>& lights, const std::string& label, const records::GlRecord& gl) {
-  double sum = 0.0;
-  std::optional<records::MachineKind> machine;
+  std::vector<records::CellRecord> cells;
   for (const Lit& lit : lights) {
     const auto cell = std::ranges::find(lit.cells, label, [](const auto& c) { return c.images.parts.value_or(""); });
-    if (cell == lit.cells.end() || !cell->time_ms.moving) return {};
-    if (&lit != &lights.front() && cell->machine != machine) return {};
-    machine = cell->machine;
-    sum += cell->time_ms.moving->median;
+    if (cell == lit.cells.end()) return {};
+    cells.push_back(*cell);
   }
-  return fmt::format("{} ms ({}) for the maps, prefilters and lookups of all {} lights", records::format_number(sum),
-                     gl.software ? "CPU" : "GPU", lights.size());
+  const analysis::CostKind kind = analysis::choose_cost(cells);
+  const auto cost = analysis::measure_cost(analysis::point_to(cells), kind, analysis::LightMotion::kMoving);
+  if (!cost || kind == analysis::CostKind::kRatio) return {};
+  return fmt::format("{} for all {} lights, each with a map of its own",
+                     analysis::format_cost(cost->mean * static_cast<double>(lights.size()), kind, gl), lights.size());
 }
 
 /// The factor that keeps all but the brightest hundredth of a picture in range.

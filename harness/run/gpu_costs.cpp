@@ -62,7 +62,7 @@ void GpuCosts::add_to(std::vector<measure::MeasuredCell>& cells) {
       if (!record.refused.empty())
         cell.record.absent["gpu." + gpu.name] = record.refused;
       else if (!record.estimate)
-        cell.record.absent["gpu." + gpu.name + ".estimate_us"] =
+        cell.record.absent["gpu." + gpu.name + ".frame_ms"] =
             "the filter has no scalar model, so that what its reads bring from memory is not known";
     }
   }

@@ -1,6 +1,7 @@
 #include "harness/run/task_images.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
@@ -9,7 +10,9 @@
 #include <utility>
 
 #include "harness/measure/stability_meter.h"
+#include "report/analysis/advice_words.h"
 #include "report/analysis/summary.h"
+#include "report/analysis/trade_measures.h"
 #include "report/files/file_name.h"
 #include "report/images/color_values.h"
 #include "report/images/grid.h"
@@ -20,22 +23,6 @@
 
 namespace shadowbench::run {
 namespace {
-
-std::string caption(const records::CellRecord& cell, const records::GlRecord& gl) {
-  if (cell.external)
-    return fmt::format("another renderer{} · RMSE {}", cell.external->engine ? ": " + *cell.external->engine : "",
-                       records::format_number(cell.error.rmse));
-  std::string text = records::describe_params(cell.params);
-  if (!cell.suspect_of.empty()) text += fmt::format("{}SUSPECT: see the report", text.empty() ? "" : " · ");
-  if (!cell.time_ms.lookup) return text;
-  if (!text.empty()) text += " · ";
-  text += fmt::format("lookup {} ms", records::format_number(cell.time_ms.lookup->median));
-  if (cell.time_ms.prefilter)
-    text += fmt::format(" + prefilter {} ms", records::format_number(cell.time_ms.prefilter->median));
-  text += gl.software ? " (CPU)" : " (GPU)";
-  if (cell.error.rmse) text += fmt::format(" · RMSE {}", records::format_number(*cell.error.rmse));
-  return text;
-}
 
 /// The truth comes first: what every filter would like to look like.
 std::vector<images::GridTile> make_truth_tiles(const measure::SceneTask& task, const measure::SceneTruth& truth) {
@@ -67,13 +54,17 @@ images::Grid make_grid(const options::RunOptions& options, const measure::SceneT
   images::Grid grid;
   grid.title =
       task.scene->title.empty() ? task.scene->name : fmt::format("{}: {}", task.scene->name, task.scene->title);
-  grid.subtitle =
-      records::describe_settings(measured.cells.front().record) + " · times: " + records::describe_clock(gl);
+  std::vector<records::CellRecord> cells;
+  for (const measure::MeasuredCell& cell : measured.cells) cells.push_back(cell.record);
+  const analysis::CostKind cost = analysis::choose_cost(cells);
+  grid.subtitle = fmt::format(
+      "{} · cost: {}", records::describe_settings(cells.front()),
+      analysis::make_frame_measure(cost, analysis::LightMotion::kMoving, analysis::point_to(cells)).meaning);
   const std::string coverage = records::describe_coverage(measured.cells.front().record.coverage);
   if (!coverage.empty()) grid.subtitle += " · " + coverage;
   grid.tiles = make_truth_tiles(task, truth);
   for (const measure::MeasuredCell& cell : measured.cells) {
-    grid.tiles.push_back({cell.label, caption(cell.record, gl), cell.picture, cell.visibility,
+    grid.tiles.push_back({cell.label, caption_cell(cell.record, cost, gl), cell.picture, cell.visibility,
                           measure::make_error_image(cell.visibility, truth), cell.record.message,
                           images::make_attribution_bar(cell.record)});
     grid.tiles.back().attribution_words = grid.tiles.back().attribution
@@ -172,6 +163,19 @@ images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images
     visibility.push_back(&cell.visibility);
   }
   return images::find_hardest_edge(visibility, reference, size);
+}
+
+std::string caption_cell(const records::CellRecord& cell, const analysis::CostKind& cost, const records::GlRecord& gl) {
+  if (cell.external)
+    return fmt::format("another renderer{} · RMSE {}", cell.external->engine ? ": " + *cell.external->engine : "",
+                       records::format_number(cell.error.rmse));
+  std::vector<std::string> parts;
+  if (!cell.params.empty()) parts.push_back(records::describe_params(cell.params));
+  if (!cell.suspect_of.empty()) parts.emplace_back("SUSPECT: see the report");
+  if (const auto value = analysis::cost_spec(cost).read(cell, analysis::LightMotion::kMoving))
+    parts.push_back(analysis::format_cost(*value, cost, gl));
+  if (cell.error.rmse) parts.push_back("RMSE " + records::format_number(*cell.error.rmse));
+  return fmt::format("{}", fmt::join(parts, " · "));
 }
 
 std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task) {

@@ -8,6 +8,7 @@
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"
 #include "harness/options/options.h"
+#include "report/analysis/limits.h"
 #include "report/images/image.h"
 #include "report/records/records.h"
 
@@ -15,6 +16,9 @@ namespace shadowbench::run {
 
 /// The stem of all files of a task: the scene, with view and map size where the run has several.
 std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task);
+
+/// What a grid says below a cell's name: its parameters, what it costs with a moving light, and its RMSE.
+std::string caption_cell(const records::CellRecord& cell, const analysis::CostKind& cost, const records::GlRecord& gl);
 
 /// The part of the picture, of this size, in which the filters disagree most about a shadow's edge.
 images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images::Size size);

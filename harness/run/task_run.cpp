@@ -106,7 +106,10 @@ class TaskRun {
     measured.depth_map = measure::read_linear_depth(light.map);
     if (!task_.scene->light.name.empty()) measured.ambient = draw_ambient();
     for (measure::MeasuredCell& cell : user_cells) measured.cells.push_back(std::move(cell));
-    for (measure::MeasuredCell& cell : measured.cells) cell.record.measured_s = 0.0;
+    for (measure::MeasuredCell& cell : measured.cells) {
+      cell.record.measured_s = 0.0;
+      cell.record.machine = records::kind_of(bench_.run.machine, bench_.run.gl);
+    }
     Requests all = built_in;
     all.insert(all.end(), of_users.begin(), of_users.end());
     if (!options_.part.is_worker()) {
@@ -247,7 +250,6 @@ class TaskRun {
   void write_cells(measure::SceneMeasurement& measured) {
     for (measure::MeasuredCell& cell : measured.cells) {
       cell.record.content = contents_.at(cell.record.key);
-      cell.record.machine = records::kind_of(bench_.run.machine, bench_.run.gl);
       records::write_cell(options_.out, cell.record);
     }
     listener_.finished(measured);

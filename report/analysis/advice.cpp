@@ -140,19 +140,6 @@ Verdict judge_claim(const Configuration& configuration, const std::string& claim
   return verdict;
 }
 
-// The mean of intervals about values of which `mean` is the mean: the places are measured independently, so that the
-// distances to the ends add up in quadrature.
-records::Interval combine(double mean, const std::vector<double>& values,
-                          const std::vector<records::Interval>& intervals) {
-  double below = 0.0, above = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    below += std::pow(values[i] - intervals[i].low, 2);
-    above += std::pow(intervals[i].high - values[i], 2);
-  }
-  const double count = static_cast<double>(values.size());
-  return {mean - std::sqrt(below) / count, mean + std::sqrt(above) / count};
-}
-
 const LimitSpec& rmse_spec() { return *std::ranges::find(limit_table(), kRmseField, &LimitSpec::field); }
 
 std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice, bool needs_rmse) {
@@ -347,21 +334,21 @@ Verdict judge_limit(const Configuration& configuration, const Demand& demand, Li
 
 std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, const CostKind& kind,
                                  LightMotion light) {
-  double sum = 0.0;
-  std::vector<double> values;
-  std::vector<records::Interval> quartiles, ci95;
+  std::vector<Estimate> quartiles, ci95;
   for (const records::CellRecord* cell : cells) {
     const auto value = cost_spec(kind).read(*cell, light);
     if (!value) return std::nullopt;
-    sum += *value;
-    values.push_back(*value);
     const auto time = kind == CostKind::kTime ? frame_time(*cell, light) : std::nullopt;
-    quartiles.push_back(time ? records::Interval{time->q1, time->q3} : records::Interval{*value, *value});
-    if (const auto interval = find_interval(*cell, kind, light)) ci95.push_back(*interval);
+    quartiles.push_back(time ? Estimate{*value, time->q1, time->q3} : Estimate{*value, *value, *value});
+    if (const auto interval = find_interval(*cell, kind, light))
+      ci95.push_back({*value, interval->low, interval->high});
   }
-  const double mean = sum / static_cast<double>(cells.size());
-  return Cost{mean, combine(mean, values, quartiles),
-              ci95.size() == values.size() ? std::optional(combine(mean, values, ci95)) : std::nullopt};
+  const Estimate mean = mean_over_scenes(quartiles);
+  Cost cost{mean.value, {mean.low, mean.high}, {}};
+  if (ci95.size() < cells.size()) return cost;
+  const Estimate interval = mean_over_scenes(ci95);
+  cost.ci95 = records::Interval{interval.low, interval.high};
+  return cost;
 }
 
 std::pair<int, int> size_of(const Configuration& configuration) {
@@ -372,7 +359,7 @@ std::pair<int, int> size_of(const Configuration& configuration) {
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
   const Cost &a = cheaper.cost, &b = dearer.cost;
   CostGap gap{b.mean - a.mean, a.mean > 0.0 ? (b.mean - a.mean) / a.mean : 0.0, b.mean <= a.mean, Basis::kExact};
-  if (!kind.is_of_frame()) return gap;
+  if (!kind.is_measured()) return gap;
   const bool alike = cheaper.configuration.surroundings == dearer.configuration.surroundings;
   if (kind == CostKind::kRatio && !alike) {
     gap.tied = true;

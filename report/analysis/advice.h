@@ -44,10 +44,10 @@ struct Verdict {
 Verdict judge_limit(const Configuration& configuration, const Demand& demand, LightMotion light,
                     const std::vector<Place>& places);
 
-/// A cost over all places, each counting the same. What is known of each place's value (its quartiles, its interval as
-/// frame_interval() gives it, or that of its ratio) adds up in quadrature, for the places are measured independently.
+/// A cost over all places: mean_over_scenes() with each place's quartiles, and with its interval as frame_interval()
+/// gives it, or that of its ratio.
 struct Cost {
-  double mean = 0.0;                      ///< arithmetic
+  double mean = 0.0;
   records::Interval quartiles;            ///< of all but times: the mean twice
   std::optional<records::Interval> ci95;  ///< of times and ratios alone; empty where a place has none
 };

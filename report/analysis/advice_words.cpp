@@ -13,6 +13,7 @@
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
+#include "report/records/gpu_frame.h"
 
 namespace shadowbench::analysis {
 namespace {
@@ -115,7 +116,7 @@ std::vector<const records::CellRecord*> list_judged_cells(const Advice& advice) 
 }
 
 bool uses_time(const AdviceRequest& request) {
-  return request.cheapest.is_of_frame() ||
+  return request.cheapest.is_measured() ||
          std::ranges::any_of(
              request.demands, [](const Demand& d) { return d.spec == &cost_spec(CostKind::kTime); });
 }
@@ -183,7 +184,7 @@ std::string format_cost(double value, const CostKind& cost, const records::GlRec
       return fmt::format("{} {}", records::format_number(value), value == 1.0 ? "fetch" : "fetches");
     case CostKind::kGpu: break;
   }
-  return fmt::format("{} us estimated on {}", records::format_number(value), cost.gpu);
+  return fmt::format("{} ms estimated for {}", records::format_number(value), cost.gpu);
 }
 
 std::string format_within(double value, double low, double high) {
@@ -199,7 +200,18 @@ std::string format_within(double value, double low, double high) {
 
 std::string describe_frame(const AdviceRequest& request) {
   if (!request.cheapest.is_of_frame()) return "";
+  if (request.cheapest.kind == CostKind::kGpu)
+    return fmt::format(" of a {}x{} frame, {} light", records::kGpuFrameWidth, records::kGpuFrameHeight,
+                       request.light == LightMotion::kMoving ? "moving" : "static");
   return request.light == LightMotion::kMoving ? " a frame, moving light" : " a frame, static light";
+}
+
+std::string describe_cost(const Advice& advice) {
+  const AdviceRequest& request = advice.request;
+  const auto* counted = cost_spec(request.cheapest).metric;
+  return fmt::format("Cost: {}.",
+                     counted ? std::string(counted->definition)
+                             : make_frame_measure(request.cheapest, request.light, list_judged_cells(advice)).meaning);
 }
 
 std::string describe_choice(const Advice& advice) {

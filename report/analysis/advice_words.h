@@ -26,6 +26,9 @@ inline std::string format_kept(double value, double most) { return format_within
 /// Says behind a cost what it is paid for: " a frame, moving light"; empty where that is not time.
 std::string describe_frame(const AdviceRequest& request);
 
+/// Says what its cost is: of a frame, of which one, and what is left out.
+std::string describe_cost(const Advice& advice);
+
 /// What makes the advised one the advised one, to precede "of those that keep the limits": "cheapest". Requires
 /// one that keeps the demands.
 std::string describe_choice(const Advice& advice);

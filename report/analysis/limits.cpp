@@ -6,8 +6,12 @@
 #include <map>
 #include <vector>
 
+#include "report/records/gpu_frame.h"
+
 namespace shadowbench::analysis {
 namespace {
+
+constexpr const char* kMaxMs = "--max-ms";
 
 const LimitSpec& find_spec(const std::string& field) {
   return *std::ranges::find(limit_table(), field, &LimitSpec::field);
@@ -20,11 +24,11 @@ void add(records::Quartiles& sum, const records::Quartiles& pass) {
   sum.n = std::min(sum.n, pass.n);
 }
 
-std::optional<double> read_estimate(const records::CellRecord& cell, const std::string& gpu) {
+std::optional<double> read_estimate(const records::CellRecord& cell, const std::string& gpu, LightMotion light) {
   if (!cell.gpu) return std::nullopt;
   const auto found = cell.gpu->find(gpu);
   if (found == cell.gpu->end() || !found->second.estimate) return std::nullopt;
-  return found->second.estimate->total_us;
+  return records::frame_ms(*found->second.estimate, light == LightMotion::kMoving);
 }
 
 const std::optional<records::OwnTime>& own_time(const records::CellRecord& cell, LightMotion light) {
@@ -35,7 +39,7 @@ const std::optional<records::OwnTime>& own_time(const records::CellRecord& cell,
 
 std::optional<double> LimitSpec::read(const records::CellRecord& cell, LightMotion light) const {
   if (metric) return metric->read(cell);
-  if (!gpu.empty()) return read_estimate(cell, gpu);
+  if (!gpu.empty()) return read_estimate(cell, gpu, light);
   if (is_ratio) {
     const auto& ratio = frame_ratio(cell, light);
     return ratio ? std::optional(ratio->median) : std::nullopt;
@@ -53,7 +57,7 @@ std::span<const LimitSpec> limit_table() {
                           fmt::format("{}: {}, {} (see 'list metrics')", metric.title, metric.unit,
                                       metrics::describe_range(metric.range)),
                           &metric});
-    limits.push_back({"--max-ms", "time_ms", "median time of a frame, ms; see --light", nullptr});
+    limits.push_back({kMaxMs, "time_ms", "a frame, ms: its estimate, or its median time; see --cheapest", nullptr});
     return limits;
   }();
   return table;
@@ -70,8 +74,8 @@ const LimitSpec& cost_spec(const CostKind& cost) {
   }
   static std::map<std::string, LimitSpec> specs;
   return specs
-      .try_emplace(cost.gpu, LimitSpec{"", fmt::format("gpu.{}.estimate_us", cost.gpu),
-                                       "estimated microseconds of a million receivers", nullptr, cost.gpu})
+      .try_emplace(cost.gpu, LimitSpec{kMaxMs, fmt::format("gpu.{}.frame_ms", cost.gpu),
+                                       "estimated milliseconds of a frame", nullptr, cost.gpu})
       .first->second;
 }
 

@@ -15,8 +15,8 @@ inline constexpr const char* kRatioUnit = "× none";
 /// Which passes a frame pays for: map, prefilter and the filter's own lookup (moving), or that lookup alone (static).
 enum class LightMotion { kMoving, kStatic };
 
-/// What is to be cheap: the time of a frame, its ratio to that of `none`, the maps' bytes, fetches, or the estimate for
-/// a GPU.
+/// What is to be cheap: the time of a frame, its ratio to that of `none`, the maps' bytes, fetches, or the estimate of
+/// a frame on a GPU.
 struct CostKind {
   enum Kind { kTime, kRatio, kBytes, kFetches, kGpu };
 
@@ -29,7 +29,10 @@ struct CostKind {
   bool operator==(const CostKind&) const = default;
 
   /// Whether it says how long a frame takes, in milliseconds or beside `none`.
-  bool is_of_frame() const { return kind == kTime || kind == kRatio; }
+  bool is_of_frame() const { return is_measured() || kind == kGpu; }
+
+  /// Whether it was timed, and so has an interval.
+  bool is_measured() const { return kind == kTime || kind == kRatio; }
 };
 
 /// One number of a cell that may be limited; less is better.
@@ -47,7 +50,7 @@ struct LimitSpec {
 /// Lists everything that may be limited: the metrics of the table that have an option, and the time of a frame.
 std::span<const LimitSpec> limit_table();
 
-/// Returns the entry of the table that a cost is read by.
+/// What a cost is read by, and limited: of a frame, by --max-ms, where it is milliseconds.
 const LimitSpec& cost_spec(const CostKind& cost);
 
 /// Returns what a filter costs in one frame, without what every lookup pays. For cells of runs that did not time empty

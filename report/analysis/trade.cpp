@@ -166,7 +166,7 @@ void label_series(std::vector<WidthSeries>& all) {
 // Who may be compared with whom: kernels of one class of width, and by a ratio to `none` on maps of one size alone.
 std::optional<std::size_t> find_group(const TradeConfiguration& own, const Measure& cost,
                                       const std::set<int>& map_sizes) {
-  if (!own.width_class || !cost.is_ratio) return own.width_class;
+  if (!own.width_class || !cost.is(CostKind::kRatio)) return own.width_class;
   const auto map = std::distance(map_sizes.begin(), map_sizes.find(own.map_size));
   return *own.width_class + static_cast<std::size_t>(map) * filters::width_classes().size();
 }

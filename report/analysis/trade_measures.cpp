@@ -14,6 +14,7 @@
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
+#include "report/records/gpu_frame.h"
 
 namespace shadowbench::analysis {
 namespace {
@@ -30,24 +31,20 @@ Measured read_metric(const records::CellRecord& cell, const metrics::Metric& met
   return value && std::isfinite(*value) ? Measured{exact(*value), {}} : miss(cell, metric.path);
 }
 
-Measured read_time(const records::CellRecord& cell, LightMotion light) {
-  const auto time = frame_time(cell, light);
-  if (!time) return miss(cell, light == LightMotion::kMoving ? "time_ms.moving" : "time_ms.static");
-  const auto interval = frame_interval(cell, light);
-  return {interval ? Estimate{time->median, interval->low, interval->high} : Estimate{time->median, time->q1, time->q3},
-          {}};
-}
-
-Measured read_ratio(const records::CellRecord& cell, LightMotion light) {
-  const auto& ratio = frame_ratio(cell, light);
-  if (!ratio) return miss(cell, light == LightMotion::kMoving ? "ratio_to_none.moving" : "ratio_to_none.static");
-  return {Estimate{ratio->median, ratio->ci95.low, ratio->ci95.high}, {}};
-}
-
-Estimate mean_of(const std::vector<Estimate>& estimates) {
-  double sum = 0.0;
-  for (const Estimate& each : estimates) sum += each.value;
-  return exact(sum / static_cast<double>(estimates.size()));
+Measured read_frame(const records::CellRecord& cell, const Measure& cost) {
+  const auto value = cost_spec(*cost.cost).read(cell, cost.light);
+  if (!value) return miss(cell, cost.field());
+  Estimate estimate = exact(*value);
+  const auto set = [&](double low, double high) { estimate = {*value, low, high}; };
+  if (cost.is(CostKind::kRatio)) {
+    const records::Interval& interval = frame_ratio(cell, cost.light)->ci95;
+    set(interval.low, interval.high);
+  } else if (cost.is(CostKind::kTime)) {
+    const auto time = frame_time(cell, cost.light);
+    const auto interval = frame_interval(cell, cost.light);
+    interval ? set(interval->low, interval->high) : set(time->q1, time->q3);
+  }
+  return {estimate, {}};
 }
 
 Estimate worst_of(const std::vector<Estimate>& estimates) {
@@ -83,21 +80,7 @@ Estimate root_mean_square(const std::vector<Estimate>& estimates) {
   return {rms, std::max(0.0, rms - reach), rms + reach, std::move(replicates)};
 }
 
-// The distances of the intervals' ends add up in quadrature, as logarithms of independent measurements do.
-Estimate geometric_mean(const std::vector<Estimate>& estimates) {
-  double sum = 0.0, below = 0.0, above = 0.0;
-  for (const Estimate& each : estimates) {
-    if (!(each.low > 0.0)) return mean_of(estimates);
-    const double middle = std::log(each.value);
-    sum += middle;
-    below += std::pow(middle - std::log(each.low), 2);
-    above += std::pow(std::log(each.high) - middle, 2);
-  }
-  const double count = static_cast<double>(estimates.size());
-  const double middle = sum / count;
-  return {std::exp(middle), std::exp(middle - std::sqrt(below) / count), std::exp(middle + std::sqrt(above) / count)};
-}
-
+constexpr const char* kMean = "mean over the scenes";
 constexpr const char* kRmse = "error.rmse";
 
 Measure make_measure(std::string_view path, const char* interval, const char* over_scenes,
@@ -108,49 +91,43 @@ Measure make_measure(std::string_view path, const char* interval, const char* ov
           fmt::format("{}; {}", metric.definition, interval),
           over_scenes,
           combine,
-          &metric,
-          false,
-          false};
+          &metric};
 }
 
-Measure make_time_measure(const char* id, const char* name, const char* meaning) {
-  return {id, name, meaning, "geometric mean over the scenes", geometric_mean, nullptr, true, false};
+Measure make_count_measure(std::string_view path, const char* interval, CostKind::Kind kind) {
+  Measure measure = make_measure(path, interval, kMean, mean_over_scenes);
+  measure.cost = kind;
+  return measure;
 }
 
-Measure make_ratio_measure(const char* id, const char* name, const char* frame) {
-  return {id,
-          name,
-          fmt::format("time of {} over that of 'none' in the same rounds, and so on the same machine, map and picture; "
-                      "on a map of another size it is the ratio to another 'none', so that each size of map has fronts "
-                      "of its own; interval: 95 % of the median",
-                      frame),
-          "geometric mean over the scenes",
-          geometric_mean,
-          nullptr,
-          false,
-          false,
-          {},
-          true};
+// "480x270", of cells of one size; else in words.
+std::string describe_picture(const std::vector<const records::CellRecord*>& cells) {
+  std::set<std::pair<int, int>> sizes;
+  for (const records::CellRecord* cell : cells) sizes.insert({cell->width, cell->height});
+  return sizes.size() == 1 ? fmt::format("of a {}x{} frame", sizes.begin()->first, sizes.begin()->second)
+                           : "of a frame, of each picture's size,";
 }
 
-// What a frame costs, the light moving and static, in milliseconds.
-std::array<Measure, 2> list_time_measures() {
-  return {make_time_measure("moving", "time of map, prefilter and filter, moving light",
-                            "what the filter costs while light or casters move: map, prefilter and lookup, less a "
-                            "lookup that reads nothing, per round; interval: 95 % of the median"),
-          make_time_measure("static", "time of the filter alone, static light",
-                            "what the filter costs while they stand still: its lookup, less a lookup that reads "
-                            "nothing, per round; interval: 95 % of the median")};
-}
+const char* name_light(LightMotion light) { return light == LightMotion::kMoving ? "moving" : "static"; }
 
-std::array<Measure, 2> list_ratio_measures() {
-  return {make_ratio_measure("moving_ratio", "ratio to 'none' on the same map, moving light",
-                             "a whole frame whose light or casters move (map, prefilter and lookup)"),
-          make_ratio_measure("static_ratio", "ratio to 'none' on the same map, static light",
-                             "a whole frame whose light and casters stand still (the lookup alone)")};
+bool has_estimate(const std::vector<records::CellRecord>& cells, const CostKind& gpu) {
+  return std::ranges::any_of(
+      cells, [&](const auto& cell) { return cost_spec(gpu).read(cell, LightMotion::kMoving).has_value(); });
 }
 
 }  // namespace
+
+Estimate mean_over_scenes(const std::vector<Estimate>& estimates) {
+  double sum = 0.0, below = 0.0, above = 0.0;
+  for (const Estimate& each : estimates) {
+    sum += each.value;
+    below += std::pow(each.value - each.low, 2);
+    above += std::pow(each.high - each.value, 2);
+  }
+  const double count = static_cast<double>(estimates.size());
+  const double mean = sum / count;
+  return {mean, mean - std::sqrt(below) / count, mean + std::sqrt(above) / count};
+}
 
 const std::array<Measure, kErrorMeasures>& list_error_measures() {
   static const char* const kRootMeanSquare = "root mean square over the scenes";
@@ -158,7 +135,7 @@ const std::array<Measure, kErrorMeasures>& list_error_measures() {
       make_measure(kRmse, "interval: 95 %, over the phases of the map's grid", kRootMeanSquare, root_mean_square),
       make_measure("error.kernel_rmse", "no interval", kRootMeanSquare, root_mean_square),
       make_measure("artefact.leak", "no interval", "the worst scene", worst_of),
-      make_measure("error.flip", "no interval", "mean over the scenes", mean_of)};
+      make_measure("error.flip", "no interval", kMean, mean_over_scenes)};
   return kMeasures;
 }
 
@@ -170,28 +147,81 @@ std::vector<std::string> list_gpus(const std::vector<const records::CellRecord*>
   return {gpus.begin(), gpus.end()};
 }
 
-std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells) {
-  Measure bytes = make_measure("cost.map_bytes", "exact", "the largest of the scenes", worst_of);
-  bytes.id = "bytes";
-  bytes.is_bytes = true;
-  const auto frame = mixes_machines(cells) ? list_ratio_measures() : list_time_measures();
-  std::vector<Measure> measures = {frame[kMovingCost], frame[kStaticCost],
-                                   make_measure("cost.fetches", "no interval", "mean over the scenes", mean_of), bytes};
-  for (const std::string& gpu : list_gpus(point_to(cells))) {
-    measures.push_back({"gpu_" + gpu, fmt::format("estimate on {}, us", gpu),
-                        "microseconds of the prefilter and of a million receivers' lookups on that GPU, which was not "
-                        "there: made of its compiler's facts; no interval",
-                        "mean over the scenes", mean_of, nullptr, false, false, gpu});
+CostKind choose_cost(const std::vector<records::CellRecord>& cells) {
+  const auto is_of_cpu = [](const auto& cell) { return cell.external || (cell.machine && cell.machine->software); };
+  if (std::ranges::all_of(cells, is_of_cpu))
+    for (const std::string& gpu : list_gpus(point_to(cells)))
+      if (const CostKind cost(CostKind::kGpu, gpu); has_estimate(cells, cost)) return cost;
+  return frame_cost_kind(cells);
+}
+
+Measure make_frame_measure(const CostKind& cost, LightMotion light,
+                           const std::vector<const records::CellRecord*>& cells) {
+  const bool is_moving = light == LightMotion::kMoving;
+  Measure made{name_light(light), {}, {}, kMean, mean_over_scenes, nullptr, cost, light};
+  if (cost.kind == CostKind::kGpu) {
+    made.id = fmt::format("gpu.{}.{}", cost.gpu, made.id);
+    made.name = fmt::format("estimate for {}, {} light", cost.gpu, name_light(light));
+    made.meaning = fmt::format(
+        "ms of a {}x{} frame with one map, estimated for {}, {} light: {}; left out: {}what every lookup pays. "
+        "Published times were missed by a factor of at most {}",
+        records::kGpuFrameWidth, records::kGpuFrameHeight, cost.gpu, name_light(light),
+        is_moving ? "prefilter and lookups" : "lookups", is_moving ? "drawing the map, and " : "",
+        records::kEstimateFactor);
+  } else if (cost.kind == CostKind::kRatio) {
+    made.id += "_ratio";
+    made.name = fmt::format("ratio to 'none' on the same map, {} light", name_light(light));
+    made.meaning = fmt::format(
+        "time {} with one map, {} light ({}), over that of 'none' in the same rounds, and so on the same machine, map "
+        "and picture; on a map of another size it is the ratio to another 'none', so that each size of map has fronts "
+        "of its own; interval: 95 % of the median",
+        describe_picture(cells), name_light(light), is_moving ? "map, prefilter and lookups" : "lookups");
+  } else {
+    made.name =
+        is_moving ? "time of map, prefilter and filter, moving light" : "time of the filter alone, static light";
+    made.meaning = fmt::format(
+        "ms {} with one map, measured, {} light: {}; left out: what every lookup pays, which one that reads nothing "
+        "tells in each round; interval: 95 % of the median",
+        describe_picture(cells), name_light(light), is_moving ? "map, prefilter and lookups" : "lookups");
   }
+  return made;
+}
+
+std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells) {
+  const std::vector<const records::CellRecord*> all = point_to(cells);
+  std::vector<CostKind> costs = {choose_cost(cells)};
+  const auto add = [&](const CostKind& cost) {
+    if (cost != costs.front()) costs.push_back(cost);
+  };
+  add(frame_cost_kind(cells));
+  for (const std::string& gpu : list_gpus(all)) add({CostKind::kGpu, gpu});
+  std::vector<Measure> measures;
+  for (const CostKind& cost : costs)
+    for (const LightMotion light : {LightMotion::kMoving, LightMotion::kStatic})
+      measures.push_back(make_frame_measure(cost, light, all));
+  measures.push_back(make_count_measure("cost.fetches", "no interval", CostKind::kFetches));
+  measures.push_back(make_count_measure("cost.map_bytes", "exact", CostKind::kBytes));
+  measures.back().id = "bytes";
   return measures;
 }
 
+std::string Measure::field() const {
+  return metric ? std::string(metric->path) : fmt::format("{}.{}", cost_spec(*cost).field, name_light(light));
+}
+
+std::string unit_of(const Measure& measure, const records::GlRecord& gl) {
+  if (measure.is(CostKind::kTime)) return records::time_unit(gl);
+  return measure.is(CostKind::kRatio) ? kRatioUnit : measure.is(CostKind::kGpu) ? "ms" : "";
+}
+
 std::string name_axis(const Measure& measure, const records::GlRecord& gl) {
-  return measure.is_time ? fmt::format("{}, ms: {}", measure.name, records::describe_clock(gl)) : measure.name;
+  if (measure.is(CostKind::kTime)) return fmt::format("{}, ms: {}", measure.name, records::describe_clock(gl));
+  if (!measure.is(CostKind::kGpu)) return measure.name;
+  return fmt::format("{}, ms of a {}x{} frame", measure.name, records::kGpuFrameWidth, records::kGpuFrameHeight);
 }
 
 std::string format_value(const Measure& measure, double value) {
-  return measure.is_bytes ? records::format_bytes(value) : records::format_number(value);
+  return measure.is(CostKind::kBytes) ? records::format_bytes(value) : records::format_number(value);
 }
 
 std::string format_estimate(const Measure& measure, const Estimate& estimate) {
@@ -208,14 +238,7 @@ Measured read_error(const records::CellRecord& cell, const Measure& measure) {
 }
 
 Measured read_cost(const records::CellRecord& cell, const Measure& cost) {
-  if (cost.metric) return read_metric(cell, *cost.metric);
-  if (!cost.gpu.empty()) {
-    const LimitSpec& spec = cost_spec({CostKind::kGpu, cost.gpu});
-    const auto value = spec.read(cell, LightMotion::kMoving);
-    return value ? Measured{exact(*value), {}} : miss(cell, spec.field);
-  }
-  const LightMotion light = cost.id.starts_with("moving") ? LightMotion::kMoving : LightMotion::kStatic;
-  return cost.is_ratio ? read_ratio(cell, light) : read_time(cell, light);
+  return cost.metric ? read_metric(cell, *cost.metric) : read_frame(cell, cost);
 }
 
 bool is_reference(const records::CellRecord& cell) {

@@ -12,9 +12,10 @@ const startAnswer = (holder) => {
     measure.option === "--max-ms"
       ? { ...measure, field: kTime, title: "time of a frame" }
       : { ...measure, field: measure.id };
-  const limits = run.measures.filter(({ id, option }) => option && id !== `${kTime}.static`).map(nameLimit);
+  const isRatio = () => run.ratios && !costChoice().gpu; // to 'none'
+  const limits = run.measures.filter(({ option }) => option).map(nameLimit);
   const limitOf = (field) => limits.find((limit) => limit.field === field);
-  const canLimit = (field) => limitOf(field) && !(field === kTime && costChoice().isEstimate);
+  const canLimit = (field) => limitOf(field) && !(field === kTime && isRatio());
   const titleOf = (field) => limitOf(field)?.title ?? field;
   const fieldOf = (field) => (field === kTime ? costChoice().field : field);
   const [all] = run.scopes;
@@ -24,9 +25,7 @@ const startAnswer = (holder) => {
   const costOf = (index, scope = all) => scope.rows[index][costChoice().field];
   // Of mixed machines, costs are ratios to `none`, which under other settings is another one.
   const areComparable = (a, b) =>
-    !run.ratios ||
-    costChoice().isEstimate ||
-    run.configurations[a.index].surroundings === run.configurations[b.index].surroundings;
+    !isRatio() || run.configurations[a.index].surroundings === run.configurations[b.index].surroundings;
   // Whether the cost of one cannot be told from that of another, which ranks behind it.
   const areTied = ({ tied }, { rank }) => tied.some(([from, end]) => from <= rank && rank < end);
   const limitsWhatIsSeen = () => Object.keys(state.limits).some((field) => limitOf(field).group !== "cost");
@@ -58,7 +57,8 @@ const startAnswer = (holder) => {
   };
 
   const labelOf = (index) => run.configurations[index].label;
-  const say = (value, field) => format(value, limitOf(field).unit);
+  const unitOf = (field) => (field === kTime ? costChoice().unit : limitOf(field).unit);
+  const say = (value, field) => format(value, unitOf(field));
   const sayWorst = (index, field) =>
     `${say(worstOf(index, field).value, field)} on ${places[worstOf(index, field).place]}`;
   const costText = (index, scope) => `${format(costOf(index, scope))} ${costChoice().unit}`;
@@ -146,6 +146,7 @@ const startAnswer = (holder) => {
 
   const headline = element(holder, "p", { className: "choice", "aria-live": "polite" });
   const controls = element(holder, "form", { className: "limits", "aria-label": "Limits", onsubmit: () => false });
+  const stated = element(holder, "p", { className: "note" }); // what the chosen cost is of, and leaves out
   const table = element(element(holder, "div", { className: "scroll picks" }), "table");
   const picture = startPicture(holder);
   const folded = element(holder, "details", { className: "reasons" });
@@ -189,7 +190,7 @@ const startAnswer = (holder) => {
     const configuration = run.configurations[best.index];
     const smallest = keeping.every((other) => areComparable(best, other)) ? "" : ", on the smallest picture and map,";
     const cheapest = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
-    const lead = run.ratios && !costChoice().isEstimate ? `it has the lowest ratio to 'none'${smallest}` : cheapest;
+    const lead = isRatio() ? `it has the lowest ratio to 'none'${smallest}` : cheapest;
     const bounds = describeBounds(best.index);
     const limited = Object.keys(state.limits).length > 0 || state.soft;
     const judged = limited ? "that keep the limits" : gained ? "on the Pareto front" : "that can be judged";
@@ -305,6 +306,7 @@ const startAnswer = (holder) => {
   };
   const show = () => {
     headline.textContent = all.judged;
+    stated.textContent = `Cost: ${costChoice().text}.`;
     reasons.replaceChildren();
     const judged = judge();
     showTable(judged);
@@ -329,7 +331,8 @@ const startAnswer = (holder) => {
     const every = Math.ceil(steps.length / kSteps);
     return steps.filter((step, i) => i % every === 0 || step === state.limits[field]);
   };
-  const addSlider = ({ field, title, text, unit }) => {
+  const addSlider = ({ field, title, text }) => {
+    const unit = unitOf(field);
     const steps = listSteps(field);
     if (steps.length < 2 && !(field in state.limits)) return;
     const label = element(sliders, "label", { title: text });
@@ -369,7 +372,7 @@ const startAnswer = (holder) => {
     shadowbench.cost = cost.value = value;
     delete state.limits[kTime];
     choose({});
-    shadowbench.drawTable?.();
+    showCost();
   };
   const cost = addSelect(controls, "Cost", [], { name: "cost" }, chooseCost);
   // Costs that came after the page was opened.
@@ -377,7 +380,7 @@ const startAnswer = (holder) => {
     fillCosts(cost);
     showSliders();
     show();
-    shadowbench.drawTable?.();
+    showCost();
   };
   const classes = [["", "of any width"], ...run.classes.map((name) => [name, name])];
   const wide = addSelect(controls, "Kernel", classes, { name: "class" }, (value) => choose({ wide: value }));
@@ -403,15 +406,15 @@ const startAnswer = (holder) => {
       state.limits = Object.fromEntries(known.map(([field, most]) => [field, Number(most)]));
       showSliders();
       show();
-      shadowbench.drawTable?.();
+      showCost();
     }
     openShown();
   };
 
   // Of what stood there without the script, the notes stay, folded.
-  const own = [headline, controls, table.parentNode, picture.figure, folded];
+  const own = [headline, controls, stated, table.parentNode, picture.figure, folded];
   const before = [...holder.children].filter((child) => !own.includes(child));
-  const notes = before.pop();
+  const notes = before.find(({ localName }) => localName === "ul");
   before.forEach((child) => child.remove());
   if (notes) folded.append(notes);
   window.addEventListener("hashchange", openLink);

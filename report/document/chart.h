@@ -86,6 +86,7 @@ struct ChartChoice {
   struct Selector {
     std::string label;
     std::vector<std::string> options;
+    std::vector<std::string> costs = {};  ///< ids of the options: the one that the page's reader chose is taken
   };
   std::string id;
   std::vector<Selector> selectors;

@@ -109,7 +109,17 @@ const start = ({ id, charts, selectors }) => {
   const width = groups.size > 1 ? addChoice("width", classes) : null;
   addButton(controls, "Save as SVG", () => saveSvg(chart, hidden));
   addButton(controls, "Save as PNG", () => savePng(chart, hidden));
-  choose();
+  // The cost that the page's reader chose, where there is a chart of it.
+  const follow = () => {
+    selectors.forEach(({ costs }, i) => {
+      const at = costs.indexOf(shadowbench.cost);
+      if (at >= 0) selects[i].value = at;
+    });
+    choose();
+  };
+  follow();
   new ResizeObserver(() => holder.clientWidth !== drawn && draw()).observe(holder);
+  return follow;
 };
-page.charts.forEach(start);
+const followers = page.charts.map(start);
+shadowbench.drawCharts = () => followers.forEach((follow) => follow());

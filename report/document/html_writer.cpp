@@ -94,7 +94,7 @@ class ChartPacker {
   void add(const ChartChoice& choice) {
     json selectors = json::array();
     for (const ChartChoice::Selector& each : choice.selectors)
-      selectors.push_back({{"label", each.label}, {"options", each.options}});
+      selectors.push_back({{"label", each.label}, {"options", each.options}, {"costs", each.costs}});
     charts_ += charts_.empty() ? R"({"charts":[)" : R"(,{"charts":[)";
     for (const Chart& each : choice.charts) {
       if (&each != &choice.charts.front()) charts_ += ',';

@@ -4,8 +4,12 @@ const run = JSON.parse(block.textContent);
 const kTruth = -1;
 const kOfTruth = { visibility: "area", uncertainty: "standard_error" };
 const kOtherNames = { uncertainty: "rounding" };
-shadowbench.cost = run.cost; // which of the costs the answer and the table have
+shadowbench.cost = run.cost; // which of the costs the answer, the table and the charts have
 const costChoice = () => run.costs.find(({ id }) => id === shadowbench.cost);
+const showCost = () => {
+  shadowbench.drawTable?.();
+  shadowbench.drawCharts?.();
+};
 
 const cells = new Map(run.cells.map((cell) => [`${cell.configuration} ${cell.place}`, cell]));
 const cellAt = (who, place) => cells.get(`${who} ${place}`);

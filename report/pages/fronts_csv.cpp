@@ -89,9 +89,9 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"height", "picture, pixels"},
           {"error", "which error: rmse, kernel_rmse, leak, flip"},
           {"cost",
-           "which cost: moving and static in ms of the run's clock, or moving_ratio and static_ratio to 'none' where "
-           "several "
-           "kinds of machine measured the run, fetches, bytes, gpu_NAME in us"},
+           "which cost, the one that the page begins with first: of a frame with one map, moving and static in ms of "
+           "the run's clock and picture, or moving_ratio and static_ratio to 'none' where several kinds of machine "
+           "measured the run, gpu.NAME.moving and gpu.NAME.static in ms of 1920x1080; fetches, bytes"},
           {"cell", "the cell's key; of all scenes: the keys of its cells, joined by +"},
           {"filter", "the filter's id"},
           {"params", "the filter's parameters as JSON"},
@@ -125,8 +125,9 @@ void write_fronts_csv(const std::vector<records::CellRecord>& cells, const std::
     records::apply_gpu_times(timed, times);
     for (const analysis::TradeScope& scope : analysis::make_trade_scopes(timed.cells))
       for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error)
-        for (const std::size_t cost : {analysis::kMovingCost, analysis::kStaticCost})
-          write(make_rows(timed.cells, scope, error, cost, times.renderer));
+        for (std::size_t cost = 0; cost < scope.costs.size(); ++cost)
+          if (scope.costs[cost].is(analysis::CostKind::kTime))
+            write(make_rows(timed.cells, scope, error, cost, times.renderer));
   }
 }
 

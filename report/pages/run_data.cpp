@@ -47,69 +47,43 @@ json make_measure(const MeasureWords& words) {
           {"better", kBetter[static_cast<std::size_t>(words.direction)]}};
 }
 
-/// The time of a frame, light moving and static; no limit is set on a ratio.
-json list_frame_measures(const records::RunRecord& run, const analysis::CostKind& frame) {
-  const bool is_ratio = frame == analysis::CostKind::kRatio;
-  const std::string unit = is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl);
-  const std::string clock = "; " + records::describe_clock(run.gl);
-  const auto make = [&](const char* id, const std::string& title, const std::string& passes, const char* frames) {
-    const std::string ratio = "time of " + passes +
-                              " over that of 'none' in the same rounds, on the same machine and map; a map of another "
-                              "size has another 'none'";
-    const std::string time = passes + " less a lookup that reads nothing: what a frame pays " + frames + clock;
-    const std::string titled = (is_ratio ? "ratio to 'none', " : "time, ") + title;
-    return make_measure({.id = id,
-                         .title = titled,
-                         .text = is_ratio ? ratio : time,
-                         .unit = unit,
-                         .option = is_ratio ? "" : "--max-ms",
-                         .group = "cost"});
-  };
-  return {
-      make(kMovingField, "moving light", "map, prefilter and lookup", "in which light or casters move"),
-      make(kStaticField, "static light", is_ratio ? "the lookup" : "lookup", "while light and casters stand still")};
-}
-
-/// Everything that the table can show, and that limits can be set on.
-json list_measures(const records::RunRecord& run, const std::vector<std::string>& gpus,
-                   const analysis::CostKind& frame) {
-  json measures = list_frame_measures(run, frame);
+/// Everything that the table can show, and that limits can be set on: of what a frame costs in milliseconds, once.
+json list_measures(const std::vector<CostChoice>& costs) {
+  json measures = json::array();
+  bool is_limited = false;
+  for (const CostChoice& cost : costs) {
+    const bool is_limit = !is_limited && !cost.measure.is(analysis::CostKind::kRatio);
+    measures.push_back(make_measure({.id = cost.field,
+                                     .title = cost.title,
+                                     .text = cost.measure.meaning,
+                                     .unit = cost.unit,
+                                     .option = is_limit ? "--max-ms" : "",
+                                     .group = "cost"}));
+    is_limited = is_limited || is_limit;
+  }
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty())
       measures.push_back(make_measure(
           {metric.path, metric.title, metric.definition, metric.unit, metric.limit, metric.group(), metric.direction}));
-  for (const std::string& gpu : gpus)
-    measures.push_back(
-        make_measure({.id = "gpu." + gpu + ".estimate_us",
-                      .title = "estimate, " + gpu,
-                      .text = "prefilter and a million receivers' lookups on that GPU, which was not there",
-                      .unit = "us",
-                      .group = "cost"}));
   return measures;
 }
 
-json list_values(const records::CellRecord& cell, const std::vector<std::string>& gpus,
-                 const analysis::CostKind& frame) {
+json list_values(const records::CellRecord& cell, const std::vector<CostChoice>& costs) {
   json values;
-  values[kMovingField] = value_of(analysis::cost_spec(frame).read(cell, analysis::LightMotion::kMoving));
-  values[kStaticField] = value_of(analysis::cost_spec(frame).read(cell, analysis::LightMotion::kStatic));
+  for (const CostChoice& cost : costs) values[cost.field] = describe_cost({&cell}, cost);
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty()) values[std::string(metric.path)] = value_of(metric.read(cell));
-  for (const std::string& gpu : gpus)
-    values["gpu." + gpu + ".estimate_us"] =
-        value_of(analysis::cost_spec({analysis::CostKind::kGpu, gpu}).read(cell, analysis::LightMotion::kMoving));
   return values;
 }
 
 /// Of times and ratios the 95 % intervals, or the quartiles where there are none.
-json list_intervals(const records::CellRecord& cell, const analysis::CostKind& frame) {
+json list_intervals(const records::CellRecord& cell, const std::vector<CostChoice>& costs) {
   json intervals = json::object();
-  for (const auto& [id, light] : {std::pair(kMovingField, analysis::LightMotion::kMoving),
-                                  std::pair(kStaticField, analysis::LightMotion::kStatic)}) {
-    const auto cost = analysis::measure_cost({&cell}, frame, light);
+  for (const CostChoice& choice : costs) {
+    const auto cost = choice.measure.cost->is_measured() ? measure_cost({&cell}, choice) : std::nullopt;
     if (!cost) continue;
     const records::Interval& interval = cost->ci95 ? *cost->ci95 : cost->quartiles;
-    intervals[id] = {interval.low, interval.high};
+    intervals[choice.field] = {interval.low, interval.high};
   }
   return intervals;
 }
@@ -125,14 +99,14 @@ std::string find_cause(const records::CellRecord& cell) {
 }
 
 json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place,
-               const std::vector<std::string>& gpus, const analysis::CostKind& frame) {
+               const std::vector<CostChoice>& costs) {
   return {{"key", cell.key},
           {"configuration", configuration},
           {"place", place},
           {"status", cell.status == records::CellStatus::kOk ? "ok" : records::describe_status(cell)},
-          {"values_of", list_values(cell, gpus, frame)},
+          {"values_of", list_values(cell, costs)},
           {"rmse", describe_error(cell.error.rmse ? std::optional(analysis::estimate_rmse(cell)) : std::nullopt)},
-          {"intervals", list_intervals(cell, frame)},
+          {"intervals", list_intervals(cell, costs)},
           {"cause", find_cause(cell)},
           {"picture", path_of(cell.images.picture)},
           {"smooth", cell.images.samples ? json{{"samples", *cell.images.samples},
@@ -190,31 +164,29 @@ json make_configuration(const analysis::Configuration& configuration, const std:
 }  // namespace
 
 json make_run_data(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                   const analysis::AdviceRequest& request, const std::vector<records::BiasToShip>& biases) {
+                   const std::vector<records::BiasToShip>& biases) {
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   const std::vector<std::string> filters = analysis::list_filters(cells);
-  const std::vector<std::string> gpus = analysis::list_gpus(all);
-  const analysis::CostKind frame = analysis::frame_cost_kind(cells);
-  const bool is_ratio = frame == analysis::CostKind::kRatio;
-  json data{{"ratios", is_ratio},
+  const std::vector<CostChoice> choices = list_cost_choices(run, cells);
+  json data{{"ratios", analysis::mixes_machines(cells)},
             {"files", records::value_json(run.filter_files)},
-            {"measures", list_measures(run, gpus, frame)},
+            {"measures", list_measures(choices)},
             {"costs", json::array()},
-            {"cost", request.cheapest.kind == analysis::CostKind::kGpu ? "gpu." + request.cheapest.gpu : "moving"},
+            {"cost", choices.front().measure.id},
             {"classes", json::array()},
             {"places", json::array()},
             {"truths", json::array()},
             {"configurations", json::array()},
             {"cells", json::array()}};
-  const std::vector<CostChoice> choices = list_cost_choices(run, gpus, frame);
   for (const CostChoice& choice : choices)
-    data["costs"].push_back({{"id", choice.id},
+    data["costs"].push_back({{"id", choice.measure.id},
                              {"field", choice.field},
                              {"title", choice.title},
                              {"unit", choice.unit},
                              {"option", choice.option},
-                             {"isEstimate", choice.kind.kind == analysis::CostKind::kGpu}});
+                             {"text", choice.measure.meaning},
+                             {"gpu", choice.measure.cost->gpu}});
   std::vector<std::string> classes;
   for (const auto& each : filters::width_classes())
     if (std::ranges::any_of(cells, [&](const records::CellRecord& cell) {
@@ -237,7 +209,7 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   for (const analysis::Configuration& configuration : configurations) {
     for (const records::CellRecord* cell : configuration.cells)
       data["cells"].push_back(
-          make_cell(*cell, data["configurations"].size(), analysis::find_place(places, *cell), gpus, frame));
+          make_cell(*cell, data["configurations"].size(), analysis::find_place(places, *cell), choices));
     data["configurations"].push_back(make_configuration(configuration, filters, choices, biases));
   }
   data["scopes"] = std::ranges::any_of(cells, records::is_advised)

@@ -23,6 +23,7 @@
 #include "report/records/cell_names.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
+#include "report/records/gpu_frame.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -33,8 +34,9 @@ using ImageMember = OptionalPath records::ImagesRecord::*;
 constexpr const char* kGpuNote =
     "Facts are counted by the GPU's own compiler (Mesa's RADV) in the code that is drawn here: own instructions and "
     "reads are the lookup's less those of a lookup that reads nothing of the map. Estimates are made of them and of "
-    "data sheets: the largest of arithmetic, sampling and memory, as if each were alone. They rank filters; they are "
-    "no measurement.";
+    "data sheets: the largest of arithmetic, sampling and memory, as if each were alone. Drawing the map, and what "
+    "every "
+    "lookup pays, is in no estimate. They rank filters; they are no measurement.";
 
 /// Names the scene, and the map and its fit where the run has the scene with several.
 std::string head_group(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
@@ -225,37 +227,37 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
 
 /// One filter's estimate as a bar of what adds up to it; its words have what does not.
 document::Bars::Row make_gpu_row(const analysis::GpuCost& cost) {
-  document::Bars::Row row{fmt::format("{}: {} us", cost.configuration->name, records::format_number(*cost.estimate_us)),
+  document::Bars::Row row{fmt::format("{}: {} ms", cost.configuration->name, records::format_number(*cost.estimate_ms)),
                           {},
-                          *cost.estimate_us,
-                          fmt::format("lookup {} and prefilter {}", records::format_number(cost.lookup_us),
-                                      records::format_number(cost.prefilter_us))};
+                          *cost.estimate_ms,
+                          fmt::format("lookups {} and prefilter {}", records::format_number(cost.lookup_ms),
+                                      records::format_number(cost.prefilter_ms))};
   double end = 0.0;
-  const auto add = [&](double us, std::size_t color) {
-    if (us > 0.0) row.segments.push_back({end, end + us, document::style_of(color).color});
-    end += us;
+  const auto add = [&](double ms, std::size_t color) {
+    if (ms > 0.0) row.segments.push_back({end, end + ms, document::style_of(color).color});
+    end += ms;
   };
-  for (std::size_t i = 0; i < cost.slowest_us.size(); ++i) {
+  for (std::size_t i = 0; i < cost.slowest_ms.size(); ++i) {
     row.words += fmt::format("{}{} {}", i == 0 ? " · alone: " : ", ", analysis::kGpuResources[i],
-                             records::format_number(cost.alone_us[i]));
-    add(cost.slowest_us[i], i + 1);
+                             records::format_number(cost.alone_ms[i]));
+    add(cost.slowest_ms[i], i + 1);
   }
-  add(cost.prefilter_us, cost.slowest_us.size() + 1);
+  add(cost.prefilter_ms, cost.slowest_ms.size() + 1);
   return row;
 }
 
 /// What estimates are made of, cheapest first; nothing where there is none.
 std::optional<document::Bars> make_gpu_bars(const std::string& gpu, std::vector<analysis::GpuCost> costs) {
-  std::erase_if(costs, [](const analysis::GpuCost& cost) { return !cost.estimate_us; });
+  std::erase_if(costs, [](const analysis::GpuCost& cost) { return !cost.estimate_ms; });
   if (costs.empty()) return std::nullopt;
-  std::ranges::stable_sort(costs, {}, &analysis::GpuCost::estimate_us);
+  std::ranges::stable_sort(costs, {}, &analysis::GpuCost::estimate_ms);
   document::Bars bars;
-  bars.high = std::max(*costs.back().estimate_us, 1e-9);
+  bars.high = std::max(*costs.back().estimate_ms, 1e-9);
   bars.title = fmt::format(
       "{}: what an estimate is made of. A bar is the time of the lookup's slowest resource, each with its part where "
       "that differs between scenes, and the prefilter's. The other resources work meanwhile, and are in the words "
-      "alone, as if each were by itself. Drawing the map is in no estimate. The full width is {} us.",
-      gpu, records::format_number(bars.high));
+      "alone, as if each were by itself. The full width is {} ms of a {}x{} frame.",
+      gpu, records::format_number(bars.high), records::kGpuFrameWidth, records::kGpuFrameHeight);
   for (std::size_t i = 0; i < std::size(analysis::kGpuResources); ++i)
     bars.legend.emplace_back(document::style_of(i + 1).color, analysis::kGpuResources[i]);
   bars.legend.emplace_back(document::style_of(std::size(analysis::kGpuResources) + 1).color, "prefilter");
@@ -278,7 +280,9 @@ std::optional<document::Section> make_gpu_section(const std::vector<records::Cel
     if (auto bars = make_gpu_bars(gpu, costs)) tables.blocks.emplace_back(std::move(*bars));
     if (records::TextTable table = analysis::make_gpu_table(costs); !table.rows.empty())
       tables.blocks.emplace_back(document::Table{
-          gpu + ": estimates for a million receivers and one map, and facts of the lookup", std::move(table)});
+          fmt::format("{}: estimates for a {}x{} frame with one map, moving light, and facts of the lookup", gpu,
+                      records::kGpuFrameWidth, records::kGpuFrameHeight),
+          std::move(table)});
   }
   if (!sentences.items.empty()) section.blocks.emplace_back(std::move(sentences));
   tables.blocks.emplace(tables.blocks.begin(), document::Paragraph{kGpuNote, true});
@@ -330,7 +334,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
     add({"viewer", "Look closer", {document::Mount{"viewer", {}}}});
     if (std::ranges::any_of(cells, [](const auto& cell) { return cell.images.frames.has_value(); }))
       add({"live", "Live", {document::Mount{"live", {}}}});
-    page.data = make_run_data(run, cells, request, biases);
+    page.data = make_run_data(run, cells, biases);
     page.data["times"] = nlohmann::json::array();
     for (const records::GpuTimes& times : machines) {
       page.data["times"].push_back(records::gpu_times_json(times));

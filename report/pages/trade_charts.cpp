@@ -53,8 +53,9 @@ ChartSeries start_line(std::string title, const char* color, document::LineStyle
 
 std::string say_value(const analysis::Measure& measure, const analysis::Estimate& estimate,
                       const records::GlRecord& gl) {
-  return fmt::format("{}: {}{}", measure.name, analysis::format_estimate(measure, estimate),
-                     measure.is_time ? " " + records::time_unit(gl) : std::string());
+  const std::string unit = analysis::unit_of(measure, gl);
+  return fmt::format("{}: {}{}{}", measure.name, analysis::format_estimate(measure, estimate), unit.empty() ? "" : " ",
+                     unit);
 }
 
 /// Makes the chart of one front.
@@ -71,7 +72,7 @@ class FrontChart {
                           scope_.title,
                           analysis::name_axis(cost_, gl_),
                           analysis::name_axis(error_, gl_),
-                          choose_measure_axis(scope_, cost_of, cost_.is_bytes),
+                          choose_measure_axis(scope_, cost_of, cost_.is(analysis::CostKind::kBytes)),
                           choose_measure_axis(scope_, error_of, false),
                           {},
                           {}};
@@ -99,7 +100,8 @@ class FrontChart {
   ChartSeries make_front(std::span<const std::size_t> members) const {
     const Configuration& configuration = configuration_of(members.front());
     const std::string name(analysis::name_class(configuration.width_class));
-    const std::string map = cost_.is_ratio ? fmt::format(", map {}", configuration.map_size) : std::string();
+    const std::string map =
+        cost_.is(analysis::CostKind::kRatio) ? fmt::format(", map {}", configuration.map_size) : std::string();
     ChartSeries line = start_line(fmt::format("front, {}{}", name, map), document::kInk, document::LineStyle::kSteps);
     for (const std::size_t member : members) line.points.push_back(make_corner(member, configuration));
     return line;
@@ -315,8 +317,10 @@ document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>&
   document::ChartChoice choice{"front", {{"scene", {}}, {"error", {}}, {"cost", {}}}, {}};
   for (const analysis::Measure& error : analysis::list_error_measures())
     choice.selectors[1].options.push_back(error.name);
-  for (const analysis::Measure& cost : analysis::list_cost_measures(cells))
+  for (const analysis::Measure& cost : analysis::list_cost_measures(cells)) {
     choice.selectors[2].options.push_back(cost.name);
+    choice.selectors[2].costs.push_back(cost.id);
+  }
   for (const analysis::TradeScope& scope : scopes) {
     choice.selectors[0].options.push_back(scope.title);
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {

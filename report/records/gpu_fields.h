@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "report/records/description.h"
+#include "report/records/gpu_frame.h"
 #include "report/records/records.h"
 
 namespace shadowbench::records {
@@ -34,7 +35,7 @@ void visit_fields(Is<GpuPassRecord> auto& pass, auto&& visit) {
   visit_fields(pass.facts, visit);
 }
 
-/// Visits the parts of an estimate alone: the rest stands beside them, in the record of the GPU.
+/// Visits the parts of an estimate alone: what bounds it stands beside them, in the record of the GPU.
 void visit_fields(Is<GpuEstimateRecord> auto& parts, auto&& visit) {
   visit("lookup", parts.lookup_us, kPositive);
   visit("prefilter", parts.prefilter_us, kPositive);
@@ -45,24 +46,27 @@ void visit_fields(Is<GpuEstimateRecord> auto& parts, auto&& visit) {
 
 void visit_fields(Is<GpuRecord> auto& gpu, auto&& visit) {
   const auto& estimate = gpu.estimate;
-  std::optional<double> total_us = estimate ? std::optional(estimate->total_us) : std::nullopt;
+  const auto cost = [&](bool is_moving) {
+    return estimate ? std::optional(frame_ms(*estimate, is_moving)) : std::nullopt;
+  };
+  std::optional<double> moving = cost(true), still = cost(false);  // files hold them for their readers; they follow
   std::optional<std::string> bound_by = estimate ? std::optional(estimate->bound_by) : std::nullopt;
   std::optional<std::string> refused = null_if_empty(gpu.refused);
   visit("facts", gpu.facts);
-  visit("estimate_us", total_us,
-        {.text = "prefilter of one map, and the lookups of a million receivers, as dense as in a frame of 1920x1080",
-         .least = 0});
+  visit("frame_ms", kGroup,
+        {.text = "of a frame of 1920x1080, each pixel a lookup, with one map; moving: and its prefilter. Drawing the "
+                 "map, and what every lookup pays, is left out"});
+  visit("frame_ms.moving", moving, {.least = 0, .later = true});
+  visit("frame_ms.static", still, {.least = 0, .later = true});
   visit("parts_us", gpu.estimate,
-        {.text = "lookup is the largest of arithmetic, sampling and memory; memory is null where the filter's reads "
-                 "are not known"});
+        {.text = "lookup is of a million receivers, as dense as in that frame, and the largest of arithmetic, sampling "
+                 "and memory, which is null where the filter's reads are not known; prefilter is of one map"});
   visit("bound_by", bound_by, {.one_of = "arithmetic,sampling,memory"});
   visit("refused", refused);
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(gpu)>>) {
     gpu.refused = refused.value_or("");
-    if (total_us && (!gpu.estimate || !bound_by)) throw std::invalid_argument("an estimate with all of its parts");
-    if (!total_us) return gpu.estimate.reset();
-    gpu.estimate->total_us = *total_us;
-    gpu.estimate->bound_by = *bound_by;
+    if (gpu.estimate && !bound_by) throw std::invalid_argument("an estimate with what bounds it");
+    if (gpu.estimate) gpu.estimate->bound_by = *bound_by;
   }
 }
 

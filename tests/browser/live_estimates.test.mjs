@@ -6,7 +6,7 @@ import test from "node:test";
 import { kMesa, loadTimes, openLive, withBrowser } from "./live_support.mjs";
 import { folderOf, kNarrow, listViolations, measureOverflow, open, pageOf, readData, runProgram } from "./support.mjs";
 
-const kRenderer = "AMD Radeon RX 6900 XT (RADV NAVI21)", kEstimate = "gpu.navi21.estimate_us";
+const kRenderer = "AMD Radeon RX 6900 XT (RADV NAVI21)", kEstimate = "gpu.navi21.frame_ms.moving";
 // Times of all cells of a run, of which a function says what those of a configuration take.
 const forge = (data, renderer, takes) => {
   const time = (median) => ({ median, interval: null, rounds: 11 });

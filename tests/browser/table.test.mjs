@@ -164,7 +164,7 @@ test("ACell_OpensTheViewer", async () => {
 
 test("TheLightOfTheAnswer_IsThatOfTheCost", async () => {
   const { page, close } = await openRun("several"), data = await readData(page);
-  assert.equal(data.cost, "gpu.navi21", "without a GPU here, an estimate comes first");
+  assert.equal(data.cost, "gpu.navi21.moving", "without a GPU here, an estimate comes first");
   for (const light of ["static", "moving"]) {
     await page.locator('.limits select[name="cost"]').selectOption(light);
     assert.ok((await readHead(page))[2].startsWith(`${light} light, this CPU`));
@@ -173,6 +173,27 @@ test("TheLightOfTheAnswer_IsThatOfTheCost", async () => {
       assert.ok(isNear(readNumber(row[2].text), mean), row[0].text);
     }
   }
+  await close();
+});
+
+test("ACostChosenOnTop_IsThatOfAnswerTableAndChart_AndSaysWhatItIsOf", async () => {
+  const { page, messages, close } = await openRun("several"), data = await readData(page);
+  const front = await page.evaluate(() => JSON.parse(document.getElementById("charts").textContent).charts.find(({ id }) => id === "front"));
+  const chart = page.locator("#front select").nth(2), { costs } = front.selectors[2];
+  const readChosen = async () => costs[Number(await chart.inputValue())];
+  assert.equal(await readChosen(), data.cost, "the chart begins with the answer's cost");
+  assert.deepEqual(data.costs.slice(0, 2).map(({ id }) => id), ["gpu.navi21.moving", "gpu.navi21.static"]);
+  for (const { id, title, unit, text } of data.costs) {
+    await page.locator('.limits select[name="cost"]').selectOption(id);
+    assert.equal(await readChosen(), id);
+    assert.match(text, /^ms of a (1920x1080|240x135) frame with one map, .*left out: /);
+    assert.ok((await page.locator(".answer > .note").allTextContents()).includes(`Cost: ${text}.`));
+    assert.equal((await readHead(page))[2].replace(/ [▲▼]$/, ""), `${title}, ${unit}`);
+    const [label, cost] = await page.locator(".picks tbody td").first().evaluate((cell) => [cell.querySelector("bdi").textContent, cell.querySelector(".whole").textContent]);
+    const row = (await readRows(page)).find(([name]) => name.text === label);
+    assert.equal(`${row[2].text} ${unit}`, cost, "the number of the answer is that of the table");
+  }
+  assert.deepEqual(messages, []);
   await close();
 });
 

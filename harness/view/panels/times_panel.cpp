@@ -9,6 +9,7 @@
 #include "harness/gl/timer/timer.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
+#include "report/records/gpu_frame.h"
 
 namespace shadowbench::view {
 namespace {
@@ -39,8 +40,10 @@ void show_gpus(const Workbench& bench) {
     for (const auto& [gpu, record] : *cell->record.gpu) {
       const char* name = kSideNames[side];
       if (record.estimate)
-        ImGui::Text("%s on %s: %.3g us a million receivers,\n  bound by %s; prefilter %.3g us", name, gpu.c_str(),
-                    record.estimate->lookup_us, record.estimate->bound_by.c_str(), record.estimate->prefilter_us);
+        ImGui::Text("%s on %s: %.3g ms of a frame of %dx%d, static light;\n  moving %.3g ms; bound by %s", name,
+                    gpu.c_str(), records::frame_ms(*record.estimate, false), records::kGpuFrameWidth,
+                    records::kGpuFrameHeight, records::frame_ms(*record.estimate, true),
+                    record.estimate->bound_by.c_str());
       if (!record.facts.empty())
         ImGui::TextDisabled("  lookup: %d instructions, %d registers", record.facts.front().facts.instructions,
                             record.facts.front().facts.vector_registers);

@@ -7,20 +7,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/analysis/limits.h"
+#include "report/analysis/advice.h"
 #include "report/records/format.h"
+#include "report/records/gpu_frame.h"
 
 namespace shadowbench::analysis {
 namespace {
 
-std::optional<double> mean_over(const Configuration& configuration, const LimitSpec& spec) {
-  double sum = 0.0;
-  for (const records::CellRecord* cell : configuration.cells) {
-    const auto value = spec.read(*cell, LightMotion::kMoving);
-    if (!value) return std::nullopt;
-    sum += *value;
-  }
-  return sum / static_cast<double>(configuration.cells.size());
+std::optional<double> find_mean(const Configuration& configuration, const CostKind& kind) {
+  const auto cost = measure_cost(configuration.cells, kind, LightMotion::kMoving);
+  return cost ? std::optional(cost->mean) : std::nullopt;
 }
 
 /// The costs that were estimated and measured.
@@ -32,9 +28,9 @@ struct Pairs {
 Pairs list_pairs(const std::vector<GpuCost>& costs) {
   Pairs pairs;
   for (const GpuCost& cost : costs) {
-    if (!cost.estimate_us || !cost.measured_ms) continue;
+    if (!cost.estimate_ms || !cost.measured_ms) continue;
     pairs.costs.push_back(&cost);
-    pairs.estimated.push_back(*cost.estimate_us);
+    pairs.estimated.push_back(*cost.estimate_ms);
     pairs.measured.push_back(*cost.measured_ms);
   }
   return pairs;
@@ -81,8 +77,8 @@ std::vector<const GpuCost*> find_level_group(const std::vector<GpuCost>& costs) 
   for (const GpuCost& first : costs) {
     std::vector<const GpuCost*> group;
     for (const GpuCost& other : costs) {
-      const bool is_level = first.estimate_us && other.estimate_us && *other.estimate_us >= *first.estimate_us &&
-                            *other.estimate_us <= 1.01 * *first.estimate_us;
+      const bool is_level = first.estimate_ms && other.estimate_ms && *other.estimate_ms >= *first.estimate_ms &&
+                            *other.estimate_ms <= 1.01 * *first.estimate_ms;
       if (is_level && other.record->estimate->bound_by == first.record->estimate->bound_by) group.push_back(&other);
     }
     if (group.size() > largest.size()) largest = group;
@@ -102,20 +98,21 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
     GpuCost cost;
     cost.configuration = &configuration;
     cost.record = &records->at(gpu);
-    cost.estimate_us = mean_over(configuration, cost_spec({CostKind::kGpu, gpu}));
+    cost.estimate_ms = find_mean(configuration, {CostKind::kGpu, gpu});
     const auto is_of_cpu = [](const records::CellRecord* cell) { return cell->machine && cell->machine->software; };
     if (std::ranges::none_of(configuration.cells, is_of_cpu))
-      cost.measured_ms = mean_over(configuration, cost_spec(CostKind::kTime));
+      cost.measured_ms = find_mean(configuration, CostKind::kTime);
     for (const records::CellRecord* cell : configuration.cells) {
-      if (!cost.estimate_us) break;
+      if (!cost.estimate_ms) break;
       const records::GpuEstimateRecord& estimate = *cell->gpu->at(gpu).estimate;
       const auto count = static_cast<double>(configuration.cells.size());
       const GpuResources alone = {estimate.arithmetic_us, estimate.sampling_us, estimate.memory_us.value_or(0.0)};
       const auto slowest = static_cast<std::size_t>(std::ranges::max_element(alone) - alone.begin());
-      for (std::size_t i = 0; i < alone.size(); ++i) cost.alone_us[i] += alone[i] / count;
-      cost.slowest_us[slowest] += estimate.lookup_us / count;
-      cost.lookup_us += estimate.lookup_us / count;
-      cost.prefilter_us += estimate.prefilter_us / count;
+      const double lookup = records::frame_ms(estimate, false);
+      for (std::size_t i = 0; i < alone.size(); ++i) cost.alone_ms[i] += records::lookups_ms(alone[i]) / count;
+      cost.slowest_ms[slowest] += lookup / count;
+      cost.lookup_ms += lookup / count;
+      cost.prefilter_ms += (records::frame_ms(estimate, true) - lookup) / count;
     }
     costs.push_back(cost);
   }
@@ -144,8 +141,8 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
   if (const auto level = find_level_group(costs); !level.empty()) {
     std::vector<std::string> names;
     for (const GpuCost* cost : level) names.push_back(cost->configuration->name);
-    sentences.push_back(fmt::format("{}: {} cost the same, {} us: what bounds them all is {}.", gpu,
-                                    fmt::join(names, ", "), records::format_number(level.front()->estimate_us),
+    sentences.push_back(fmt::format("{}: {} cost the same, {} ms: what bounds them all is {}.", gpu,
+                                    fmt::join(names, ", "), records::format_number(level.front()->estimate_ms),
                                     level.front()->record->estimate->bound_by));
   }
   std::vector<std::string> looped, spilled;
@@ -167,18 +164,18 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
 
 records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
   records::TextTable table;
-  table.header = {"filter",           "estimate, us", "lookup, us", "prefilter, us", "bound by",
+  table.header = {"filter",           "estimate, ms", "lookup, ms", "prefilter, ms", "bound by",
                   "own instructions", "own reads",    "registers",  "waves"};
   const bool is_measured = std::ranges::any_of(costs, [](const GpuCost& cost) { return cost.measured_ms.has_value(); });
   if (is_measured) table.header.insert(table.header.begin() + 2, "measured here, ms");
   std::vector<GpuCost> sorted = costs;
-  std::ranges::stable_sort(sorted, {}, &GpuCost::estimate_us);
+  std::ranges::stable_sort(sorted, {}, &GpuCost::estimate_ms);
   for (const GpuCost& cost : sorted) {
     const records::ShaderFacts* lookup = find_facts(*cost.record, "lookup");
     const records::ShaderFacts* empty = find_facts(*cost.record, "empty");
-    if (!lookup || !empty || !cost.estimate_us) continue;
-    table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_us),
-                          records::format_number(cost.lookup_us), records::format_number(cost.prefilter_us),
+    if (!lookup || !empty || !cost.estimate_ms) continue;
+    table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_ms),
+                          records::format_number(cost.lookup_ms), records::format_number(cost.prefilter_ms),
                           cost.record->estimate->bound_by,
                           fmt::format("{}", lookup->instructions - empty->instructions),
                           fmt::format("{}", lookup->reads() - empty->reads()),

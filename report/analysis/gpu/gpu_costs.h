@@ -21,10 +21,10 @@ using GpuResources = std::array<double, std::size(kGpuResources)>;
 struct GpuCost {
   const Configuration* configuration = nullptr;
   const records::GpuRecord* record = nullptr;
-  std::optional<double> estimate_us;           ///< nothing where a cell has none
-  double lookup_us = 0.0, prefilter_us = 0.0;  ///< the parts of it
-  GpuResources slowest_us{};  ///< the lookup's part, by the resource that is the slowest in a cell: they add up to it
-  GpuResources alone_us{};    ///< of each resource, were the others for nothing: they do not add up
+  std::optional<double> estimate_ms;           ///< of a frame, moving light; nothing where a cell has none
+  double lookup_ms = 0.0, prefilter_ms = 0.0;  ///< the parts of it
+  GpuResources slowest_ms{};  ///< the lookups' part, by the resource that is the slowest in a cell: they add up to it
+  GpuResources alone_ms{};    ///< of each resource, were the others for nothing: they do not add up
   /// With a moving light, in the run's clock; nothing where a cell has none, or a software rasteriser drew it: a CPU's
   /// times say nothing of a GPU.
   std::optional<double> measured_ms;

@@ -16,11 +16,10 @@ const correlateRanks = (a, b) => {
   return spread > 0 ? dot(x, y) / spread : null;
 };
 
-const nameGpu = ({ id }) => id.replace(/^gpu\./, "");
 // The estimate that is of the GPU whose driver names it so, "AMD Radeon RX 6900 XT (RADV NAVI21)".
 const findEstimate = (renderer) => {
   const words = renderer.toLowerCase().split(/[^a-z0-9]+/);
-  return run.costs.find((cost) => cost.isEstimate && words.includes(nameGpu(cost).toLowerCase()));
+  return run.costs.find(({ gpu }) => gpu && words.includes(gpu.toLowerCase()));
 };
 // Both of each configuration that has both, the cheapest estimate first.
 const pairCosts = (estimate, measured) =>
@@ -36,7 +35,7 @@ const sayEstimates = (renderer) => {
   const pairs = pairCosts(estimate.field, `machine${machines.findIndex((each) => each.renderer === renderer)}.moving`);
   const [a, b] = ["estimated", "taken"].map((name) => pairs.map((pair) => pair[name]));
   const correlation = correlateRanks(a, b);
-  const lead = `Over ${pairs.length} configurations, the rank correlation of the estimates for ${nameGpu(estimate)} and`;
+  const lead = `Over ${pairs.length} configurations, the rank correlation of the estimates for ${estimate.gpu} and`;
   const value = correlation === null ? "not known: fewer than three differ" : correlation.toFixed(2);
   return `${lead} the times of ${renderer} (moving light) is ${value}.`;
 };
@@ -49,11 +48,11 @@ const showEstimates = () => {
     if (!estimate || !section) return;
     const box = element(section, "div", { className: "measured" });
     element(box, "p", {}, sayEstimates(renderer));
-    const title = `Estimates for ${nameGpu(estimate)} and times of ${renderer}`;
+    const title = `Estimates for ${estimate.gpu} and times of ${renderer}`;
     const scroll = element(box, "div", { className: "scroll", tabIndex: 0, role: "group", "aria-label": title });
     const table = element(scroll, "table");
     const head = element(element(table, "thead"), "tr");
-    const columns = ["filter", "estimate, us", "measured, ms"];
+    const columns = ["filter", "estimate, ms", "measured, ms"];
     columns.forEach((column, i) => element(head, "th", { scope: "col", className: i > 0 ? "n" : "s" }, column));
     const body = element(table, "tbody");
     for (const { label, estimated, taken } of pairCosts(estimate.field, `machine${at}.moving`)) {

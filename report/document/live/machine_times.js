@@ -79,9 +79,12 @@ const addScopeTimes = (times, { id, field, isStatic, title }, scope) => {
       : `no time by ${title}`;
   });
   const advice = {};
-  for (const [wide, { order, unjudged }] of Object.entries(scope.advice[run.costs[0].id])) {
+  const [{ id: own }] = run.costs.filter(({ gpu }) => !gpu); // those that were timed, estimates or not
+  for (const [wide, { order, unjudged }] of Object.entries(scope.advice[own])) {
     const timed = order.map(({ index }) => ({ index, cost: costs[index] }));
-    const ranked = timed.filter(({ cost }) => cost).sort((a, b) => a.cost.value - b.cost.value);
+    const rmseOf = ({ index }) => scope.rows[index].rmse?.value ?? Infinity;
+    const compare = (a, b) => a.cost.value - b.cost.value || rmseOf(a) - rmseOf(b);
+    const ranked = timed.filter(({ cost }) => cost).sort(compare);
     const missing = timed.filter(({ cost }) => !cost).map(({ index }) => ({ index, gap: `no time by ${title}` }));
     advice[wide] = { order: listTies(ranked), unjudged: [...unjudged, ...missing] };
   }
@@ -104,8 +107,10 @@ const addMachine = (times, isHere, file = "gpu-times.json") => {
     const name = isHere ? "this GPU" : nameMachine(times.renderer);
     const title = `${isStatic ? "static" : "moving"} light, ${name}`;
     const option = `--times ${file}${isStatic ? " --light-motion static" : ""}`;
-    const choice = { id, field: id, title, unit: "ms", option, isEstimate: false };
-    const text = `${isStatic ? "lookup" : "map, prefilter and lookup"}, timed in a browser on ${times.renderer}`;
+    const parts = isStatic ? "lookups" : "map, prefilter and lookups";
+    const left = "left out: what every lookup pays";
+    const text = `ms of a frame with one map, timed in a browser on ${times.renderer}, ${title}: ${parts}; ${left}`;
+    const choice = { id, field: id, title, unit: "ms", option, text, gpu: "" };
     const known = run.costs.findIndex((each) => each.id === id);
     if (known < 0) {
       run.costs.push(choice);

@@ -49,9 +49,12 @@ void set(Json& object, const char* name, const std::optional<T>& value, const st
   if (!value) object["absent"][name] = reason;
 }
 
-Json cell_json(const records::CellRecord& cell, analysis::LightMotion light) {
+Json cell_json(const records::CellRecord& cell, const analysis::AdviceRequest& request) {
+  const analysis::LightMotion light = request.light;
   Json json = {{"key", cell.key}, {"scene", cell.scene}, {"view", cell.view}};
   json["absent"] = Json::object();
+  set(json, "cost", analysis::cost_spec(request.cheapest).read(cell, light),
+      records::explain_absence(cell, analysis::cost_spec(request.cheapest).field));
   set(json, "time_ms", analysis::frame_time(cell, light), records::explain_absence(cell, "time_ms"));
   set(json, "ratio_to_none", analysis::frame_ratio(cell, light), records::explain_absence(cell, "ratio_to_none"));
   set(json, "rmse", cell.error.rmse, records::explain_absence(cell, "error.rmse"));
@@ -106,7 +109,7 @@ Json settings_json(const records::CellRecord& cell) {
 }
 
 std::string explain_no_interval(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
-  if (!request.cheapest.is_of_frame()) return "only times have an interval";
+  if (!request.cheapest.is_measured()) return "only times have an interval";
   for (const records::CellRecord* cell : candidate.configuration.cells)
     if (!analysis::frame_interval(*cell, request.light)) return records::explain_absence(*cell, "ratio_to_none");
   return "not measured";
@@ -132,7 +135,7 @@ Json candidate_json(const analysis::Candidate& candidate, const analysis::Advice
     json["limits"].push_back(verdict_json(advice.request.demands[i], candidate.verdicts[i]));
   json["cells"] = Json::array();
   for (const records::CellRecord* cell : candidate.configuration.cells)
-    json["cells"].push_back(cell_json(*cell, advice.request.light));
+    json["cells"].push_back(cell_json(*cell, advice.request));
   return json;
 }
 
@@ -273,6 +276,7 @@ Json make_advice_json(const records::RunRecord& run, const analysis::Advice& adv
   json["keep"] = advice.keeping.size();
   json["fail"] = advice.failing.size();
   json["not_judged"] = unjudged_json(advice);
+  json["cost"] = analysis::describe_cost(advice);
   json["notes"] = analysis::list_advice_notes(advice, run.gl);
   return json;
 }

@@ -75,9 +75,10 @@ Row describe_limit(const analysis::Demand& demand, const analysis::Verdict& verd
                    const analysis::Advice& advice) {
   if (!verdict.worst) return {analysis::describe_demand(demand), "claimed"};
   const bool is_time = demand.spec == &analysis::cost_spec(analysis::CostKind::kTime);
+  const std::string unit = is_time ? " " + records::time_unit(run.gl) : demand.spec->gpu.empty() ? "" : " ms";
   const std::string worst = analysis::format_kept(*verdict.worst, demand.most);
-  return {analysis::describe_demand(demand), is_time ? fmt::format("{} {}", worst, records::time_unit(run.gl)) : worst,
-          place_name(*verdict.where, advice), remark(demand, verdict, advice.request.light)};
+  return {analysis::describe_demand(demand), worst + unit, place_name(*verdict.where, advice),
+          remark(demand, verdict, advice.request.light)};
 }
 
 std::string list_limits(const records::RunRecord& run, const analysis::Advice& advice) {
@@ -88,12 +89,21 @@ std::string list_limits(const records::RunRecord& run, const analysis::Advice& a
   return align(rows);
 }
 
+/// The cost of a frame that the table has: the estimate that was asked for, else the time.
+std::optional<analysis::Cost> measure_shown(const records::CellRecord& cell, const analysis::Advice& advice) {
+  const analysis::CostKind& asked = advice.request.cheapest;
+  const bool is_estimate = asked.kind == analysis::CostKind::kGpu;
+  return analysis::measure_cost({&cell}, is_estimate ? asked : analysis::CostKind::kTime, advice.request.light);
+}
+
 Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advice) {
-  const auto time = analysis::frame_time(cell, advice.request.light);
+  const bool is_estimate = advice.request.cheapest.kind == analysis::CostKind::kGpu;
+  const auto cost = measure_shown(cell, advice);
   return {place_name(cell, advice),
-          time ? records::format_number(time->median) : records::kNothing,
-          time ? fmt::format("{} .. {}", records::format_number(time->q1), records::format_number(time->q3))
-               : records::kNothing,
+          cost ? records::format_number(cost->mean) : records::kNothing,
+          cost && !is_estimate ? fmt::format("{} .. {}", records::format_number(cost->quartiles.low),
+                                             records::format_number(cost->quartiles.high))
+                               : records::kNothing,
           records::format_ratio(analysis::frame_ratio(cell, advice.request.light)),
           records::format_number(cell.error.rmse),
           records::format_number(cell.cost.map_bytes),
@@ -102,12 +112,13 @@ Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advic
 }
 
 std::string list_cells(const records::RunRecord& run, const analysis::Advice& advice) {
-  std::vector<Row> rows = {
-      {"scene", records::time_unit(run.gl), "quartiles", "/ none [95 %]", "RMSE", "bytes", "fetches", "cell"}};
+  const std::string& gpu = advice.request.cheapest.gpu;
+  std::vector<Row> rows = {{"scene", gpu.empty() ? records::time_unit(run.gl) : "ms, " + gpu, "quartiles",
+                            "/ none [95 %]", "RMSE", "bytes", "fetches", "cell"}};
   bool timed = false;
   for (const records::CellRecord* cell : advice.keeping.front().configuration.cells) {
     rows.push_back(describe_cell(*cell, advice));
-    timed = timed || analysis::frame_time(*cell, advice.request.light);
+    timed = timed || measure_shown(*cell, advice);
   }
   for (Row& row : rows)
     if (!timed) row.erase(row.begin() + 1, row.begin() + 3);
@@ -173,6 +184,7 @@ std::string list_remarks(const records::RunRecord& run, const analysis::Advice& 
   std::string text = wrap(fmt::format("{} of {} configurations judged, on {}.", judged, judged + advice.unjudged.size(),
                                       fmt::join(places, ", ")));
   for (const std::string& reason : analysis::count_unjudged(advice)) text += wrap("Not judged, " + reason + ".");
+  text += wrap(analysis::describe_cost(advice));
   for (const std::string& note : analysis::list_advice_notes(advice, run.gl)) text += wrap(note);
   return text;
 }

@@ -105,21 +105,11 @@ std::optional<document::Split> make_picture(const analysis::Advice& advice) {
                          choose_part(*worst)};
 }
 
-/// The GPU whose estimates decide at first; see choose_request().
-std::optional<std::string> choose_gpu(const std::vector<records::CellRecord>& cells) {
-  const auto is_of_cpu = [](const records::CellRecord& cell) { return cell.machine && cell.machine->software; };
-  if (!std::ranges::all_of(cells, is_of_cpu)) return std::nullopt;
-  for (const std::string& gpu : analysis::list_gpus(analysis::point_to(cells)))
-    if (std::ranges::any_of(cells, [&](const auto& cell) { return cell.gpu && cell.gpu->at(gpu).estimate; }))
-      return gpu;
-  return std::nullopt;
-}
-
 }  // namespace
 
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells) {
   analysis::AdviceRequest request;
-  if (const auto gpu = choose_gpu(cells); gpu && can_advise(cells)) request.cheapest = {analysis::CostKind::kGpu, *gpu};
+  request.cheapest = analysis::choose_cost(cells);
   return request;
 }
 
@@ -155,13 +145,8 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
     mount.blocks.emplace_back(make_table(run, cells, advice, biases));
     if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
   }
-  document::Sentences notes{{}, analysis::list_run_notes(advice, run.gl)};
-  if (request.cheapest.kind == analysis::CostKind::kGpu)
-    notes.items.push_back(
-        fmt::format("Costs are estimates for {}, which was not there: this CPU's times say nothing "
-                    "of a GPU.",
-                    request.cheapest.gpu));
-  mount.blocks.emplace_back(std::move(notes));
+  mount.blocks.emplace_back(document::Paragraph{analysis::describe_cost(advice), true});
+  mount.blocks.emplace_back(document::Sentences{{}, analysis::list_run_notes(advice, run.gl)});
   section.blocks.emplace_back(std::move(mount));
   return section;
 }

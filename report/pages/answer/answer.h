@@ -10,8 +10,7 @@
 
 namespace shadowbench::pages {
 
-/// What a run's page asks first: no limit, a moving light, and whose cost counts. Where a software rasteriser drew
-/// everything, whose times say nothing of a GPU, that is the first GPU of which there is an estimate.
+/// What a run's page asks first: no limit, a moving light, and analysis::choose_cost().
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells);
 
 /// The keys of the cells whose pictures the page of these cells shows first: one of each answer, where it differs most

@@ -23,9 +23,6 @@ using nlohmann::json;
 constexpr double kShape = 2.5;        // of the part of a picture: width over height
 constexpr double kMostShown = 480.0;  // pixels across, so that an edge is large enough to look at
 
-constexpr std::pair<const char*, analysis::LightMotion> kLights[] = {{"moving", analysis::LightMotion::kMoving},
-                                                                     {"static", analysis::LightMotion::kStatic}};
-
 /// The worst value, the number that as a limit lets it pass, its place, and those with nothing to see; or why there is
 /// none.
 json describe_worst(const analysis::Verdict& verdict, const std::vector<analysis::Place>& places) {
@@ -40,16 +37,16 @@ json describe_worst(const analysis::Verdict& verdict, const std::vector<analysis
 
 /// How a configuration stands to everything that may be limited, by the names of the measures.
 json list_worst(const analysis::Configuration& configuration, const std::vector<analysis::Place>& places,
-                const analysis::CostKind& frame) {
+                const std::vector<CostChoice>& costs) {
   json worst = json::object();
-  for (const analysis::LimitSpec& spec : analysis::limit_table()) {
-    if (!spec.metric && frame == analysis::CostKind::kRatio) continue;
-    for (const auto& [name, light] : kLights) {
-      if (spec.metric && light == analysis::LightMotion::kStatic) continue;
-      worst[spec.metric ? spec.field : fmt::format("{}.{}", spec.field, name)] =
-          describe_worst(analysis::judge_limit(configuration, {&spec, 0.0, {}}, light, places), places);
-    }
-  }
+  const auto add = [&](const std::string& field, const analysis::LimitSpec& spec, analysis::LightMotion light) {
+    worst[field] = describe_worst(analysis::judge_limit(configuration, {&spec, 0.0, {}}, light, places), places);
+  };
+  for (const analysis::LimitSpec& spec : analysis::limit_table())
+    if (spec.metric) add(spec.field, spec, analysis::LightMotion::kMoving);
+  for (const CostChoice& cost : costs)
+    if (!cost.measure.is(analysis::CostKind::kRatio))
+      add(cost.field, analysis::cost_spec(*cost.measure.cost), cost.measure.light);
   return worst;
 }
 
@@ -99,7 +96,7 @@ json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, c
       rows.push_back(nullptr);
       continue;
     }
-    json row = {{"worst", list_worst(each, places, choices.front().kind)},
+    json row = {{"worst", list_worst(each, places, choices)},
                 {"rmse", describe_error(analysis::combine_rmse(each.cells))}};
     for (const CostChoice& choice : choices) row[choice.field] = describe_cost(each.cells, choice);
     rows.push_back(std::move(row));
@@ -117,8 +114,8 @@ json list_advice(const std::vector<records::CellRecord>& cells, const Scope& sco
   for (const CostChoice& choice : choices) {
     for (const std::string& wide : classes) {
       analysis::AdviceRequest request;
-      request.light = choice.light;
-      if (choice.kind.kind == analysis::CostKind::kGpu) request.cheapest = choice.kind;
+      request.light = choice.measure.light;
+      request.cheapest = *choice.measure.cost;
       request.width_class = wide;
       request.scenes = scope.scenes;
       request.whole = true;
@@ -128,7 +125,7 @@ json list_advice(const std::vector<records::CellRecord>& cells, const Scope& sco
         order.push_back({{"index", index_of(advice.keeping[rank])}, {"tied", list_ties(advice, rank)}});
       for (const analysis::Unjudged& each : advice.unjudged)
         unjudged.push_back({{"index", index_of(each)}, {"gap", each.reason}});
-      all[choice.id][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
+      all[choice.measure.id][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
     }
   }
   return all;
@@ -148,17 +145,22 @@ std::vector<std::string> list_classes_of(const Scope& scope, const std::vector<s
 
 }  // namespace
 
-std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const std::vector<std::string>& gpus,
-                                          const analysis::CostKind& frame) {
-  const bool is_ratio = frame == analysis::CostKind::kRatio;
-  const std::string unit = is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl);
-  const std::string where = is_ratio ? "" : run.gl.software ? ", this CPU" : ", this GPU";
-  std::vector<CostChoice> choices = {{"moving", kMovingField, "moving light" + where, unit, "", frame},
-                                     {"static", kStaticField, "static light" + where, unit, "--light-motion static",
-                                      frame, analysis::LightMotion::kStatic}};
-  for (const std::string& gpu : gpus)
-    choices.push_back({"gpu." + gpu, "gpu." + gpu + ".estimate_us", "estimate, " + gpu, "us", "--cheapest gpu:" + gpu,
-                       analysis::CostKind(analysis::CostKind::kGpu, gpu)});
+std::vector<CostChoice> list_cost_choices(const records::RunRecord& run,
+                                          const std::vector<records::CellRecord>& cells) {
+  std::vector<CostChoice> choices;
+  for (analysis::Measure& measure : analysis::list_cost_measures(cells)) {
+    const analysis::CostKind cost = *measure.cost;
+    if (!cost.is_of_frame()) continue;
+    const bool is_static = measure.light == analysis::LightMotion::kStatic;
+    CostChoice choice{{}, measure.field(), measure.name, analysis::unit_of(measure, run.gl), {}};
+    if (cost == analysis::CostKind::kTime)
+      choice.title = fmt::format("{} light, this {}", measure.id, run.gl.software ? "CPU" : "GPU");
+    if (!choices.empty() && cost != *choices.front().measure.cost)
+      choice.option = "--cheapest " + (cost.gpu.empty() ? "time" : "gpu:" + cost.gpu);
+    if (is_static) choice.option += choice.option.empty() ? "--light-motion static" : " --light-motion static";
+    choice.measure = std::move(measure);
+    choices.push_back(std::move(choice));
+  }
   return choices;
 }
 
@@ -180,8 +182,13 @@ std::array<double, 4> choose_part(const records::CellRecord& cell) {
           std::clamp(tile.top + 0.5 * (tile.height - height), 0.0, down - height), width, height};
 }
 
+std::optional<analysis::Cost> measure_cost(const std::vector<const records::CellRecord*>& cells,
+                                           const CostChoice& choice) {
+  return analysis::measure_cost(cells, *choice.measure.cost, choice.measure.light);
+}
+
 json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice) {
-  const auto cost = analysis::measure_cost(cells, choice.kind, choice.light);
+  const auto cost = measure_cost(cells, choice);
   return cost ? json(cost->mean) : json();
 }
 

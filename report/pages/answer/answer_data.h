@@ -6,32 +6,23 @@
 #include <string>
 #include <vector>
 
-#include "report/analysis/configuration.h"
-#include "report/analysis/front.h"
-#include "report/analysis/limits.h"
+#include "report/analysis/advice.h"
+#include "report/analysis/trade_measures.h"
 #include "report/records/bias_record.h"
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
 
-/// What a frame costs, by the names that the page's scripts have for it: milliseconds, or ratios to `none` where
-/// several kinds of machine measured the cells.
-inline constexpr const char *kMovingField = "time_ms.moving", *kStaticField = "time_ms.static";
-
-/// A cost that a reader may ask for.
+/// A cost of a frame that a reader may ask for.
 struct CostChoice {
-  std::string id;     ///< in the page's data and its links
+  analysis::Measure measure;
   std::string field;  ///< of a configuration's and a cell's value
   std::string title, unit;
   std::string option;  ///< of `advise`
-  analysis::CostKind kind;
-  analysis::LightMotion light = analysis::LightMotion::kMoving;
 };
 
-/// Lists what a frame costs, the light moving and static, and the estimate for each GPU. `frame`: of
-/// analysis::frame_cost_kind().
-std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const std::vector<std::string>& gpus,
-                                          const analysis::CostKind& frame);
+/// Lists them, the light moving and static; the page begins with the first, which `advise` takes without an option.
+std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const std::vector<records::CellRecord>& cells);
 
 /// An error for the scripts: its value, how far it may be off, and its groups of phases; null where there is none.
 nlohmann::json describe_error(const std::optional<analysis::Estimate>& error);
@@ -40,7 +31,9 @@ nlohmann::json describe_error(const std::optional<analysis::Estimate>& error);
 /// top, width, height, pixels. All of it where nobody knows where.
 std::array<double, 4> choose_part(const records::CellRecord& cell);
 
-/// The mean of a cost over cells; null where one has none.
+/// What cells cost; nothing where one has no value. The mean alone; null likewise.
+std::optional<analysis::Cost> measure_cost(const std::vector<const records::CellRecord*>& cells,
+                                           const CostChoice& choice);
 nlohmann::json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice);
 
 /// What a sweep of the bias recommends for a configuration, for each of its scenes that was swept; empty where none

@@ -68,6 +68,24 @@ TEST_F(Advise, Options_ReachTheRequest) {
   EXPECT_EQ(run("advise run --size 960x540").exit_code, 0);
 }
 
+TEST_F(Advise, WhereNoGpuDrew_TheEstimateIsTheCost_AndMillisecondsLimitIt) {
+  std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 1.0, 0.06),
+                                            make_cell("cubes", "tent3x3", 0.5, 0.02)};
+  for (records::CellRecord& cell : cells) {
+    cell.machine = records::kind_of(records::make_run().machine, records::make_run().gl);
+    const double us = cell.filter == "none" ? 10.0 : 1000.0;
+    cell.gpu = {{"navi21", {{}, records::GpuEstimateRecord{.lookup_us = us, .bound_by = "memory"}, {}}}};
+  }
+  records::write_results(folder() / "cpu", records::make_run(), cells);
+  EXPECT_THAT(run("advise cpu --max-rmse 1").out,
+              HasSubstr("none: 0.0207 ms estimated for navi21 of a 1920x1080 frame"));
+  EXPECT_THAT(run("advise cpu --max-rmse 1 --cheapest time").out, HasSubstr("tent3x3: 4 ms (CPU) a frame"));
+  EXPECT_EQ(run("advise cpu --max-rmse 0.05 --max-ms 2").exit_code, 1) << "its estimate is 2.07 ms, its time 4";
+  EXPECT_EQ(run("advise cpu --max-rmse 0.05 --max-ms 2.1").exit_code, 0);
+  EXPECT_EQ(run("advise cpu --max-rmse 0.05 --max-ms 2.1 --cheapest bytes").exit_code, 0);
+  EXPECT_EQ(run("advise cpu --max-rmse 0.05 --max-ms 2.1 --cheapest time").exit_code, 1);
+}
+
 TEST_F(Advise, EveryLimitOfTheTable_IsAnOption) {
   for (const char* option : {"rmse", "leak", "acne", "contact-gap", "flip", "ms", "bytes", "fetches"}) {
     const Outcome outcome = run("advise run --json --max-" + std::string(option) + " 1e9");

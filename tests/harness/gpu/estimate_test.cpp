@@ -6,6 +6,8 @@
 
 #include <random>
 
+#include "report/records/gpu_frame.h"
+
 namespace shadowbench::gpu {
 namespace {
 
@@ -37,7 +39,6 @@ TEST(GpuEstimate, EachResourceByItself) {
   EXPECT_DOUBLE_EQ(made.sampling_us, (2.0 + 2.0 + 4.0) * 1e6 / (50.0 * 100.0));  // 1600
   EXPECT_DOUBLE_EQ(*made.memory_us, 3e6 / 2e3);                                  // 1500
   EXPECT_DOUBLE_EQ(made.lookup_us, 1600.0);
-  EXPECT_DOUBLE_EQ(made.total_us, 1600.0);
   EXPECT_EQ(made.bound_by, "sampling");
   work.memory_bytes = 4.0;
   EXPECT_EQ(estimate(make_gpu(), work).bound_by, "memory");
@@ -57,10 +58,22 @@ TEST(GpuEstimate, APassOfThePrefilterCountsEveryTexel) {
   const records::GpuEstimateRecord made = estimate(make_gpu(), work);
   EXPECT_DOUBLE_EQ(made.lookup_us, 200.0);
   EXPECT_DOUBLE_EQ(made.prefilter_us, 16e6 / 2e3);  // memory: 8000; sampling is 1200, arithmetic 1000
-  EXPECT_DOUBLE_EQ(made.total_us, 8200.0);
+  EXPECT_DOUBLE_EQ(records::frame_ms(made, false), 0.2 * 2.0736);
+  EXPECT_DOUBLE_EQ(records::frame_ms(made, true), 0.2 * 2.0736 + 8.0);
   EXPECT_EQ(made.bound_by, "memory");
   work.prefilter = {pass, pass};
   EXPECT_DOUBLE_EQ(estimate(make_gpu(), work).prefilter_us, 16'000.0);
+}
+
+TEST(GpuEstimate, WhatBoundsAFrame_IsTheLongestOfItsLookupsAndOfItsMapsPasses) {
+  FilterWork work = make_work(30, 30, {1.0, 0.0, 0.0});
+  PrefilterWork pass;
+  pass.facts.busy_cycles = 64;
+  pass.texels = 0.3e6;  // 300 us of arithmetic beside the 200 us of a million lookups, 415 of a frame
+  work.prefilter = {pass};
+  EXPECT_EQ(estimate(make_gpu(), work).bound_by, "sampling");
+  work.prefilter[0].texels = 0.5e6;
+  EXPECT_EQ(estimate(make_gpu(), work).bound_by, "arithmetic");
 }
 
 TEST(GpuEstimate, ALookupThatIsCheaperThanTheEmptyOne_CostsItsReads) {
@@ -92,7 +105,9 @@ TEST(GpuEstimate, MoreOfEverythingIsNeverCheaper) {
     all.prefilter[0].texels = more(pass.texels);
     all.prefilter[0].written_bytes = 8;
     all.prefilter[0].read_bytes = 16;
-    EXPECT_GE(estimate(make_gpu(), all).total_us, estimate(make_gpu(), less).total_us);
+    for (const bool is_moving : {false, true})
+      EXPECT_GE(records::frame_ms(estimate(make_gpu(), all), is_moving),
+                records::frame_ms(estimate(make_gpu(), less), is_moving));
   }
 }
 

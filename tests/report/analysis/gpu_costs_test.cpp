@@ -11,12 +11,27 @@ namespace {
 
 using records::CellRecord;
 using ::testing::Contains;
+using ::testing::DoubleEq;
 using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A cell whose frame takes `ms` here, and `us` on a GPU.
-CellRecord make_gpu_cell(const std::string& filter, double ms, double us) {
+/// What a million lookups take of a frame's.
+double to_us(double ms) { return 1e3 * ms / 2.0736; }
+
+/// Parts of a frame, ms.
+records::GpuEstimateRecord make_parts(double lookup, double prefilter, double arithmetic, double sampling,
+                                      double memory) {
+  return {.lookup_us = to_us(lookup),
+          .prefilter_us = 1e3 * prefilter,
+          .arithmetic_us = to_us(arithmetic),
+          .sampling_us = to_us(sampling),
+          .memory_us = to_us(memory),
+          .bound_by = "memory"};
+}
+
+/// A cell whose frame takes `ms` here, and `gpu_ms` on a GPU.
+CellRecord make_gpu_cell(const std::string& filter, double ms, double gpu_ms) {
   CellRecord cell = records::make_cell("cubes", filter, 4.0);
   cell.time_ms.moving = records::OwnTime{{ms, ms, ms, 3}, {ms, ms}};
   records::ShaderFacts lookup, empty;
@@ -26,7 +41,9 @@ CellRecord make_gpu_cell(const std::string& filter, double ms, double us) {
   lookup.vector_registers = 24;
   empty.instructions = 27;
   empty.loads = 1;
-  cell.gpu = {{"one", {{{"empty", 1, empty}, {"lookup", 1, lookup}}, records::GpuEstimateRecord{us, us, 0.0}, ""}}};
+  cell.gpu = {
+      {"one",
+       {{{"empty", 1, empty}, {"lookup", 1, lookup}}, records::GpuEstimateRecord{.lookup_us = to_us(gpu_ms)}, ""}}};
   return cell;
 }
 
@@ -91,32 +108,31 @@ TEST(GpuCosts, FiltersThatCostTheSame_AreNamed) {
   for (CellRecord& cell : cells) cell.gpu->at("one").estimate->bound_by = "sampling";
   cells[4].gpu->at("one").estimate->bound_by = "memory";
   EXPECT_THAT(describe_gpu("one", Costs(cells).costs),
-              Contains("one: a, b, c cost the same, 10 us: what bounds them all is sampling."));
+              Contains("one: a, b, c cost the same, 10 ms: what bounds them all is sampling."));
   cells.erase(cells.begin());
-  EXPECT_THAT(describe_gpu("one", Costs(cells).costs), Each(Not(HasSubstr("cost the same, 10 us"))));
+  EXPECT_THAT(describe_gpu("one", Costs(cells).costs), Each(Not(HasSubstr("cost the same, 10 ms"))));
 }
 
 TEST(GpuCosts, OfSeveralScenes_AreMeans) {
   std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("a", 3, 30)};
   cells[1].scene = "stack";
-  cells[1].gpu->at("one").estimate->prefilter_us = 8.0;
-  cells[1].gpu->at("one").estimate->total_us = 38.0;
+  cells[1].gpu->at("one").estimate->prefilter_us = 8000.0;
   const Costs costs(cells);
   ASSERT_EQ(costs.costs.size(), 1u);
-  EXPECT_DOUBLE_EQ(*costs.costs[0].estimate_us, 24.0);
-  EXPECT_DOUBLE_EQ(costs.costs[0].lookup_us, 20.0);
-  EXPECT_DOUBLE_EQ(costs.costs[0].prefilter_us, 4.0);
+  EXPECT_DOUBLE_EQ(*costs.costs[0].estimate_ms, 24.0);
+  EXPECT_DOUBLE_EQ(costs.costs[0].lookup_ms, 20.0);
+  EXPECT_DOUBLE_EQ(costs.costs[0].prefilter_ms, 4.0);
   EXPECT_DOUBLE_EQ(*costs.costs[0].measured_ms, 2.0);
 }
 
 TEST(GpuCosts, SlowestResources_AddUpToTheLookup_WhateverBoundsThePrefilter) {
   std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("a", 3, 30)};
   cells[1].scene = "stack";
-  cells[0].gpu->at("one").estimate = records::GpuEstimateRecord{50, 10, 40, 4, 10, 6, "memory"};
-  cells[1].gpu->at("one").estimate = records::GpuEstimateRecord{30, 30, 0, 2, 10, 30, "memory"};
+  cells[0].gpu->at("one").estimate = make_parts(10, 40, 4, 10, 6);
+  cells[1].gpu->at("one").estimate = make_parts(30, 0, 2, 10, 30);
   const Costs costs(cells);
-  EXPECT_THAT(costs.costs[0].slowest_us, ::testing::ElementsAre(0.0, 5.0, 15.0));
-  EXPECT_THAT(costs.costs[0].alone_us, ::testing::ElementsAre(3.0, 10.0, 18.0));
+  EXPECT_THAT(costs.costs[0].slowest_ms, ::testing::ElementsAre(0.0, DoubleEq(5.0), DoubleEq(15.0)));
+  EXPECT_THAT(costs.costs[0].alone_ms, ::testing::ElementsAre(DoubleEq(3.0), DoubleEq(10.0), DoubleEq(18.0)));
 }
 
 TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {

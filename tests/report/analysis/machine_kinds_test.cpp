@@ -167,7 +167,7 @@ TEST(MixedMachines, CrossoversFollowRatios) {
   const auto withheld = *withhold_mixed_times(cells);
   const auto charts = make_width_charts(withheld, make_trade_scopes(withheld));
   EXPECT_EQ(make_comparison_table(charts).rows, expected.rows);
-  EXPECT_TRUE(charts.at(0).costs[kStaticCost].is_ratio);
+  EXPECT_TRUE(charts.at(0).costs[kStaticCost].is(CostKind::kRatio));
 }
 
 TEST(MixedMachines, WhatNeedsMilliseconds_IsSilent) {

@@ -127,17 +127,28 @@ TEST(TradeMeasures, AllScenes_AreCombinedAsTheMeasureSays) {
   EXPECT_NEAR(error_of(all, 0, 0).high - error_of(all, 0, 0).value, 0.0005 / (2.0 * std::sqrt(0.125)), 1e-12);
   EXPECT_DOUBLE_EQ(error_of(all, 0, 2).value, 0.5);
   EXPECT_DOUBLE_EQ(error_of(all, 0, 3).value, 0.15000000000000002);
-  EXPECT_NEAR(cost_of(all, 0, 0).value, 6.0, 1e-12);
+  EXPECT_NEAR(cost_of(all, 0, 0).value, 6.5, 1e-12);
   EXPECT_DOUBLE_EQ(cost_of(all, 0, 2).value, 2.5);
   EXPECT_DOUBLE_EQ(cost_of(all, 0, 3).value, 4194304.0);
 }
 
 TEST(TradeMeasures, IntervalsOfSeveralTimes_AddInQuadrature) {
   const Estimate one{4.0, 2.0, 8.0};
-  const Estimate two = list_cost_measures()[0].combine({one, one, one, one});
-  EXPECT_NEAR(two.value, 4.0, 1e-12);
-  EXPECT_NEAR(two.high, 4.0 * std::sqrt(2.0), 1e-12);  // a fourth of sqrt(4 log(2)^2)
-  EXPECT_NEAR(two.low, 4.0 / std::sqrt(2.0), 1e-12);
+  const Estimate four = list_cost_measures()[0].combine({one, one, one, one});
+  EXPECT_DOUBLE_EQ(four.value, 4.0);
+  EXPECT_DOUBLE_EQ(four.high, 6.0);  // a fourth of sqrt(4 * 4^2)
+  EXPECT_DOUBLE_EQ(four.low, 3.0);
+}
+
+// An interval that reaches 0 turned the mean of its filter alone into another one.
+TEST(TradeMeasures, EveryCost_IsOneMeanOverScenes_WhateverItsIntervals) {
+  for (const double low : {0.5, 0.0, -0.5}) {
+    const std::vector<Estimate> scenes = {{1.0, low, 1.5}, {9.0, 8.5, 9.5}};
+    for (const Measure& cost : list_cost_measures()) {
+      EXPECT_DOUBLE_EQ(cost.combine(scenes).value, 5.0) << cost.id << " " << low;
+      EXPECT_STREQ(cost.over_scenes, "mean over the scenes") << cost.id;
+    }
+  }
 }
 
 TEST(TradeFronts, AbsentValues_AreLeftOutWithTheirReason) {

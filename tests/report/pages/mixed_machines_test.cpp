@@ -69,9 +69,9 @@ TEST(MixedMachines, ThePagesScriptsReadRatios) {
   EXPECT_EQ(data["ratios"], true);
   EXPECT_EQ(data["measures"][0]["unit"], "× none");
   EXPECT_EQ(data["measures"][0]["option"], "");
-  EXPECT_EQ(data["cells"][2]["values_of"]["time_ms.moving"], 3.0);
-  EXPECT_EQ(data["cells"][2]["intervals"]["time_ms.static"], nlohmann::json({3.0 * 0.99, 3.0 * 1.01}));
-  EXPECT_EQ(data["configurations"][2]["time_ms.moving"], 3.0);
+  EXPECT_EQ(data["cells"][2]["values_of"]["ratio_to_none.moving"], 3.0);
+  EXPECT_EQ(data["cells"][2]["intervals"]["ratio_to_none.static"], nlohmann::json({3.0 * 0.99, 3.0 * 1.01}));
+  EXPECT_EQ(data["configurations"][2]["ratio_to_none.moving"], 3.0);
 }
 
 TEST(MixedMachines, FrontsAreDrawnAndWrittenOfRatios) {

@@ -132,10 +132,18 @@ TEST(RunPage, Bars_HaveTheirNumbersAsText) {
 
 TEST(RunPage, BarsOfAnEstimate_AreWhatAddsUp_TheRestIsInWords) {
   records::CellRecord cell = make_cell("cubes", "vsm", 4.0);
-  cell.gpu = {{"one", {{{"lookup", 1, {}}}, records::GpuEstimateRecord{50, 10, 40, 4, 10, 6, "memory"}, ""}}};
+  cell.gpu = {{"one",
+               {{{"lookup", 1, {}}},
+                records::GpuEstimateRecord{.lookup_us = 1e4 / 2.0736,
+                                           .prefilter_us = 4e4,
+                                           .arithmetic_us = 4e3 / 2.0736,
+                                           .sampling_us = 1e4 / 2.0736,
+                                           .memory_us = 6e3 / 2.0736,
+                                           .bound_by = "memory"},
+                ""}}};
   const std::string page = make_html(make_run(), {cell});
   EXPECT_THAT(page,
-              HasSubstr("vsm: 50 us · lookup 10 and prefilter 40 · alone: arithmetic 4, sampling 10, memory 6\""));
+              HasSubstr("vsm: 50 ms · lookups 10 and prefilter 40 · alone: arithmetic 4, sampling 10, memory 6\""));
   EXPECT_THAT(page, ::testing::ContainsRegex("<rect x=\"0\" y=\"4\" width=\"200\"[^>]*></rect><rect x=\"200\" y=\"4\" "
                                              "width=\"800\"[^>]*></rect><rect class=\"net\""));
 }
