@@ -32,7 +32,8 @@ std::vector<SceneRay> make_rays(const Camera& camera, int width, int height) {
 /// What a ray meets, with the normal turned against the ray.
 truth::ReceiverPoint make_receiver(const SceneRay& ray, float distance, const glm::dvec3& normal) {
   const glm::dvec3 towards_viewer = glm::normalize(glm::dot(normal, ray.direction) > 0.0 ? -normal : normal);
-  return {ray.origin + ray.direction * static_cast<double>(distance), towards_viewer, true};
+  constexpr double kBefore = 1.0 - 0x1p-22;  // of a distance in single precision: not behind the surface
+  return {ray.origin + ray.direction * (kBefore * static_cast<double>(distance)), towards_viewer, true};
 }
 
 /// Whether two receivers lie on one smooth surface.
