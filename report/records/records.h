@@ -189,9 +189,8 @@ struct GpuPassRecord {
   ShaderFacts facts;
 };
 
-/// Microseconds that a written model makes of the facts; see harness/gpu/README.md.
+/// Microseconds that a written model makes of the facts; frame_ms() makes the cost of them. See harness/gpu/README.md.
 struct GpuEstimateRecord {
-  double total_us = 0.0;                           ///< lookup and prefilter
   double lookup_us = 0.0;                          ///< of a million receivers, less the empty lookup's arithmetic
   double prefilter_us = 0.0;                       ///< of the map, each of its passes
   double arithmetic_us = 0.0, sampling_us = 0.0;   ///< of the lookup: the largest of these three is its time
