@@ -10,6 +10,7 @@
 #include "report/analysis/cell_group.h"
 #include "report/analysis/differences.h"
 #include "report/analysis/gpu/gpu_costs.h"
+#include "report/analysis/light_widths.h"
 #include "report/analysis/stability_words.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/surprises.h"
@@ -115,7 +116,8 @@ std::optional<document::Bars> make_bars(const analysis::CellGroup& group) {
   const images::BarScale scale = images::choose_bar_scale(drawn);
   document::Bars bars;
   bars.title = fmt::format(
-      "Where the error comes from: each part's share times RMSE. Parts left of the grey line offset the others. The "
+      "Where the error of the first phase comes from: each part's share times RMSE. Parts left of the grey line offset "
+      "the others. The "
       "black tick is the RMSE, the full width {}.",
       records::format_number(scale.length));
   for (const records::ErrorPart& part : records::list_error_parts())
@@ -154,12 +156,12 @@ void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord&
 void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGroup& group) {
   if (const auto grid = find_path(group, &records::ImagesRecord::grid))
     blocks.emplace_back(
-        document::Gallery{{}, {{*grid, "all filters on " + group.scene + ", full size behind the link"}}});
+        document::Gallery{{}, {{*grid, "all filters on " + group.scene + ", first phase, full size behind the link"}}});
   for (document::Gallery& gallery :
        std::array{make_lights_gallery(group), make_stability_gallery(group), make_map_gallery(group)})
     if (!gallery.pictures.empty()) blocks.emplace_back(std::move(gallery));
   if (const auto exr = find_path(group, &records::ImagesRecord::exr))
-    blocks.emplace_back(document::Links{"The float images of all filters:", {{*exr, *exr}}});
+    blocks.emplace_back(document::Links{"The float images of all filters, first phase:", {{*exr, *exr}}});
 }
 
 /// What there is of each scene and map, folded away; of a large run its pictures alone.
@@ -188,15 +190,19 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
   table.header = {"filter", "kernel"};
   for (const analysis::Place& place : places) table.header.push_back(analysis::describe_place(place, places));
   for (const analysis::Configuration& configuration : analysis::list_configurations(all)) {
-    auto& row = table.rows.emplace_back(
-        std::vector<std::string>{configuration.name, records::describe_kernel(configuration.cells.front()->kernel)});
+    auto& row =
+        table.rows.emplace_back(std::vector<std::string>{configuration.name, analysis::describe_kernel(configuration)});
     row.resize(table.header.size(), records::kNothing);
     for (const records::CellRecord* cell : configuration.cells)
       row[2 + analysis::find_place(places, *cell)] = records::format_number(cell->error.rmse);
   }
-  return {"table",
-          "All numbers",
-          {document::Mount{"numbers", {document::Table{"RMSE to the area truth", std::move(table)}}}}};
+  document::Section section{
+      "table",
+      "All numbers",
+      {document::Mount{"numbers", {document::Table{"RMSE to the area truth", std::move(table)}}}}};
+  if (auto widths = analysis::describe_light_widths(cells); !widths.empty())
+    section.blocks.emplace_back(document::Sentences{{}, std::move(widths)});
+  return section;
 }
 
 /// One filter's estimate as a bar of what adds up to it; its words have what does not.

@@ -83,11 +83,25 @@ void visit_fields(Is<KernelRecord> auto& kernel, auto&& visit) {
         {.text = "standard deviation along an axis, reconstruction included",
          .least = 0,
          .column = "the kernel's standard deviation along an axis, texels"});
-  visit("class", kernel.width_class,
-        {.text = "kernels of one class are about equally wide, and are compared with each other alone; null above the "
-                 "widest class",
-         .one_of = "sharp,medium,soft",
-         .column = "the class of kernels that are about as wide, with which alone it is compared"});
+  visit(
+      "class", kernel.width_class,
+      {.text = "kernels of one class are about equally wide, or 'light' as wide as the scene's light asks for, and are "
+               "compared with each other alone; null above the widest class",
+       .one_of = "sharp,medium,soft,light",
+       .column = "the class of kernels that are about as wide, with which alone it is compared"});
+  visit("by_light", kernel.by_light,
+        {.text = "the parameter whose value the width that the light asks for gave",
+         .may_lack = true,
+         .later = true,
+         .column = "the parameter whose value the light's width gave"});
+  visit(
+      "light_texels", kernel.light_texels,
+      {.text = "standard deviation along an axis that the scene's light asks for in this map: a quarter of the median "
+               "width of its penumbrae; a kernel of another width is the nearest that the filter can have",
+       .least = 0,
+       .may_lack = true,
+       .later = true,
+       .column = "the kernel's standard deviation that the scene's light asks for, texels"});
 }
 
 void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {
