@@ -89,19 +89,11 @@ void visit_fields(Is<KernelRecord> auto& kernel, auto&& visit) {
                "compared with each other alone; null above the widest class",
        .one_of = "sharp,medium,soft,light",
        .column = "the class of kernels that are about as wide, with which alone it is compared"});
-  visit("by_light", kernel.by_light,
-        {.text = "the parameter whose value the width that the light asks for gave",
-         .may_lack = true,
-         .later = true,
-         .column = "the parameter whose value the light's width gave"});
-  visit(
-      "light_texels", kernel.light_texels,
-      {.text = "standard deviation along an axis that the scene's light asks for in this map: a quarter of the median "
-               "width of its penumbrae; a kernel of another width is the nearest that the filter can have",
-       .least = 0,
-       .may_lack = true,
-       .later = true,
-       .column = "the kernel's standard deviation that the scene's light asks for, texels"});
+  constexpr About kByLight{.text = "the parameter that the light's width set", .may_lack = true, .later = true};
+  constexpr const char* kAsked = "the kernel's standard deviation that the scene's light asks for, texels";
+  visit("by_light", kernel.by_light, kByLight);
+  visit("light_texels", kernel.light_texels,
+        {.text = kAsked, .least = 0, .may_lack = true, .later = true, .column = kAsked});
 }
 
 void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {
