@@ -70,14 +70,14 @@ void assign_value(FilterRequest& request, const std::string& assignment) {
   request.set_by_user.insert(name);
 }
 
-/// Puts the radius in place of the width that was asked for.
+/// Puts the radius in place of the width that was asked for; that of a light is not known yet.
 void apply_width(FilterRequest& request) {
   if (request.width.empty() || !request.presets.empty()) return;  // of a preset it was put there
-  const double radius = solve_radius(request.spec, request.values, request.width);
-  const auto& name = std::get<std::string>(request.spec.radius_texels);
+  const std::string& name = require_width_param(request.spec, request.values, request.width);
   if (request.set_by_user.contains(name))
     fail(fmt::format("{} sets '{}' and 'width', which says the same: leave one out", request.spec.id, name));
-  request.values[name] = radius;
+  if (request.width == kLightWidth) return;
+  request.values[name] = solve_radius(request.spec, request.values, request.width);
   request.set_by_user.insert(name);
 }
 
@@ -113,7 +113,37 @@ FilterSpec strip(FilterSpec spec) {
 std::string FilterRequest::label() const {
   std::vector<std::string> shown;
   for (const std::string& name : set_by_user) shown.push_back(fmt::format("{}={}", name, to_string(values.at(name))));
+  if (param_by_light() && !is_run_width) shown.push_back(fmt::format("width={}", kLightWidth));
   return shown.empty() ? spec.id : fmt::format("{} ({})", spec.id, fmt::join(shown, ", "));
+}
+
+const std::string* FilterRequest::param_by_light() const {
+  return width == kLightWidth && presets.empty() ? find_width_param(spec, values) : nullptr;
+}
+
+void FilterRequest::take_light_width(double sigma_texels) {
+  light_sigma_texels = sigma_texels;
+  const std::string* name = param_by_light();
+  if (!name) return;
+  values[*name] = find_nearest_radius(spec, values, sigma_texels);
+}
+
+void refuse_light_widths(const std::vector<FilterRequest>& requests) {
+  for (const FilterRequest& request : requests)
+    if (request.width == kLightWidth)
+      fail(fmt::format("{}:width={}: only 'run' asks the scene's light; give a class ({}) or texels", request.spec.id,
+                       kLightWidth, describe_classes()));
+}
+
+void set_widths(std::vector<FilterRequest>& requests, const std::string& width) {
+  for (FilterRequest& request : requests) {
+    const auto* name = std::get_if<std::string>(&request.spec.radius_texels);
+    if (!request.width.empty() || (name && request.set_by_user.contains(*name) && request.presets.empty())) continue;
+    const bool is_free = request.presets.empty() && find_width_param(request.spec, request.values);
+    if (is_free || width == kLightWidth) request.width = width;
+    request.is_run_width = !request.width.empty();
+    if (is_free) apply_width(request);
+  }
 }
 
 ParamValues default_values(const FilterSpec& spec) {
@@ -147,7 +177,10 @@ ParamValue parse_value(const FilterSpec& spec, const std::string& name, const st
   return value;
 }
 
-bool is_same(const FilterRequest& a, const FilterRequest& b) { return a.spec.id == b.spec.id && a.values == b.values; }
+bool is_same(const FilterRequest& a, const FilterRequest& b) {
+  const bool is_by_light = a.param_by_light() != nullptr;
+  return a.spec.id == b.spec.id && a.values == b.values && is_by_light == (b.param_by_light() != nullptr);
+}
 
 Catalogue::Catalogue(const std::filesystem::path& folder) : folder_(folder) {
   std::error_code error;

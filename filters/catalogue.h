@@ -16,13 +16,29 @@ struct FilterRequest {
   FilterSpec spec;
   ParamValues values;                 ///< complete: every parameter has a value
   std::set<std::string> set_by_user;  ///< names of the parameters that were asked for
-  std::string width;                  ///< asked for in place of a radius, as in solve_radius(); empty: was not
-  bool user_file = false;             ///< given by its path; it runs in a process of its own
-  std::vector<Preset> presets;        ///< that were asked for, and are this
+  std::string width;          ///< asked for in place of a radius, as in solve_radius(), or kLightWidth; empty: was not
+  bool is_run_width = false;  ///< that width is the run's, and goes without saying
+  std::optional<double> light_sigma_texels;  ///< the kernel's width that the scene's light asks for, once it is known
+  bool user_file = false;                    ///< given by its path; it runs in a process of its own
+  std::vector<Preset> presets;               ///< that were asked for, and are this
 
   /// The id, with the asked-for parameters in parentheses; what tables and grids print.
   std::string label() const;
+
+  /// The parameter that the light's width sets; null where none does.
+  const std::string* param_by_light() const;
+
+  /// Gives that parameter its value. Requires the light's width in texels.
+  void take_light_width(double sigma_texels);
 };
+
+/// Gives filters a width, as solve_radius() takes it or kLightWidth, but for those that were told a radius or a width,
+/// and presets. With kLightWidth, filters that have no width to choose, and presets, count as of that width as they
+/// are. Throws Error(kUsage) as solve_radius().
+void set_widths(std::vector<FilterRequest>& requests, const std::string& width);
+
+/// Throws Error(kUsage) where one of them is to have the light's width: `run` alone asks a light.
+void refuse_light_widths(const std::vector<FilterRequest>& requests);
 
 /// Whether both are one filter with the same values: whether they make one cell.
 bool is_same(const FilterRequest& a, const FilterRequest& b);
@@ -49,7 +65,8 @@ class Catalogue {
   /// Adds many. Throws FilterErrors with what is wrong in any of them, and likewise where an id is taken.
   void add_user_files(const std::vector<std::string>& paths);
 
-  /// Parses `a,b:param=value,param=value,c`. In place of a radius a filter takes `width=`, as solve_radius() does.
+  /// Parses `a,b:param=value,param=value,c`. In place of a radius a filter takes `width=`, as solve_radius() does, or
+  /// kLightWidth, which is left to take_light_width().
   /// `all` stands for every filter but those for teaching, at its defaults, and `teaching` for these; an empty text is
   /// `all`. `@name` stands for presets, as choose_presets() finds them; what is asked for as a preset and otherwise,
   /// too, is one request. Throws Error(kUsage) for an unknown filter, preset or parameter (with the nearest name) and

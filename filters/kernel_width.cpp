@@ -30,22 +30,10 @@ std::array<WidthClass, 3> make_classes() {
   throw Error(ErrorKind::kUsage, fmt::format("{}:width={}: {}", spec.id, width, why));
 }
 
-std::vector<std::string> list_class_names() {
-  std::vector<std::string> names;
-  for (const WidthClass& each : width_classes()) names.emplace_back(each.name);
-  return names;
-}
-
 /// What a width stands for, in texels.
 double parse_width(const FilterSpec& spec, const std::string& width) {
-  for (const WidthClass& each : width_classes())
-    if (each.name == width) return each.sigma_texels;
-  double texels = 0.0;
-  const auto [end, error] = std::from_chars(width.data(), width.data() + width.size(), texels);
-  if (error != std::errc() || end != width.data() + width.size() || !std::isfinite(texels))
-    refuse_width(spec, width,
-                 "it is no number of texels, and no class" + did_you_mean_or_known(width, list_class_names()));
-  return texels;
+  if (const auto texels = find_width(width)) return *texels;
+  refuse_width(spec, width, explain_no_width(width));
 }
 
 /// The radii that a parameter can be, ascending: all of them, or the two ends of a range.
@@ -58,6 +46,45 @@ std::vector<double> list_radii(const ParamSpec& param) {
   std::ranges::sort(radii);
   return radii;
 }
+
+/// The radii of a filter, and the width of its kernel with each.
+class RadiusRange {
+ public:
+  RadiusRange(const FilterSpec& spec, const ParamValues& values, const std::string& name)
+      : spec_(spec), values_(values), param_(*spec.find_param(name)), radii_(list_radii(param_)) {}
+
+  double sigma_at(double radius) const {
+    ParamValues trial = values_;
+    trial[param_.name] = radius;
+    return *find_kernel_sigma(spec_, trial);
+  }
+  double narrowest() const { return sigma_at(radii_.front()); }
+  double widest() const { return sigma_at(radii_.back()); }
+
+  /// The radius nearest to a width; of whole numbers and choices one within the class, where there is one.
+  double find_nearest(double wanted, const WidthClass* wanted_class) const {
+    if (param_.integer || !param_.choices.empty()) {
+      const auto distance = [&](double radius) {
+        const double sigma = sigma_at(radius);
+        const double strays = wanted_class && find_width_class(sigma) != wanted_class ? 1e3 : 0.0;
+        return strays + std::abs(std::log(sigma / wanted));
+      };
+      return *std::ranges::min_element(radii_, {}, distance);
+    }
+    double low = radii_.front(), high = radii_.back();
+    while (high - low > 0.01 / kRadiiPerTexel) {
+      const double middle = 0.5 * (low + high);
+      (sigma_at(middle) < wanted ? low : high) = middle;
+    }
+    return std::clamp(std::round(high * kRadiiPerTexel) / kRadiiPerTexel, radii_.front(), radii_.back());
+  }
+
+ private:
+  const FilterSpec& spec_;
+  const ParamValues& values_;
+  const ParamSpec& param_;
+  std::vector<double> radii_;
+};
 
 }  // namespace
 
@@ -72,6 +99,13 @@ const WidthClass* find_width_class(double sigma_texels) {
   return nullptr;
 }
 
+std::vector<std::string> list_width_names() {
+  std::vector<std::string> names;
+  for (const WidthClass& each : width_classes()) names.emplace_back(each.name);
+  names.emplace_back(kLightWidth);
+  return names;
+}
+
 std::string describe_classes() {
   std::vector<std::string> texts;
   for (const WidthClass& each : width_classes())
@@ -84,39 +118,49 @@ std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValue
   return kernel ? std::optional(kernel->sigma_texels()) : std::nullopt;
 }
 
-double solve_radius(const FilterSpec& spec, const ParamValues& values, const std::string& width) {
-  const double wanted = parse_width(spec, width);
+std::optional<double> find_width(const std::string& width) {
+  for (const WidthClass& each : width_classes())
+    if (each.name == width) return each.sigma_texels;
+  double texels = 0.0;
+  const auto [end, error] = std::from_chars(width.data(), width.data() + width.size(), texels);
+  const bool is_number = error == std::errc() && end == width.data() + width.size() && std::isfinite(texels);
+  return is_number ? std::optional(texels) : std::nullopt;
+}
+
+std::string explain_no_width(const std::string& width) {
+  return "it is no number of texels, and no class" + did_you_mean_or_known(width, list_width_names());
+}
+
+const std::string* find_width_param(const FilterSpec& spec, const ParamValues& values) {
+  const auto* name = std::get_if<std::string>(&spec.radius_texels);
+  return name && find_kernel_sigma(spec, values) ? name : nullptr;
+}
+
+const std::string& require_width_param(const FilterSpec& spec, const ParamValues& values, const std::string& width) {
+  if (const std::string* name = find_width_param(spec, values)) return *name;
   const auto sigma = find_kernel_sigma(spec, values);
   const auto* name = std::get_if<std::string>(&spec.radius_texels);
-  if (!name)
+  refuse_width(spec, width,
+               name ? fmt::format("{}; set '{}' itself", explain_no_kernel(spec), *name)
+                    : "the filter has no radius that a width could set" +
+                          (sigma ? fmt::format("; its kernel is {:.3g} texels wide", *sigma) : std::string()));
+}
+
+double find_nearest_radius(const FilterSpec& spec, const ParamValues& values, double sigma_texels) {
+  const RadiusRange range(spec, values, *find_width_param(spec, values));
+  return range.find_nearest(std::clamp(sigma_texels, range.narrowest(), range.widest()), nullptr);
+}
+
+double solve_radius(const FilterSpec& spec, const ParamValues& values, const std::string& width) {
+  const double wanted = parse_width(spec, width);
+  const std::string& name = require_width_param(spec, values, width);
+  const RadiusRange range(spec, values, name);
+  if (!(wanted >= range.narrowest() * (1.0 - kSlack) && wanted <= range.widest() * (1.0 + kSlack)))
     refuse_width(spec, width,
-                 "the filter has no radius that a width could set" +
-                     (sigma ? fmt::format("; its kernel is {:.3g} texels wide", *sigma) : std::string()));
-  if (!sigma) refuse_width(spec, width, fmt::format("{}; set '{}' itself", explain_no_kernel(spec), *name));
-  const ParamSpec& param = *spec.find_param(*name);
-  auto sigma_at = [&, trial = values](double radius) mutable {
-    trial[*name] = radius;
-    return *find_kernel_sigma(spec, trial);
-  };
-  const std::vector<double> radii = list_radii(param);
-  double low = radii.front(), high = radii.back();
-  if (!(wanted >= sigma_at(low) * (1.0 - kSlack) && wanted <= sigma_at(high) * (1.0 + kSlack)))
-    refuse_width(spec, width,
-                 fmt::format("no '{}' gives this; choose a class ({}) or {:.3g} .. {:.3g} texels", *name,
-                             fmt::join(list_class_names(), ", "), sigma_at(low), sigma_at(high)));
-  const bool is_class = std::ranges::count(width_classes(), width, &WidthClass::name) > 0;
-  const auto distance = [&](double radius) {
-    const double sigma_texels = sigma_at(radius);
-    const WidthClass* its_class = find_width_class(sigma_texels);
-    const double strays = is_class && (!its_class || its_class->name != width) ? 1e3 : 0.0;
-    return strays + std::abs(std::log(sigma_texels / wanted));
-  };
-  if (param.integer || !param.choices.empty()) return *std::ranges::min_element(radii, {}, distance);
-  while (high - low > 0.01 / kRadiiPerTexel) {
-    const double middle = 0.5 * (low + high);
-    (sigma_at(middle) < wanted ? low : high) = middle;
-  }
-  return std::clamp(std::round(high * kRadiiPerTexel) / kRadiiPerTexel, radii.front(), radii.back());
+                 fmt::format("no '{}' gives this; choose a class ({}) or {:.3g} .. {:.3g} texels", name,
+                             fmt::join(list_width_names(), ", "), range.narrowest(), range.widest()));
+  const auto named = std::ranges::find(width_classes(), width, &WidthClass::name);
+  return range.find_nearest(wanted, named == width_classes().end() ? nullptr : &*named);
 }
 
 }  // namespace shadowbench::filters

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "filters/filter_spec.h"
 
@@ -28,11 +29,37 @@ const std::array<WidthClass, 3>& width_classes();
 /// The class of a kernel of this width; null where it is wider than the widest class reaches.
 const WidthClass* find_width_class(double sigma_texels);
 
+/// In place of a class: the width that a scene's light asks for, in each map. Filters of that width are compared with
+/// each other and with those that have no width to choose, however wide they are.
+inline constexpr std::string_view kLightWidth = "light";
+
+/// The names of the classes, narrow before wide, and kLightWidth.
+std::vector<std::string> list_width_names();
+
+/// The standard deviation of the kernel that does to an edge what a light does whose penumbra has this width. A light's
+/// disk, projected through the edge, is a disk as wide as the penumbra, with which the edge is convolved; a disk of
+/// radius R has a standard deviation of R / 2 along an axis: a quarter of its width.
+inline double sigma_of_penumbra(double width) { return 0.25 * width; }
+
 /// Lists the classes with their widths and limits: "sharp 0.41 texels, up to 0.51; ...".
 std::string describe_classes();
 
 /// The width of a filter's kernel; empty where find_kernel() finds none.
 std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValues& values);
+
+/// The texels that the name of a class or a number stands for; empty for any other text, and why that is none.
+std::optional<double> find_width(const std::string& width);
+std::string explain_no_width(const std::string& width);
+
+/// The parameter that a width sets, where a filter has one; null without, and where the filter's kernel is not known.
+const std::string* find_width_param(const FilterSpec& spec, const ParamValues& values);
+
+/// The same. Throws Error(kUsage) as solve_radius() where the filter has none.
+const std::string& require_width_param(const FilterSpec& spec, const ParamValues& values, const std::string& width);
+
+/// Finds the radius whose kernel is nearest to so many texels in ratio: the narrowest or the widest where none reaches
+/// them. Requires a find_width_param().
+double find_nearest_radius(const FilterSpec& spec, const ParamValues& values, double sigma_texels);
 
 /// Finds the radius with which a filter's kernel is as wide as asked for, the other parameters being as in `values`.
 /// `width` is the name of a class or a number of texels. Of whole-numbered radii, and of choices, it is the one whose

@@ -146,9 +146,8 @@ Command make_advise_command() {
   command.add("--requires", &a->claims, "what the filter must claim, such as contact-hardening; may be repeated");
   command.add("--scene", &a->scenes, "judge on this scene; may be repeated [all of the run]").names(ValueKind::kScene);
   command.add("--size", &a->size, "judge pictures of WxH pixels [all of the run]");
-  std::vector<std::string> classes;
-  for (const auto& each : filters::width_classes()) classes.emplace_back(each.name);
-  command.add("--class", &a->width_class, "judge kernels of this class of width [any]").one_of(classes);
+  command.add("--class", &a->width_class, "judge kernels of this class of width [any]")
+      .one_of(filters::list_width_names());
   command.add("--light-motion", &a->light_motion, "moving or static: whether every frame pays for map and prefilter")
       .one_of({"moving", "static"});
   command

@@ -100,6 +100,7 @@ void print_presets(const std::vector<filters::FilterRequest>& requests) {
 std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& text,
                                                           const options::Resources& resources) {
   std::vector<filters::FilterRequest> requests = filters::Catalogue(resources.filters).parse_requests(text);
+  filters::refuse_light_widths(requests);
   require_distinct(requests);
   print_presets(requests);
   return requests;

@@ -18,6 +18,7 @@ struct BiasArguments : PictureArguments {
 
 int sweep_bias(const BiasArguments& arguments) {
   options::RunOptions options;
+  options.phases = 1;  // no error is averaged
   take_picture_options(arguments, options);
   options.scenes = {arguments.scene};
   options.ground = arguments.ground;

@@ -16,6 +16,7 @@ namespace {
 std::vector<filters::FilterRequest> parse_pair(const filters::Catalogue& catalogue, const std::string& text,
                                                const options::RunOptions& options) {
   std::vector<filters::FilterRequest> pair = catalogue.parse_requests(text);
+  if (!options.kernel_width.empty()) filters::set_widths(pair, options.kernel_width);
   if (pair.size() != 2 || filters::is_same(pair[0], pair[1]))
     fail(fmt::format("--until-different: '{}' is not two filters; name two of the run's, such as tent5x5,castano5",
                      text));
@@ -37,6 +38,7 @@ void choose_filters(options::RunOptions& options, RunArguments& arguments) {
   options.reference = catalogue.parse_requests(kReferenceFilter).front();
   options.filters =
       parse_filters(catalogue, options::find_told<std::string>(arguments.told, "--filters"), options.filter_files);
+  if (!options.kernel_width.empty()) filters::set_widths(options.filters, options.kernel_width);
   if (const auto& tuned = options::find_told<std::string>(arguments.told, "--tuned"); !tuned.empty())
     options.notes = tune::apply_tuned(options.filters, catalogue, tuned, options.map_sizes);
   require_distinct(options.filters);
@@ -94,7 +96,7 @@ std::string apply_experiment(const CommandLine& line, RunArguments& arguments) {
   if (line.has("--filters")) return experiment.title;
   if (experiment.filters.empty()) {
     for (const options::ExperimentSetting& setting : read(kDefaultExperiment).settings)
-      if (setting.option == "--filters") take(setting);
+      if (setting.option == "--filters" || setting.option == "--width") take(setting);
     return experiment.title;
   }
   filters::Catalogue catalogue(resources.filters);

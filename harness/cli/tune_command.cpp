@@ -42,6 +42,7 @@ void choose_tuned_filters(options::RunOptions& options, const TuneArguments& arg
                     arguments.filter_files.front()));
   }
   options.filters = filters::Catalogue(options.resources.filters).parse_requests(arguments.filters);
+  filters::refuse_light_widths(options.filters);
   print_presets(options.filters);
   for (const filters::FilterRequest& request : options.filters) render::require_usable(options.bias, request.spec);
 }
@@ -49,6 +50,7 @@ void choose_tuned_filters(options::RunOptions& options, const TuneArguments& arg
 tune::TuneOptions make_tune_options(const TuneArguments& arguments) {
   tune::TuneOptions options;
   options::RunOptions& run = options.run;
+  run.phases = 1;  // each view is drawn through one place of the map
   options.metric = tune::find_tune_metric(arguments.metric).name;
   options.budget = parse_budget(arguments.budget);
   take_picture_options(arguments, run);

@@ -142,7 +142,8 @@ std::vector<std::filesystem::path> export_scenes(const options::RunOptions& opti
       scenes[folder] = {&each, describe_view(planned, *each.task.camera)};
       folders.push_back(folder);
     }
-    measure::SceneAssets assets(renderer, planned.options, planned.scene, cache, measure::padding_texels(options));
+    measure::SceneAssets assets(renderer, planned.options, planned.scene, cache,
+                                measure::padding_texels(planned.options));
     scenes[folder].second["maps"].push_back(
         describe_map(planned, each.task.map_size, assets.light_map(*each.task.camera, each.task.map_size).layers));
   }

@@ -142,7 +142,8 @@ const run::PlannedTask& RunScorer::find_task(const std::string& scene, const std
 measure::SceneAssets& RunScorer::assets_of(const run::PlannedTask& task) {
   const run::PlannedScene& planned = plan_.scenes[task.scene];
   return assets_
-      .try_emplace(task.scene, renderer_, planned.options, planned.scene, cache_, measure::padding_texels(options_))
+      .try_emplace(task.scene, renderer_, planned.options, planned.scene, cache_,
+                   measure::padding_texels(planned.options))
       .first->second;
 }
 

@@ -10,6 +10,7 @@ namespace shadowbench::measure {
 namespace {
 
 constexpr std::size_t kFewestOfPairs = 8;
+constexpr const char* kFewPhases = "fewer than eight phases of the map's grid tell too little of flicker; see --phases";
 constexpr const char* kOnePhase = "one phase of the map's grid tells nothing of the others; see --phases";
 
 double wrap(double shift) { return shift < 0.5 ? shift : shift - 1.0; }
@@ -23,13 +24,13 @@ double draw(std::uint32_t seed, std::size_t number) {
 std::size_t count_phases_of_group(std::size_t phases) { return phases >= kFewestOfPairs && phases % 2 == 0 ? 2 : 1; }
 
 std::vector<glm::dvec2> list_phase_shifts(int count, std::uint32_t seed) {
+  if (count == 1) return {glm::dvec2(0.0)};
   const std::size_t of_group = count_phases_of_group(static_cast<std::size_t>(count));
   std::vector<glm::dvec2> shifts;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const std::size_t group = i / of_group;
     const double half = i % of_group == 0 ? 0.0 : 0.5;
-    const glm::dvec2 start =
-        group == 0 ? glm::dvec2(0.0) : glm::dvec2(draw(seed, 2 * group), draw(seed, 2 * group + 1));
+    const glm::dvec2 start(draw(seed, 2 * group), draw(seed, 2 * group + 1));
     shifts.emplace_back(wrap(std::fmod(start.x + half, 1.0)), wrap(std::fmod(start.y + half, 1.0)));
   }
   return shifts;
@@ -58,15 +59,15 @@ void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorSt
 }
 
 void note_flicker(records::CellRecord& record, const std::optional<metrics::Change>& change) {
-  for (const char* field : {"error.flicker", "error.flicker_ci95", "error.rmse_ci95", "error.rmse_replicates"})
-    if (!change) record.absent[field] = kOnePhase;
-  if (!change) return;
+  if (!record.rmse_ci95) record.absent["error.rmse_ci95"] = record.absent["error.rmse_replicates"] = kOnePhase;
+  const bool is_few = record.phases.value_or(1) < static_cast<std::int64_t>(kFewestOfPairs);
+  if (is_few || !change || !change->reach) {
+    record.absent["error.flicker"] = record.absent["error.flicker_ci95"] = kFewPhases;
+    return;
+  }
   record.error.flicker = change->value;
-  if (change->reach)
-    record.flicker_ci95 =
-        records::Interval{std::max(0.0, change->value - *change->reach), change->value + *change->reach};
-  else
-    record.absent["error.flicker_ci95"] = "two phases have no interval; see --phases";
+  record.flicker_ci95 =
+      records::Interval{std::max(0.0, change->value - *change->reach), change->value + *change->reach};
 }
 
 }  // namespace shadowbench::measure

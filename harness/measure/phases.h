@@ -17,19 +17,19 @@ namespace shadowbench::measure {
 std::size_t count_phases_of_group(std::size_t phases);
 
 /// Where the map's grid stands in each of `count` phases: how far it is moved along its axes, each in [-1/2, 1/2)
-/// texel. The first is not moved; every further group begins anywhere, by `seed`, and its second phase is half a texel
+/// texel. A single one is not moved. Every group begins anywhere, by `seed`, and its second phase is half a texel
 /// farther along both axes, where what depends on the phase once a texel has the opposite sign. Phases of a smaller
-/// count of pairs are the first of a larger one.
-/// Source: independent shifts of one set of points: Cranley and Patterson 1976, Randomization of Number Theoretic
-/// Methods for Multiple Integration, SIAM Journal on Numerical Analysis 13(6); antithetic pairs: Hammersley and Morton
-/// 1956.
+/// count of pairs are the first of a larger one. Source: independent shifts of one set of points: Cranley and Patterson
+/// 1976, Randomization of Number Theoretic Methods for Multiple Integration, SIAM Journal on Numerical Analysis 13(6);
+/// antithetic pairs: Hammersley and Morton 1956.
 std::vector<glm::dvec2> list_phase_shifts(int count, std::uint32_t seed);
 
 /// Notes every metric of the table that measure_error() gives: its mean over the phases, which come in groups of
 /// `group`, with the interval of the RMSE; the largest error is the largest of all.
 void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorStats>& phases, std::size_t group);
 
-/// Notes how much the image changes from phase to phase, and why it is not known where there is one phase.
+/// Notes how much the image changes from phase to phase, and why it is not known below eight phases: at two and four it
+/// was -14 to +26 % off what 8, 16 and 64 agree on within 4 %. Requires note_errors().
 void note_flicker(records::CellRecord& record, const std::optional<metrics::Change>& change);
 
 }  // namespace shadowbench::measure

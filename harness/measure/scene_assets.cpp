@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "harness/measure/mean_flip.h"
+#include "harness/measure/phases.h"
 #include "harness/render/shade_pass.h"
 #include "harness/scene/scene.h"
 #include "report/images/picture_io.h"
@@ -67,7 +68,8 @@ LightMap& SceneAssets::light_map(const scene::Camera& camera, int map_size) {
   const std::pair key(options_.fit.follows_view() ? &camera : nullptr, map_size);
   const auto found = maps_.find(key);
   if (found != maps_.end()) return found->second;
-  LightMap& kept = maps_.emplace(key, make_light_map(scene_.light, camera, map_size)).first->second;
+  const glm::dvec2 first_shift = list_phase_shifts(options_.phases, options_.seed).front();
+  LightMap& kept = maps_.emplace(key, make_light_map(scene_.light, camera, map_size, first_shift)).first->second;
   require_casters(kept);
   return kept;
 }

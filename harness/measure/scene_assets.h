@@ -43,7 +43,8 @@ class SceneAssets {
   SceneAssets(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
               truth::TruthCache& cache, double pad_texels);
 
-  /// The light's map; one for all cameras, unless the light is fitted to what each sees.
+  /// The light's map in the first of the run's phases; one for all cameras, unless the light is fitted to what each
+  /// sees.
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
   LightMap& light_map(const scene::Camera& camera, int map_size);
 

@@ -327,8 +327,14 @@ class SceneBench {
 void set_kernel(records::CellRecord& record, const filters::FilterRequest& request) {
   record.kernel_radius_texels = filters::radius_texels(request.spec, request.values);
   record.kernel = records::make_kernel_record(filters::find_kernel_sigma(request.spec, request.values));
+  if (request.width == filters::kLightWidth) {
+    record.kernel.width_class = request.width;
+    record.kernel.light_texels = request.light_sigma_texels;
+    if (const std::string* name = request.param_by_light()) record.kernel.by_light = *name;
+  }
   if (!record.kernel.sigma_texels)
-    record.absent["kernel"] = filters::explain_no_kernel(request.spec);
+    record.absent[record.kernel.width_class ? "kernel.sigma_texels" : "kernel"] =
+        filters::explain_no_kernel(request.spec);
   else if (!record.kernel.width_class)
     record.absent["kernel.class"] =
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);

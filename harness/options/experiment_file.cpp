@@ -159,10 +159,12 @@ void check_values(const SweptFilter& filter, const filters::Catalogue& catalogue
   const filters::FilterSpec& spec = catalogue.find(filter.id);
   for (const SweptParam& param : filter.params)
     for (const std::string& value : list_values(param, spec.find_param(param.name)))
-      if (filters::asks_for_width(spec, param.name))
-        filters::solve_radius(spec, filters::default_values(spec), value);
-      else
+      if (!filters::asks_for_width(spec, param.name))
         filters::parse_value(spec, param.name, value);
+      else if (value == filters::kLightWidth)
+        filters::require_width_param(spec, filters::default_values(spec), value);
+      else
+        filters::solve_radius(spec, filters::default_values(spec), value);
 }
 
 /// Lists every combination of one filter's values, as `--filters` takes it.
@@ -245,6 +247,7 @@ std::string write_experiment(const RunOptions& options) {
     toml::table filter{{"id", request.spec.id}};
     for (const std::string& name : request.set_by_user)
       std::visit([&](const auto& each) { filter.insert(name, each); }, request.values.at(name));
+    if (request.param_by_light()) filter.insert("width", filters::kLightWidth);
     filters.push_back(std::move(filter));
   }
   if (!filters.empty()) table.insert("filter", std::move(filters));

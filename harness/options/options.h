@@ -93,6 +93,7 @@ struct RunOptions {
   bool ground = false;
   std::vector<filters::FilterRequest> filters;
   std::vector<std::string> filter_files;  ///< of the user, as they were named
+  std::string kernel_width;  ///< of filters that were told none: see filters::set_widths(); empty: their own
   std::vector<int> map_sizes = {1024};
   std::vector<PictureSize> sizes = {{}};  ///< of all pictures of a run
   int width = 960;                        ///< of the pictures that are drawn at present, in pixels

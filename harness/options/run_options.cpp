@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/split_list.h"
+#include "filters/kernel_width.h"
 #include "harness/gl/pixel_format.h"
 
 namespace shadowbench::options {
@@ -19,6 +20,7 @@ constexpr double kLargestDepthRatio = 1e7;
 constexpr double kMostPadding = 1000.0;  // in texels; no kernel is wider
 constexpr int kMostRounds = 10000;
 constexpr const char *kDefaultGpus = "navi21,vega10", *kAuto = "auto";
+const std::string kOwnWidth = "own";
 
 // How a value of a run is told, and how it is taken from what the option `name` was told; most are told as they are.
 
@@ -245,6 +247,20 @@ std::vector<RunOption> list_run_options() {
             std::string())
       .names(ValueKind::kFilters)
       .also_called("--filter");
+  t.add_row(
+       "--width",
+       "the kernel's width of every filter that --filters tells none, and no radius: a class of 'list filters', "
+       "texels, "
+       "'light', what the scene's light asks for in each map, or 'own', that of each filter's own defaults",
+       kOwnWidth,
+       [](RunOptions& o, const Told& told) {
+         const auto& text = std::get<std::string>(told);
+         if (text != kOwnWidth && text != filters::kLightWidth && !filters::find_width(text))
+           fail(fmt::format("--width: '{}': {}; or '{}'", text, filters::explain_no_width(text), kOwnWidth));
+         o.kernel_width = text == kOwnWidth ? std::string() : text;
+       },
+       [](const RunOptions& o) { return Told(o.kernel_width.empty() ? kOwnWidth : o.kernel_width); })
+      .never_empty("a class of width, texels, light or own");
   t.add("--filter-file", "a filter of your own, one GLSL file; may be repeated", &RunOptions::filter_files)
       .names(ValueKind::kFile);
   t.add_row("--tuned",

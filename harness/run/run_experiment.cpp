@@ -142,8 +142,7 @@ class Experiment {
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (!options_.part.is_worker()) {
       std::vector<records::CellRecord> cells = records::read_cells(options_.out, keep_rows(plan));
-      if (options_.pictures && options_.truth)
-        draw_supersampled_pictures(renderer_, plan, cache_, measure::padding_texels(options_), cells);
+      if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, plan, cache_, cells);
       pages::write_report(options_.out, run_, cells);
     }
     cache_.prune(truth::kMaxCacheBytes);
@@ -360,7 +359,8 @@ class Experiment {
     std::optional<measure::SceneAssets> assets;
     for (const PlannedTask& each : plan.tasks) {
       if (each.scene != index || each.task.filters.empty()) continue;
-      if (!assets) assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(options_));
+      if (!assets)
+        assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(planned.options));
       if (options_.part.product == options::Product::kTruth)
         trace_shared(planned, each.task, *assets);
       else if (options_.part.product == options::Product::kPrograms)

@@ -9,7 +9,9 @@
 
 #include "base/content_hash.h"
 #include "base/error.h"
+#include "filters/kernel_width.h"
 #include "filters/model.h"
+#include "harness/measure/light_width.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/options/run_options.h"
 #include "harness/render/gbuffer.h"
@@ -86,6 +88,7 @@ std::string name_cell_content(const std::string& scene_content, const filters::F
   hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));
   hash.add(fmt::format("moments {} exponent {} floor {} bound at zero {}", request.spec.holds_moments,
                        request.spec.exponent, request.spec.variance_floor, request.spec.bound_at_zero));
+  if (request.light_sigma_texels) hash.add(fmt::format("width by light {}", *request.light_sigma_texels));
   const auto kernel = filters::find_kernel(request.spec, request.values);
   hash.add(fmt::format("kernel {} model {}", kernel ? kernel->name() : "", request.spec.copy_of));
   return hash.name();
@@ -204,20 +207,44 @@ class Planner {
   const std::string& renderer_;
   RunPlan plan_;
   ContentHash hash_, own_hash_;
+  std::optional<scene::EdgeMeter> meter_;  ///< of the scenes at `meter_place_`, which differ in their lights and fits
+  std::size_t meter_place_ = 0;
 
   void add_scene(std::size_t index) {
-    const PlannedScene& scene = plan_.scenes[index];
+    PlannedScene& scene = plan_.scenes[index];
     if (options_.part.is_task() && (index == 0 || plan_.scenes[index - 1].place != scene.place))
       plan_.cells = find_first_cell(options_.part, scene.place);
-    const std::string content = name_scene_content(scene.options, scene.scene);
+    std::vector<measure::SceneTask> tasks;
     for (const scene::Camera* camera : choose_views(options_, scene.scene))
-      for (const int map_size : options_.map_sizes) add_task(index, {&scene.scene, camera, map_size, {}}, content);
+      for (const int map_size : options_.map_sizes) tasks.push_back({&scene.scene, camera, map_size, options_.filters});
+    take_light_widths(scene, tasks);
+    const std::string content = name_scene_content(scene.options, scene.scene);
+    for (const measure::SceneTask& task : tasks) add_task(index, task, content);
   }
 
-  void add_task(std::size_t scene, measure::SceneTask task, const std::string& scene_content) {
+  /// Gives filters the width that the light asks for in each view and map, and all of the scene's maps the padding that
+  /// the widest of them needs. It is asked for in maps with the padding of the filters' own widths.
+  void take_light_widths(PlannedScene& scene, std::vector<measure::SceneTask>& tasks) {
+    const auto is_asked = [](const filters::FilterRequest& each) { return each.width == filters::kLightWidth; };
+    if (std::ranges::none_of(options_.filters, is_asked)) return;
+    if (!meter_ || meter_place_ != scene.place) meter_.emplace(scene.scene);
+    meter_place_ = scene.place;
+    const double pad_texels = measure::padding_texels(options_);
+    std::vector<filters::FilterRequest> all;
+    for (measure::SceneTask& task : tasks) {
+      const auto sigma = measure::find_light_sigma(
+          *meter_, scene.options, {scene.scene, scene.scene.light, *task.camera, task.map_size, pad_texels});
+      for (filters::FilterRequest& request : task.filters)
+        if (is_asked(request)) request.take_light_width(sigma.value_or(0.0));
+      all.insert(all.end(), task.filters.begin(), task.filters.end());
+    }
+    scene.options.pad_texels = options_.pad_texels.value_or(measure::largest_padding_texels(all));
+  }
+
+  void add_task(std::size_t scene, const measure::SceneTask& task, const std::string& scene_content) {
     PlannedTask planned{scene, task, {}, {}};
-    std::vector<filters::FilterRequest> missing;
-    for (const filters::FilterRequest& request : options_.filters) {
+    planned.task.filters.clear();
+    for (const filters::FilterRequest& request : task.filters) {
       const std::string key = measure::make_record(plan_.scenes[scene].options, task, request).key;
       const std::string content = name_cell_content(scene_content, request);
       add_cell(hash_, key, content);

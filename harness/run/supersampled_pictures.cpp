@@ -125,7 +125,7 @@ std::vector<ShownCell> list_shown(const RunPlan& plan, std::vector<records::Cell
 }  // namespace
 
 void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache,
-                                double pad_texels, std::vector<records::CellRecord>& cells) {
+                                std::vector<records::CellRecord>& cells) {
   const gl::Recorder::Pause pause(renderer.recorder.get());
   std::optional<measure::SceneAssets> assets;
   std::optional<SampledView> view;
@@ -140,7 +140,7 @@ void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan
     if (before != task) {
       view.reset();
       if (!before || before->scene != task->scene)
-        assets.emplace(renderer, planned.options, planned.scene, cache, pad_texels);
+        assets.emplace(renderer, planned.options, planned.scene, cache, measure::padding_texels(planned.options));
       view.emplace(renderer, planned, task->task, *assets, side);
       truth = stem + ".truth.supersampled.png";
       images::write_picture_png(out / truth, view->draw_truth());

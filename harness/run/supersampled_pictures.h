@@ -15,6 +15,6 @@ namespace shadowbench::run {
 /// those that are drawn get the paths, and are written; those that an earlier run measured stay as they are. Cost: 16
 /// lookups and shadings for each, and about one tracing for each view.
 void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache,
-                                double pad_texels, std::vector<records::CellRecord>& cells);
+                                std::vector<records::CellRecord>& cells);
 
 }  // namespace shadowbench::run

@@ -10,6 +10,7 @@
 #include "harness/run/run_experiment.h"
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/differences.h"
+#include "report/records/cell_key.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
 
@@ -20,8 +21,11 @@ namespace {
 constexpr double kBelowOfEachLook = 0.994;
 
 analysis::CellChoice choose(const filters::FilterRequest& request) {
-  return [id = request.spec.id, params = measure::record_params(request.values)](const records::CellRecord& cell) {
-    return cell.filter == id && cell.params == params;
+  records::CellRecord asked;
+  asked.params = measure::record_params(request.values);
+  if (const std::string* name = request.param_by_light()) asked.kernel.by_light = *name;
+  return [id = request.spec.id, params = records::named_params(asked)](const records::CellRecord& cell) {
+    return cell.filter == id && records::named_params(cell) == params;
   };
 }
 

@@ -51,6 +51,13 @@ using Clock = std::chrono::steady_clock;
   _exit(EXIT_FAILURE);
 }
 
+/// The filter with the radius that the light's width gave, as a worker is told it.
+filters::FilterRequest tell_radius(filters::FilterRequest request) {
+  if (const std::string* name = request.param_by_light()) request.set_by_user.insert(*name);
+  request.width.clear();
+  return request;
+}
+
 /// An experiment of this one cell, for a worker that writes into `folder`.
 options::RunOptions make_worker_options(const options::RunOptions& options, const measure::SceneTask& task,
                                         const filters::FilterRequest& request, const std::filesystem::path& folder) {
@@ -60,7 +67,8 @@ options::RunOptions make_worker_options(const options::RunOptions& options, cons
   own.filter_files.clear();
   own.views = {task.camera->name};
   own.light_names = {task.scene->light.name};
-  own.filters = {request};
+  own.filters = {tell_radius(request)};
+  own.kernel_width.clear();
   own.map_sizes = {task.map_size};
   own.sizes = {{options.width, options.height}};
   own.fits = {options.fit};
@@ -112,16 +120,23 @@ measure::MeasuredCell failed_cell(const options::RunOptions& options, const meas
 
 measure::MeasuredCell read_cell(const options::RunOptions& options, const measure::SceneTask& task,
                                 const filters::FilterRequest& request) {
+  const filters::FilterRequest told = tell_radius(request);
+  const records::CellRecord planned = measure::make_record(options, task, request);
   measure::MeasuredCell cell;
   cell.request = request;
-  cell.label = request.label();
-  cell.record = records::read_cell(options.out, measure::make_record(options, task, request).key);
+  cell.record = records::read_cell(options.out, measure::make_record(options, task, told).key);
+  cell.record.key = planned.key;
+  cell.record.kernel = planned.kernel;
+  for (const char* field : {"kernel", "kernel.sigma_texels", "kernel.class"}) cell.record.absent.erase(field);
+  cell.record.absent.insert(planned.absent.begin(), planned.absent.end());
   const std::optional<std::string> frames = cell.record.images.frames;
   cell.record.images = {};
   cell.record.images.frames = frames;
   cell.phases.resize(static_cast<std::size_t>(options.phases) - 1);
   images::ExrFile file = images::read_exr(options.out / exr_name(options, task));
+  cell.label = told.label();
   take_float_images(cell, file.parts);
+  cell.label = request.label();
   return cell;
 }
 

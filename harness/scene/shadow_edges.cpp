@@ -12,6 +12,7 @@
 namespace shadowbench::scene {
 namespace {
 
+constexpr int kFineWidth = 240;
 constexpr double kFewestSurfaces = 0.5;  ///< of the pixels
 
 /// The rays of a camera's pixels, row by row from the top.
@@ -122,12 +123,13 @@ std::vector<glm::vec3> EdgeMeter::find_lit_points(const Beam& lamp) const {
   return points;
 }
 
-EdgeCount EdgeMeter::count(const Camera& camera, const Light& light, double aspect, int width) const {
+truth::ReceiverImage EdgeMeter::look(const Camera& camera, double aspect, int width) const {
   const int height = std::clamp(static_cast<int>(std::lround(width / aspect)), 1, 8 * width);
-  truth::ReceiverImage seen{width, height, trace(make_rays(camera, width, height))};
-  EdgeCount result;
-  result.pixels = static_cast<int>(seen.points.size());
-  result.surfaces = static_cast<int>(std::ranges::count(seen.points, true, &truth::ReceiverPoint::counts));
+  return {width, height, trace(make_rays(camera, width, height))};
+}
+
+/// Receivers that the light does not shine on no longer count afterwards.
+EdgeMeter::Edges EdgeMeter::find_edges(truth::ReceiverImage& seen, const Light& light) const {
   for (truth::ReceiverPoint& point : seen.points) {
     point.counts = point.counts && glm::dot(point.normal_ws, to_light(light, point.position_ws)) > 0.0f &&
                    shines_on(light, point.position_ws);
@@ -138,19 +140,54 @@ EdgeCount EdgeMeter::count(const Camera& camera, const Light& light, double aspe
     const std::vector<float> unblocked = truth::trace_hard(part->surfaces, seen, make_area_light(light));
     std::ranges::transform(visibility, unblocked, visibility.begin(), [](float a, float b) { return std::min(a, b); });
   }
-  std::vector<bool> at_edge(seen.points.size());
+  Edges edges{std::vector<bool>(seen.points.size()), std::vector<bool>(seen.points.size()), 0};
   const auto compare = [&](std::size_t a, std::size_t b) {
     if (visibility[a] == visibility[b] || !is_same_surface(seen.points[a], seen.points[b])) return;
-    at_edge[a] = at_edge[b] = true;
+    edges.lit[visibility[a] > visibility[b] ? a : b] = true;
+    edges.dark[visibility[a] > visibility[b] ? b : a] = true;
   };
-  const auto across = static_cast<std::size_t>(width);
+  const auto width = static_cast<std::size_t>(seen.width);
   for (std::size_t i = 0; i < seen.points.size(); ++i) {
-    result.lit += seen.points[i].counts && visibility[i] > 0.0f;
-    if ((i + 1) % across != 0) compare(i, i + 1);
-    if (i + across < seen.points.size()) compare(i, i + across);
+    edges.lit_receivers += seen.points[i].counts && visibility[i] > 0.0f;
+    if ((i + 1) % width != 0) compare(i, i + 1);
+    if (i + width < seen.points.size()) compare(i, i + width);
   }
-  result.at_edge = static_cast<int>(std::ranges::count(at_edge, true));
+  return edges;
+}
+
+EdgeCount EdgeMeter::count(const Camera& camera, const Light& light, double aspect, int width) const {
+  truth::ReceiverImage seen = look(camera, aspect, width);
+  EdgeCount result;
+  result.pixels = static_cast<int>(seen.points.size());
+  result.surfaces = static_cast<int>(std::ranges::count(seen.points, true, &truth::ReceiverPoint::counts));
+  const Edges edges = find_edges(seen, light);
+  result.lit = edges.lit_receivers;
+  for (std::size_t i = 0; i < edges.lit.size(); ++i) result.at_edge += edges.lit[i] || edges.dark[i];
   return result;
+}
+
+std::vector<EdgePenumbra> EdgeMeter::list_penumbrae(const Camera& camera, const Light& light, double aspect) const {
+  truth::ReceiverImage seen = look(camera, aspect, kFineWidth);
+  const Edges edges = find_edges(seen, light);
+  for (std::size_t i = 0; i < edges.dark.size(); ++i) seen.points[i].counts = edges.dark[i];
+  const truth::AreaLight area = make_area_light(light);
+  std::vector<float> distances(seen.points.size(), 0.0f);
+  for (const Part* part : parts()) {
+    if (!part->casts_shadow) continue;
+    const std::vector<float> found = truth::trace_first_blockers(part->surfaces, seen, area);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (std::isfinite(found[i])) distances[i] = std::max(distances[i], found[i]);
+  }
+  std::vector<EdgePenumbra> penumbrae;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (!(distances[i] > 0.0f)) continue;
+    const auto behind = static_cast<double>(distances[i]);  // the occluder, metres
+    const glm::vec3& position = seen.points[i].position_ws;
+    const bool is_lamp = std::isfinite(area.reach());
+    const double before = is_lamp ? glm::length(area.centre_direction(glm::dvec3(position))) - behind : 1.0;
+    if (before > 0.0) penumbrae.push_back({position, light_size(light) * behind / before});
+  }
+  return penumbrae;
 }
 
 }  // namespace shadowbench::scene

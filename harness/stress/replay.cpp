@@ -31,6 +31,7 @@ struct Result {
 
 options::RunOptions make_options(const AxisInputs& inputs, const Mistake& mistake) {
   options::RunOptions options;
+  options.phases = 1;  // no error is averaged
   options.resources = inputs.resources;
   options.scenes = {mistake.scene};
   const filters::Catalogue catalogue(inputs.resources.filters);

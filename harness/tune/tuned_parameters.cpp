@@ -38,8 +38,10 @@ void take_values(filters::FilterRequest& request, const filters::ParamValues& va
   for (const auto& [name, value] : values) {
     const bool is_set = request.set_by_user.contains(name);
     // A radius that a width asked for is no wish for this very radius.
-    const bool by_width = !request.width.empty() && std::get<std::string>(request.spec.radius_texels) == name;
+    const auto* radius = std::get_if<std::string>(&request.spec.radius_texels);
+    const bool by_width = !request.width.empty() && radius && *radius == name;
     if (is_set && !by_width) continue;
+    if (by_width) request.width.clear();
     request.values[name] = value;
     if (value != defaults.at(name)) request.set_by_user.insert(name);  // labels have it
   }

@@ -16,6 +16,7 @@ namespace shadowbench::view {
 Side make_side(const filters::Catalogue& catalogue, const std::string& text) {
   const bool truth = text == kTruthName;
   const std::vector<filters::FilterRequest> requests = catalogue.parse_requests(truth ? "none" : text);
+  filters::refuse_light_widths(requests);
   if (requests.size() != 1)
     throw Error(ErrorKind::kUsage,
                 fmt::format("'{}' names {} filters: a side shows one, or '{}'", text, requests.size(), kTruthName));

@@ -45,13 +45,13 @@ std::vector<Metric> list_errors() {
       {"error.mean", at<&V::error, &ErrorRecord::mean>, "visibility", kAny, kZero, "mean signed error",
        "mean of image less truth, over receivers; positive where the image is too bright", kError, kTabled, "", kValues,
        &ErrorStats::mean},
-      {"error.flip", at<&V::error, &ErrorRecord::flip>, "FLIP", kZeroToOne, kLess, "FLIP of the picture",
+      {"error.flip", at<&V::error, &ErrorRecord::flip>, "FLIP", kZeroToOne, kLess, "FLIP of the picture, first phase",
        fmt::format("mean LDR-FLIP of the shaded picture against the one shaded with the truth, over the whole picture, "
                    "at {} pixels per degree (Andersson et al. 2020)",
                    kDefaultPixelsPerDegree),
        kError, kUntabled, "--max-flip", kPictures},
       {"error.kernel_rmse", at<&V::error, &ErrorRecord::kernel_rmse>, "visibility", kPositive, kLess,
-       "RMSE to the kernel truth",
+       "RMSE to the kernel truth, first phase",
        "root mean square of image less ray-traced kernel, over receivers; that is the fraction of the filter's own "
        "kernel, laid on the receiver's tangent plane, that sees the light's centre",
        kError, kTabled},
@@ -103,32 +103,32 @@ std::vector<Metric> list_map_metrics() {
 std::vector<Metric> list_artefacts() {
   const ArtefactLimits& limits = kArtefactLimits;
   return {
-      {"artefact.acne", at<&V::artefact, &ArtefactRecord::acne>, "share", kZeroToOne, kLess, "acne",
+      {"artefact.acne", at<&V::artefact, &ArtefactRecord::acne>, "share", kZeroToOne, kLess, "acne, first phase",
        fmt::format("of the receivers whose whole area light and whole guard is lit: those that the image shows darker "
                    "than {}. Guard: a square on the receiver's tangent plane, of half-width (widest kernel of the run "
                    "+ {} texel), every ray of which is traced to the light's centre",
                    limits.acne_below, limits.guard_texels),
        kRate, kTabled, "--max-acne"},
-      {"artefact.leak", at<&V::artefact, &ArtefactRecord::leak>, "share", kZeroToOne, kLess, "leak",
+      {"artefact.leak", at<&V::artefact, &ArtefactRecord::leak>, "share", kZeroToOne, kLess, "leak, first phase",
        fmt::format("of the receivers whose area light and whole guard (see acne) is blocked, by something farther than "
                    "{} texels along the light: those that the image shows brighter than {}",
                    limits.contact_texels, limits.leak_above),
        kRate, kTabled, "--max-leak"},
       {"artefact.contact_gap", at<&V::artefact, &ArtefactRecord::contact_gap>, "share", kZeroToOne, kLess,
-       "contact gap",
+       "contact gap, first phase",
        fmt::format(
            "of the receivers whose area light is blocked by a surface within {} texels along the light, and which "
            "the filter without any bias shows no brighter than {}: those that bias makes brighter by more than "
            "{}. Blur, and a bound's own fade at contacts, light a receiver without bias too, and do not count",
            limits.contact_texels, limits.contact_gap_above, limits.contact_gap_above),
        kRate, kTabled, "--max-contact-gap"},
-      {"artefact.noise", at<&V::artefact, &ArtefactRecord::noise>, "share", kZeroToOne, kLess, "noise",
+      {"artefact.noise", at<&V::artefact, &ArtefactRecord::noise>, "share", kZeroToOne, kLess, "noise, first phase",
        fmt::format("of the receivers in the filter's own penumbra (where its ray-traced kernel is strictly between 0 "
                    "and 1): those where image less the percentage-closer filter of that kernel differs by more than {} "
                    "from its mean over the 3x3 neighbourhood; for filters of the kind 'stochastic' only",
                    limits.noise_above),
        kRate, kTabled},
-      {"artefact.seam", at<&V::artefact, &ArtefactRecord::seam>, "visibility", kPositive, kLess, "seam",
+      {"artefact.seam", at<&V::artefact, &ArtefactRecord::seam>, "visibility", kPositive, kLess, "seam, first phase",
        "how much the image changes from pixel to pixel because cascades take over from each other: root mean square, "
        "over neighbours on one surface that cascades share differently, of the sum of what each cascade alone "
        "shows there times the change of its share",
@@ -138,10 +138,10 @@ std::vector<Metric> list_artefacts() {
 
 template <AttributionPart AttributionRecord::*Part>
 void add_part(std::vector<Metric>& metrics, std::string_view rms, std::string_view share, std::string_view definition) {
-  metrics.push_back({rms, at<&V::attribution, Part, &AttributionPart::rms>, "visibility", kPositive, kLess, "RMS",
-                     fmt::format("root mean square of {}", definition), kError});
+  metrics.push_back({rms, at<&V::attribution, Part, &AttributionPart::rms>, "visibility", kPositive, kLess,
+                     "RMS, first phase", fmt::format("root mean square of {}", definition), kError});
   metrics.push_back({share, at<&V::attribution, Part, &AttributionPart::share>, "share", kAny, kNeither,
-                     "share of the error", kShareOfError});
+                     "share of the error, first phase", kShareOfError});
 }
 
 std::vector<Metric> list_parts() {

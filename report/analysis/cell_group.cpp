@@ -52,15 +52,14 @@ std::optional<std::vector<records::CellRecord>> leave_out_external(const std::ve
 }
 
 std::optional<std::size_t> find_class(const records::CellRecord& cell) {
-  const auto& classes = filters::width_classes();
-  const auto found = std::ranges::find_if(
-      classes, [&](const filters::WidthClass& each) { return cell.kernel.width_class == each.name; });
-  if (found == classes.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - classes.begin());
+  const std::vector<std::string> names = filters::list_width_names();
+  const auto found = std::ranges::find(names, cell.kernel.width_class.value_or(""));
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
 }
 
-std::string_view name_class(std::optional<std::size_t> width_class) {
-  return width_class ? filters::width_classes()[*width_class].name : std::string_view();
+std::string name_class(std::optional<std::size_t> width_class) {
+  return width_class ? filters::list_width_names()[*width_class] : std::string();
 }
 
 double find_rmse_reach(const records::CellRecord& cell) {

@@ -26,11 +26,11 @@ std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells
 /// where there are none.
 std::optional<std::vector<records::CellRecord>> leave_out_external(const std::vector<records::CellRecord>& cells);
 
-/// The class of a cell's kernel, an index into filters::width_classes(); empty where it has none.
+/// The class of a cell's kernel, an index into filters::list_width_names(); empty where it has none.
 std::optional<std::size_t> find_class(const records::CellRecord& cell);
 
 /// The name of a class; empty without one.
-std::string_view name_class(std::optional<std::size_t> width_class);
+std::string name_class(std::optional<std::size_t> width_class);
 
 /// How far a cell's RMSE may be off: half the width of its 95 % interval over the phases of the map's grid, or the
 /// truth's standard error where the run has one phase; 0 where neither is known.

@@ -9,6 +9,7 @@
 
 #include "report/records/cell_key.h"
 #include "report/records/cell_names.h"
+#include "report/records/format.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::analysis {
@@ -72,6 +73,14 @@ std::vector<Configuration> list_configurations(const std::vector<const records::
   }
   set_names(configurations);
   return configurations;
+}
+
+std::string describe_kernel(const Configuration& configuration) {
+  const auto sigma_of = [](const records::CellRecord* cell) { return cell->kernel.sigma_texels; };
+  const auto [narrowest, widest] = std::ranges::minmax_element(configuration.cells, {}, sigma_of);
+  if (sigma_of(*narrowest) == sigma_of(*widest)) return records::describe_kernel((*widest)->kernel);
+  return fmt::format("{} .. {}", records::format_number(sigma_of(*narrowest)),
+                     records::describe_kernel((*widest)->kernel));
 }
 
 }  // namespace shadowbench::analysis

@@ -40,4 +40,7 @@ struct Configuration {
 /// Requires that the cells outlive what is returned.
 std::vector<Configuration> list_configurations(const std::vector<const records::CellRecord*>& cells);
 
+/// The width of its kernel as records::describe_kernel(), or the range of its widths where the light chose them.
+std::string describe_kernel(const Configuration& configuration);
+
 }  // namespace shadowbench::analysis

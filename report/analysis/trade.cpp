@@ -36,7 +36,8 @@ std::string picture_key(const records::CellRecord& cell) {
 }
 
 std::string configuration_key(const records::CellRecord& cell) {
-  return records::dump_line(nlohmann::json{cell.filter, records::value_json(cell.params), cell.map_size});
+  return records::dump_line(
+      nlohmann::json{cell.filter, records::value_json(records::named_params(cell)), cell.map_size});
 }
 
 // Groups indices of cells by a key, in the order in which each key first appears.
@@ -63,8 +64,11 @@ class CellReader {
 
   TradeConfiguration read(const std::vector<std::size_t>& indices) const {
     const records::CellRecord& first = cells_[indices.front()];
+    const bool is_as_wide = std::ranges::all_of(
+        indices, [&](std::size_t i) { return cells_[i].kernel.sigma_texels == first.kernel.sigma_texels; });
     TradeConfiguration result{
-        first.filter, first.params, first.map_size, first.kernel.sigma_texels, find_class(first), {}, indices, {}, {}};
+        first.filter, records::named_params(first), first.map_size, {}, find_class(first), {}, indices, {}, {}};
+    if (is_as_wide) result.sigma_texels = first.kernel.sigma_texels;
     for (std::size_t i = 0; i < kErrorMeasures; ++i)
       result.errors[i] = combine(indices, read_error, list_error_measures()[i]);
     for (const Measure& cost : costs_) result.costs.push_back(combine(indices, read_cost, cost));
@@ -168,7 +172,7 @@ std::optional<std::size_t> find_group(const TradeConfiguration& own, const Measu
                                       const std::set<int>& map_sizes) {
   if (!own.width_class || !cost.is(CostKind::kRatio)) return own.width_class;
   const auto map = std::distance(map_sizes.begin(), map_sizes.find(own.map_size));
-  return *own.width_class + static_cast<std::size_t>(map) * filters::width_classes().size();
+  return *own.width_class + static_cast<std::size_t>(map) * filters::list_width_names().size();
 }
 
 }  // namespace

@@ -15,10 +15,10 @@ namespace shadowbench::analysis {
 /// A filter with its parameters and a map size, and what it got and paid in one scope.
 struct TradeConfiguration {
   std::string filter;
-  records::ParamMap params;
+  records::ParamMap params;  ///< as they were asked for
   int map_size = 0;
-  std::optional<double> sigma_texels;      ///< width of its kernel
-  std::optional<std::size_t> width_class;  ///< index into filters::width_classes()
+  std::optional<double> sigma_texels;      ///< width of its kernel; none where that differs between scenes
+  std::optional<std::size_t> width_class;  ///< see find_class()
   std::string label;                       ///< tells it apart in its scope: "vsm (radius 4), map 512"
   std::vector<std::size_t> cells;          ///< indices into the run's cells: one, or one per scene and view
   std::array<Measured, kErrorMeasures> errors;

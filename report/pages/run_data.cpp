@@ -121,7 +121,8 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
 /// All that is true of a configuration on every scene: without the view, and lengths in units of one scene's map.
 std::string describe_fully(records::CellRecord cell) {
   cell.map_scale = {};
-  const std::string settings = records::describe_settings(cell), params = records::describe_params(cell.params);
+  const std::string settings = records::describe_settings(cell),
+                    params = records::describe_params(records::named_params(cell));
   if (cell.external) return fmt::format("{} · {}", cell.filter, describe_engine(*cell.external));
   return cell.filter + (params.empty() ? "" : " · " + params) + settings.substr(settings.find(" · "));
 }
@@ -129,10 +130,11 @@ std::string describe_fully(records::CellRecord cell) {
 /// The filter as the command line takes it: "vsm:radius=4,store=rg32f".
 std::string write_request(const records::CellRecord& cell) {
   std::string text = cell.filter;
-  for (const auto& [name, value] : cell.params) {
+  for (const auto& [name, value] : records::named_params(cell)) {
     const std::string* word = std::get_if<std::string>(&value);
-    text += fmt::format("{}{}={}", text.size() == cell.filter.size() ? ':' : ',', name,
-                        word ? *word : records::value_json(value).dump());
+    text +=
+        fmt::format("{}{}={}", text.size() == cell.filter.size() ? ':' : ',',
+                    cell.kernel.by_light == name ? "width" : name, word ? *word : records::value_json(value).dump());
   }
   return text;
 }
@@ -145,9 +147,9 @@ json make_configuration(const analysis::Configuration& configuration, const std:
   json made = {{"label", configuration.name},
                {"full", describe_fully(cell)},
                {"filter", cell.filter},
-               {"params", records::describe_params(cell.params)},
+               {"params", records::describe_params(records::named_params(cell))},
                {"class", analysis::name_class(analysis::find_class(cell))},
-               {"kernel", records::describe_kernel(cell.kernel)},
+               {"kernel", analysis::describe_kernel(configuration)},
                {"sigma", value_of(cell.kernel.sigma_texels)},
                {"request", write_request(cell)},
                {"map", cell.map_size},
@@ -188,11 +190,11 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
                              {"text", choice.measure.meaning},
                              {"gpu", choice.measure.cost->gpu}});
   std::vector<std::string> classes;
-  for (const auto& each : filters::width_classes())
+  for (const std::string& each : filters::list_width_names())
     if (std::ranges::any_of(cells, [&](const records::CellRecord& cell) {
-          return records::is_advised(cell) && cell.kernel.width_class == each.name;
+          return records::is_advised(cell) && cell.kernel.width_class == each;
         }))
-      classes.emplace_back(each.name);
+      classes.push_back(each);
   data["classes"] = classes;
   for (const analysis::Place& place : places) {
     const auto scene = std::ranges::find(run.scenes, place.scene, &records::SceneRecord::name);

@@ -11,6 +11,7 @@
 #include "report/analysis/cell_group.h"
 #include "report/analysis/differences.h"
 #include "report/analysis/gpu/gpu_costs.h"
+#include "report/analysis/light_widths.h"
 #include "report/analysis/stability_words.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/trade_measures.h"
@@ -115,9 +116,9 @@ std::optional<document::Bars> make_bars(const analysis::CellGroup& group) {
   if (drawn.empty()) return std::nullopt;
   const images::BarScale scale = images::choose_bar_scale(drawn);
   document::Bars bars;
-  bars.title =
-      fmt::format("RMSE and its parts, to {}. The tick is the RMSE; parts left of the grey line offset others.",
-                  records::format_number(scale.length));
+  bars.title = fmt::format(
+      "RMSE of the first phase and its parts, to {}. The tick is the RMSE; parts left of the grey line offset others.",
+      records::format_number(scale.length));
   for (const records::ErrorPart& part : records::list_error_parts())
     bars.legend.push_back({css_color(part.color), part.name});
   bars.low = -scale.below;
@@ -153,12 +154,12 @@ void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord&
 void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGroup& group) {
   if (const auto grid = find_path(group, &records::ImagesRecord::grid))
     blocks.emplace_back(
-        document::Gallery{{}, {{*grid, "all filters on " + group.scene + ", full size behind the link"}}});
+        document::Gallery{{}, {{*grid, "all filters on " + group.scene + ", first phase, full size behind the link"}}});
   for (document::Gallery& gallery :
        std::array{make_lights_gallery(group), make_stability_gallery(group), make_map_gallery(group)})
     if (!gallery.pictures.empty()) blocks.emplace_back(std::move(gallery));
   if (const auto exr = find_path(group, &records::ImagesRecord::exr))
-    blocks.emplace_back(document::Links{"The float images of all filters:", {{*exr, *exr}}});
+    blocks.emplace_back(document::Links{"The float images of all filters, first phase:", {{*exr, *exr}}});
 }
 
 /// What there is of each scene and map, folded away; of a large run its pictures alone.
@@ -214,15 +215,19 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
   table.header = {"filter", "kernel"};
   for (const analysis::Place& place : places) table.header.push_back(analysis::describe_place(place, places));
   for (const analysis::Configuration& configuration : analysis::list_configurations(all)) {
-    auto& row = table.rows.emplace_back(
-        std::vector<std::string>{configuration.name, records::describe_kernel(configuration.cells.front()->kernel)});
+    auto& row =
+        table.rows.emplace_back(std::vector<std::string>{configuration.name, analysis::describe_kernel(configuration)});
     row.resize(table.header.size(), records::kNothing);
     for (const records::CellRecord* cell : configuration.cells)
       row[2 + analysis::find_place(places, *cell)] = records::format_number(cell->error.rmse);
   }
-  return {"table",
-          "All numbers",
-          {document::Mount{"numbers", {document::Table{"RMSE to the area truth", std::move(table)}}}}};
+  document::Section section{
+      "table",
+      "All numbers",
+      {document::Mount{"numbers", {document::Table{"RMSE to the area truth", std::move(table)}}}}};
+  if (auto widths = analysis::describe_light_widths(cells); !widths.empty())
+    section.blocks.emplace_back(document::Sentences{{}, std::move(widths)});
+  return section;
 }
 
 /// One filter's estimate as a bar of what adds up to it; its words have what does not.

@@ -120,9 +120,9 @@ records::TextTable make_accuracy_table(const analysis::CellGroup& group) {
   records::TextTable table;
   table.header = {"filter", kKernelColumn};
   add_titles(table.header, errors);
-  table.header.emplace_back("dominating part");
+  table.header.emplace_back("dominating part, first phase");
   add_titles(table.header, artefacts);
-  table.header.push_back("share of " + join_part_names());
+  table.header.push_back("share of " + join_part_names() + ", first phase");
   for (const records::CellRecord& cell : group.cells) {
     auto& row = table.rows.emplace_back(
         std::vector<std::string>{group.names.name(cell), records::describe_kernel(cell.kernel)});

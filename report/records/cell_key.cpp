@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "filters/kernel_width.h"
 #include "report/files/file_name.h"
 #include "report/records/json_values.h"
 
@@ -23,11 +24,17 @@ json canonical(const json& value) {
 
 }  // namespace
 
+ParamMap named_params(const CellRecord& cell) {
+  ParamMap params = cell.params;
+  if (cell.kernel.by_light) params[*cell.kernel.by_light] = std::string(filters::kLightWidth);
+  return params;
+}
+
 json cell_settings(const CellRecord& cell) {
   return canonical({{"scene", cell.scene},
                     {"view", cell.view},
                     {"filter", cell.filter},
-                    {"params", value_json(cell.params)},
+                    {"params", value_json(named_params(cell))},
                     {"map_size", cell.map_size},
                     {"map_format", cell.map_format},
                     {"bias", value_json(cell.bias)},

@@ -9,8 +9,11 @@
 
 namespace shadowbench::records {
 
-/// Returns what identifies a cell: scene, view, filter, parameters, map settings, bias, fit, light, range rule and
-/// picture size; no results.
+/// The parameters as they were asked for: one whose value the light's width gave is "light" everywhere.
+ParamMap named_params(const CellRecord& cell);
+
+/// Returns what identifies a cell: scene, view, filter, named parameters, map settings, bias, fit, light, range rule
+/// and picture size; no results.
 nlohmann::json cell_settings(const CellRecord& cell);
 
 /// Returns the key of settings: 16 hexadecimal digits, the hash of their canonical JSON (sorted keys, no white space,

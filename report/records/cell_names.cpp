@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/split_list.h"
+#include "report/records/cell_key.h"
 #include "report/records/format.h"
 
 namespace shadowbench::records {
@@ -69,7 +70,7 @@ std::string make_fit_stem(const std::string& fit, const std::set<std::string>& f
 CellNames::CellNames(const std::vector<const CellRecord*>& cells) {
   for (const CellRecord* cell : cells) fits_.insert(cell->fit);
   for (const CellRecord* cell : cells) {
-    for (const auto& [name, value] : cell->params)
+    for (const auto& [name, value] : named_params(*cell))
       params_[param_key(*cell, name)].insert(describe_params({{name, value}}));
     for (const auto& [name, value] : list_settings(*cell)) values_[name].insert(value);
   }
@@ -86,7 +87,7 @@ CellNames::Settings CellNames::list_settings(const CellRecord& cell) const {
 }
 
 std::string CellNames::name_filter(const CellRecord& cell) const {
-  ParamMap telling = cell.params;
+  ParamMap telling = named_params(cell);
   std::erase_if(telling, [&](const auto& param) {
     const auto values = params_.find(param_key(cell, param.first));
     return values == params_.end() || values->second.size() < 2;

@@ -102,7 +102,8 @@ std::string describe_params(const records::ParamMap& params) {
 }
 
 KernelRecord make_kernel_record(std::optional<double> sigma_texels) {
-  KernelRecord kernel{sigma_texels, std::nullopt};
+  KernelRecord kernel;
+  kernel.sigma_texels = sigma_texels;
   const filters::WidthClass* found = sigma_texels ? filters::find_width_class(*sigma_texels) : nullptr;
   if (found) kernel.width_class = found->name;
   return kernel;

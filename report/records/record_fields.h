@@ -83,11 +83,17 @@ void visit_fields(Is<KernelRecord> auto& kernel, auto&& visit) {
         {.text = "standard deviation along an axis, reconstruction included",
          .least = 0,
          .column = "the kernel's standard deviation along an axis, texels"});
-  visit("class", kernel.width_class,
-        {.text = "kernels of one class are about equally wide, and are compared with each other alone; null above the "
-                 "widest class",
-         .one_of = "sharp,medium,soft",
-         .column = "the class of kernels that are about as wide, with which alone it is compared"});
+  visit(
+      "class", kernel.width_class,
+      {.text = "kernels of one class are about equally wide, or 'light' as wide as the scene's light asks for, and are "
+               "compared with each other alone; null above the widest class",
+       .one_of = "sharp,medium,soft,light",
+       .column = "the class of kernels that are about as wide, with which alone it is compared"});
+  constexpr About kByLight{.text = "the parameter that the light's width set", .may_lack = true, .later = true};
+  constexpr const char* kAsked = "the kernel's standard deviation that the scene's light asks for, texels";
+  visit("by_light", kernel.by_light, kByLight);
+  visit("light_texels", kernel.light_texels,
+        {.text = kAsked, .least = 0, .may_lack = true, .later = true, .column = kAsked});
 }
 
 void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {

@@ -154,8 +154,10 @@ struct ImagesRecord {
 
 /// How wide the filter's kernel is.
 struct KernelRecord {
-  std::optional<double> sigma_texels;      ///< standard deviation along an axis, reconstruction included
-  std::optional<std::string> width_class;  ///< of filters::width_classes()
+  std::optional<double> sigma_texels;        ///< standard deviation along an axis, reconstruction included
+  std::optional<std::string> width_class;    ///< of filters::list_width_names()
+  std::optional<std::string> by_light = {};  ///< the parameter whose value the light's width gave; empty: none has it
+  std::optional<double> light_texels = {};   ///< the standard deviation that the scene's light asks for in this map
 };
 
 /// What a GPU's compiler says of one shader. Nothing here is measured; counts are of the machine code, in which the

@@ -97,13 +97,46 @@ TEST(Requests, Mistakes_AreNamed) {
   expect_usage_error("none,,vsm", "empty filter name");
   expect_usage_error("none:radius=3", "no parameter 'radius'");
   expect_usage_error("esm:combine=logs", "linear, log");
-  expect_usage_error("vsm:width=40", "choose a class (sharp, medium, soft) or 0.408 .. 28.3 texels");
+  expect_usage_error("vsm:width=40", "choose a class (sharp, medium, soft, light) or 0.408 .. 28.3 texels");
   expect_usage_error("vsm:width=0.2", "0.408 .. 28.3 texels");
   expect_usage_error("vsm:width=-1", "0.408 .. 28.3 texels");
   expect_usage_error("vsm:width=nan", "no number of texels");
   expect_usage_error("vsm:width=medum", "did you mean 'medium'");
   expect_usage_error("tent3x3:width=medium", "no radius that a width could set; its kernel is 0.645 texels wide");
   expect_usage_error("vsm:radius=2,width=soft", "sets 'radius' and 'width'");
+}
+
+TEST(SetWidths, ReachWhatWasToldNoneAndHasAChoice) {
+  const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  const std::string text = "none,vsm,vsm:radius=6,esm:width=medium,@godot,pcss";
+  std::vector<FilterRequest> soft = catalogue.parse_requests(text), light = soft;
+  const FilterRequest preset = soft[4];
+  set_widths(soft, "soft");
+  EXPECT_EQ(number(soft[1].values, "radius"), 3.0);
+  EXPECT_EQ(number(soft[2].values, "radius"), 6.0);
+  EXPECT_EQ(number(soft[3].values, "radius"), 1.0);
+  EXPECT_EQ(soft[4].values, preset.values);
+
+  set_widths(light, std::string(kLightWidth));
+  for (FilterRequest& each : light) each.take_light_width(5.0);
+  const auto is_of_light = [](const FilterRequest& each) { return each.width == kLightWidth; };
+  EXPECT_EQ(number(light[1].values, "radius"), 11.0);
+  EXPECT_EQ(*light[1].param_by_light(), "radius");
+  EXPECT_EQ(number(light[2].values, "radius"), 6.0);
+  EXPECT_FALSE(is_of_light(light[2]));
+  EXPECT_EQ(number(light[3].values, "radius"), 1.0);
+  EXPECT_EQ(light[4].values, preset.values);
+  for (const std::size_t fixed : {0u, 4u, 5u}) {
+    EXPECT_TRUE(is_of_light(light[fixed])) << fixed;
+    EXPECT_EQ(light[fixed].param_by_light(), nullptr) << fixed;
+  }
+}
+
+TEST(SetWidths, OneByTheLight_IsNotTheFilterWithThatRadius) {
+  const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  const auto requests = catalogue.parse_requests("vsm,vsm:width=light");
+  EXPECT_EQ(requests[0].values, requests[1].values) << "the light is not asked yet";
+  EXPECT_FALSE(is_same(requests[0], requests[1]));
 }
 
 TEST(UserFile, WithATakenId_IsRefused) {

@@ -132,6 +132,26 @@ TEST(WidthClasses, AreReachedByEveryFilterWithARadius) {
   EXPECT_EQ(kernel_of("poisson:width=sharp").name(), kernel_of("pcf2x2").name());
 }
 
+TEST(LightWidth, IsThatOfADiskAsWideAsThePenumbra) {
+  // A disk that is read bilinearly has the tent's 1/6 on top.
+  const double disk = Kernel::make_disk(8.0).sigma_texels();
+  EXPECT_NEAR(sigma_of_penumbra(16.0), std::sqrt(disk * disk - 1.0 / 6.0), 1e-6);
+}
+
+TEST(LightWidth, TakesTheNearestRadius_AndTheNarrowestWhereNoneIsSoNarrow) {
+  const auto sigma_at = [](const char* filter, double wanted) {
+    FilterRequest request = catalogue().parse_requests(std::string(filter) + ":width=light").front();
+    request.take_light_width(wanted);
+    EXPECT_EQ(request.light_sigma_texels, wanted);
+    return *find_kernel_sigma(request.spec, request.values);
+  };
+  for (const char* filter : {"poisson", "vsm", "esm", "evsm4"}) {
+    EXPECT_NEAR(sigma_at(filter, 0.1), 0.41, 0.005) << filter;
+    EXPECT_NEAR(sigma_at(filter, 5.0), 5.0, 0.25) << filter;
+    EXPECT_GT(sigma_at(filter, 1e3), 15.0) << filter;
+  }
+}
+
 /// Second moment of a kernel per axis, by a regular grid of samples.
 double second_moment(const Kernel& kernel) {
   constexpr int kSteps = 1024, kBetween = 64;

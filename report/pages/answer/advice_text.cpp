@@ -206,8 +206,9 @@ std::string describe_answer(const records::RunRecord& run, const analysis::Advic
   const analysis::Candidate& best = advice.keeping.front();
   const records::CellRecord& cell = *best.configuration.cells.front();
   std::vector<std::string> parts;
-  if (cell.kernel.sigma_texels) parts.push_back(fmt::format("a kernel of {}", records::describe_kernel(cell.kernel)));
-  if (!cell.params.empty()) parts.push_back(records::describe_params(cell.params));
+  if (cell.kernel.sigma_texels)
+    parts.push_back(fmt::format("a kernel of {}", analysis::describe_kernel(best.configuration)));
+  if (!cell.params.empty()) parts.push_back(records::describe_params(records::named_params(cell)));
   const std::string with = parts.empty() ? "" : wrap(fmt::format("with {}", fmt::join(parts, ", ")));
   return fmt::format("{}: {}{}; {} of {} on the front{}\n{}", best.configuration.name,
                      analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),

@@ -65,7 +65,11 @@ TEST_F(BadInput, ParameterNotAChoice) {
   expect_refusal(small("--filters poisson:taps=6"), 2, {"taps=6", "4, 5, 8, 16, 32"});
 }
 TEST_F(BadInput, SameFilterTwice) { expect_refusal(small("--filters none,none"), 2, {"'none' twice"}); }
-TEST_F(BadInput, SameParametersInOtherWords) { expect_refusal(small("--filters vsm,vsm:radius=4"), 2, {"twice"}); }
+TEST_F(BadInput, SameParametersInOtherWords) {
+  expect_refusal(small("--width own --filters vsm,vsm:radius=4"), 2, {"twice"});
+  expect_refusal("bias --scene cubes --filters vsm:width=light", 2, {"vsm:width=light", "only 'run'"});
+  expect_refusal(small("--filters none --width sort"), 2, {"--width: 'sort'", "did you mean 'soft'", "'own'"});
+}
 TEST_F(BadInput, UnknownScene) { expect_refusal("run --out out --scene cube", 2, {"cube", "cubes"}); }
 TEST_F(BadInput, MissingScene) { expect_refusal("run --out out --scene no/such.gltf", 3, {"no/such.gltf"}); }
 TEST_F(BadInput, FolderWithoutOneScene) {

@@ -56,7 +56,7 @@ TEST_F(Suspects, AreOnNoFront_AndInNoAdvice) {
   int rows = 0;
   for (std::string row; std::getline(fronts, row);) {
     if (row.find(",constant,") == std::string::npos) continue;
-    EXPECT_THAT(row, HasSubstr(",{},256,,,,,,,,,,,,suspect: see the warnings"));
+    EXPECT_THAT(row, HasSubstr(",{},256,,light,,,,,,,,,,suspect: see the warnings"));
     ++rows;
   }
   EXPECT_GT(rows, 0);

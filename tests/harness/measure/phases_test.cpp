@@ -10,11 +10,11 @@
 namespace shadowbench::measure {
 namespace {
 
-TEST(Phases, TheFirstIsNotMoved_AndNoneIsMovedByMoreThanHalfATexel) {
+TEST(Phases, ASingleOneIsNotMoved_AndNoneIsMovedByMoreThanHalfATexel) {
+  EXPECT_EQ(list_phase_shifts(1, 7).front(), glm::dvec2(0.0));
   for (int count = 1; count <= 64; ++count) {
     const std::vector<glm::dvec2> shifts = list_phase_shifts(count, 1);
     ASSERT_EQ(shifts.size(), static_cast<std::size_t>(count));
-    EXPECT_EQ(shifts.front(), glm::dvec2(0.0));
     for (const glm::dvec2& shift : shifts) {
       for (const int axis : {0, 1}) {
         EXPECT_GE(shift[axis], -0.5);
@@ -39,19 +39,37 @@ TEST(Phases, MoreOfThem_BeginWithTheSame_AndOtherSeedsGiveOthers) {
   const std::vector<glm::dvec2> eight = list_phase_shifts(8, 1), many = list_phase_shifts(64, 1),
                                 other = list_phase_shifts(8, 2);
   for (std::size_t i = 0; i < eight.size(); ++i) EXPECT_EQ(eight[i], many[i]);
-  for (std::size_t i = 2; i < eight.size(); ++i) EXPECT_NE(eight[i], other[i]);
+  for (std::size_t i = 0; i < eight.size(); ++i) EXPECT_NE(eight[i], other[i]);
 }
 
-/// Groups begin anywhere: over many seeds, each quarter of a texel along each axis as often as the others.
+/// Groups begin anywhere, the first as any other: over many seeds, each quarter of a texel along each axis as often as
+/// the others.
 TEST(Phases, GroupsBeginAnywhere) {
-  int counts[2][4] = {};
   constexpr int kSeeds = 1000;
-  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
-    const glm::dvec2 shift = list_phase_shifts(4, seed)[2];
-    for (const int axis : {0, 1}) ++counts[axis][static_cast<int>(4.0 * (shift[axis] + 0.5))];
+  for (const std::size_t group : {0u, 2u}) {
+    int counts[2][4] = {};
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+      const glm::dvec2 shift = list_phase_shifts(4, seed)[group];
+      for (const int axis : {0, 1}) ++counts[axis][static_cast<int>(4.0 * (shift[axis] + 0.5))];
+    }
+    for (const auto& axis : counts)
+      for (const int count : axis) EXPECT_NEAR(count, kSeeds / 4, 60) << group;
   }
-  for (const auto& axis : counts)
-    for (const int count : axis) EXPECT_NEAR(count, kSeeds / 4, 60);
+}
+
+TEST(Phases, BelowEight_FlickerIsAbsent) {
+  const metrics::Change change{0.01, 0.002};
+  records::CellRecord few, enough;
+  note_errors(few, std::vector<metrics::ErrorStats>(4), 1);
+  note_flicker(few, change);
+  EXPECT_FALSE(few.error.flicker);
+  EXPECT_FALSE(few.flicker_ci95);
+  EXPECT_NE(few.absent.at("error.flicker"), "");
+  EXPECT_NE(few.absent.at("error.flicker_ci95"), "");
+  note_errors(enough, std::vector<metrics::ErrorStats>(8), 2);
+  note_flicker(enough, change);
+  EXPECT_EQ(enough.error.flicker, 0.01);
+  EXPECT_TRUE(enough.absent.empty());
 }
 
 TEST(Phases, EveryErrorOfTheTable_IsItsMeanOverThem_AndTheLargestIsTheLargest) {

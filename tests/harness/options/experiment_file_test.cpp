@@ -84,6 +84,16 @@ TEST_F(ExperimentFile, AWidth_IsAParameterOfAFilterWithARadius) {
   EXPECT_EQ(expand("[[filter]]\nid = 'vsm'\nwidth = ['medium', 1.5]\n"), "vsm:width=medium,vsm:width=1.5");
 }
 
+TEST(WrittenExperiment, AsksTheLightAgain) {
+  RunOptions options;
+  const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  options.filters = catalogue.parse_requests("vsm:width=light");
+  options.filters.front().take_light_width(5.0);
+  const std::string written = write_experiment(options);
+  EXPECT_NE(written.find("width = 'light'"), std::string::npos) << written;
+  EXPECT_EQ(written.find("radius"), std::string::npos) << written;
+}
+
 TEST_F(ExperimentFile, Mistakes_NameFileAndLine) {
   const std::vector<std::tuple<std::string, std::string, int>> cases = {
       {"map_sise = 3\n", "did you mean 'map_size'", 1},

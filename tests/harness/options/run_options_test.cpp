@@ -54,6 +54,7 @@ const std::map<std::string, std::vector<std::string>>& list_others() {
                                                                          {"behind_test", {"off"}},
                                                                          {"border_page", {"true"}},
                                                                          {"filter_file", {"mine.glsl"}},
+                                                                         {"width", {"soft"}},
                                                                          {"bias", {"constant:depth=0.0001"}},
                                                                          {"rounds", {"7"}},
                                                                          {"phases", {"2"}},

@@ -44,6 +44,26 @@ TEST(EdgeMeter, CountsThePixelsAlongAShadowsEdge) {
   EXPECT_NEAR(edges.at_edge, 2 * 64 - 4, 8);
 }
 
+TEST(EdgeMeter, PenumbraeFollowFromTheLightsSizeAndTheOccludersDistance) {
+  Scene scene = make_sheet_over_floor();
+  const auto list = [&] { return EdgeMeter(scene).list_penumbrae(scene.cameras[0], scene.light, 1.0); };
+  // The sheet hangs 2 m over the floor: along the light's way it is that over the sine of 40 degrees away.
+  const double behind = 2.0 / std::sin(glm::radians(40.0));
+  const auto of_sun = list();
+  EXPECT_GT(of_sun.size(), 100u);
+  for (const EdgePenumbra& each : of_sun) EXPECT_NEAR(each.width_ws, light_size(scene.light) * behind, 1e-4);
+  // A lamp 6 m over the floor: by similar triangles half as wide as the lamp.
+  PointLight lamp;
+  lamp.position_ws = {-2.0f, 6.0f, 0.0f};
+  lamp.radius_m = 0.1f;
+  scene.light.kind = lamp;
+  const auto of_lamp = list();
+  EXPECT_GT(of_lamp.size(), 20u);
+  for (const EdgePenumbra& each : of_lamp) EXPECT_NEAR(each.width_ws, 0.1, 1e-3);
+  scene.meshes.pop_back();
+  EXPECT_TRUE(list().empty());
+}
+
 TEST(EdgeMeter, PerspectiveAndOrthographicCamerasSeeTheSameEdges) {
   Scene scene = make_sheet_over_floor();
   scene.meshes[1] = transform_mesh(scene.meshes[1], glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, -1.5, 0.0)));

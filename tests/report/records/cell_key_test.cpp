@@ -24,6 +24,17 @@ TEST(CellKey, OrderOfKeysAndWayOfWritingNumbers_DoNotMatter) {
   EXPECT_EQ(cell_key(a), cell_key(b));
 }
 
+TEST(CellKey, ARadiusByTheLight_IsNamedByTheLight) {
+  CellRecord cell = make_cell("cubes", "vsm", 1.0);
+  cell.params["radius"] = 4.0;
+  const std::string told = cell_key(cell);
+  cell.kernel.by_light = "radius";
+  const std::string by_light = cell_key(cell);
+  EXPECT_NE(told, by_light);
+  cell.params["radius"] = 9.0;
+  EXPECT_EQ(cell_key(cell), by_light) << "scene, light and map decide it, and are in the key";
+}
+
 TEST(CellKey, EverySetting_ChangesTheKey) {
   const std::vector<std::function<void(CellRecord&)>> changes = {
       [](CellRecord& c) { c.scene += "x"; },
