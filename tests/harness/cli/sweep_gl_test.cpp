@@ -148,7 +148,7 @@ TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCells_AndNoAdviceWhereNothingShowsThe
   EXPECT_EQ(results()["cells"][1]["claims"], json::array({"own-claim"}));
   const Outcome advice = run("advise out --requires own-claim");
   EXPECT_EQ(advice.exit_code, 1) << advice.out;
-  EXPECT_THAT(advice.err, ::testing::HasSubstr("'own-claim' is claimed, not shown: nothing is measured of it"));
+  EXPECT_THAT(advice.out, ::testing::HasSubstr("'own-claim' is claimed, not shown: nothing is measured of it"));
   // So small a picture has too few pixels for rates.
   EXPECT_THAT(results()["cells"][0]["absent"]["artefact.leak"].get<std::string>(),
               ::testing::StartsWith("nothing to see: fewer than 100 receivers"));

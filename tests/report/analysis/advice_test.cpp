@@ -366,7 +366,7 @@ TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
     for (const char* filter : {"grows", "shrinks", "same", "unseen"}) {
       cells.push_back(measure(scene, filter, 1.0, 0.01));
       cells.back().claims = {{"contact-hardening", "own-claim"}};
-      cells.back().absent["penumbra"] = "all are narrow";
+      cells.back().absent["penumbra"] = records::explain_nothing_to_see("all are narrow");
     }
   cells[0].penumbra.growth = 0.9;
   cells[1].penumbra.growth = -1.0;
