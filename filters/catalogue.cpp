@@ -97,7 +97,8 @@ std::vector<FilterRequest> merge_presets(std::vector<FilterRequest> requests) {
 /// What a filter computes with: its file without ids, titles, sources, claims, what is said of parameters, and
 /// comments, with every run of blanks as one.
 FilterSpec strip(FilterSpec spec) {
-  for (std::string* text : {&spec.id, &spec.path, &spec.title, &spec.source, &spec.copy_of}) text->clear();
+  for (std::string* text : {&spec.id, &spec.path, &spec.title, &spec.source, &spec.copy_of, &spec.front_matter})
+    text->clear();
   for (ParamSpec& param : spec.params) param.unit = param.text = {};
   for (PassSpec& pass : spec.passes) pass.line = 1;
   spec.samples_line = 1;

@@ -92,6 +92,7 @@ struct FilterSpec {
   std::vector<PassSpec> passes;          ///< in the order in which they run
   std::optional<DeclaredKernel> kernel;  ///< none: only a scalar model knows it
   std::string copy_of;                   ///< a user's file: the built-in filter that it copies; empty: none
+  std::string front_matter;              ///< as it is written
   std::string body;                      ///< GLSL after the front matter
   int body_first_line = 1;               ///< line of the file at which `body` begins
   int samples_line = 1;                  ///< line of the file at which `samples` stands

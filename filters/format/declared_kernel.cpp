@@ -106,7 +106,7 @@ DeclaredKernel read_kernel(const TomlValue& value, const FilterSpec& spec) {
     read_shape(value, spec, kernel);
     return kernel;
   }
-  table->require_known_keys({"shape", "weights", "read"});
+  table->require_known_keys(front_matter_keys().at("kernel"));
   if (table->has("shape") == table->has("weights")) throw table->error("'kernel' needs either 'shape' or 'weights'");
   if (const auto weights = table->find("weights"))
     kernel.weights = read_weights(*weights);

@@ -92,7 +92,7 @@ void check_default(const TomlValue& given, const ParamSpec& param) {
 }
 
 ParamSpec read_param(const TomlTable& table) {
-  table.require_known_keys({"default", "min", "max", "choices", "unit", "text", "const"});
+  table.require_known_keys(front_matter_keys().at("param"));
   const auto given = table.find("default");
   if (!given) throw table.error(fmt::format("{} lacks 'default'", table.title()));
   ParamSpec param;
@@ -220,7 +220,7 @@ std::string read_pattern(const TomlTable& table, const FilterSpec& spec) {
 }
 
 DiskTable read_disk(const TomlTable& table, const FilterSpec& spec) {
-  table.require_known_keys({"count", "seed", "pattern"});
+  table.require_known_keys(front_matter_keys().at("disk"));
   DiskTable disk;
   disk.name = table.key();
   disk.count = table.string("count");
@@ -239,9 +239,7 @@ DiskTable read_disk(const TomlTable& table, const FilterSpec& spec) {
 /// Gives the names that the file took.
 std::vector<std::string> read_root(const TomlTable& root, FilterSpec& spec) {
   std::vector<std::string> names;
-  root.require_known_keys({"title", "source", "kind", "store", "combine", "sample", "samples", "claims",
-                           "radius_texels", "bias_texels", "teaching", "moments", "exponent", "variance_floor",
-                           "bound_at_zero", "param", "disk", "kernel", "pass"});
+  root.require_known_keys(front_matter_keys().at(""));
   spec.title = root.string("title");
   spec.source = root.string("source");
   spec.kind = read_kind(root);
@@ -266,7 +264,7 @@ std::vector<std::string> read_root(const TomlTable& root, FilterSpec& spec) {
 }
 
 PassSpec read_pass(const TomlTable& table, std::string_view code) {
-  table.require_known_keys({"store", "steps", "size", "anisotropy"});
+  table.require_known_keys(front_matter_keys().at("pass"));
   PassSpec pass;
   pass.name = table.key();
   pass.line = table.line();
@@ -321,6 +319,18 @@ void inspect_body(const TomlTable& root, const std::vector<std::string>& names, 
 
 }  // namespace
 
+const std::map<std::string, std::vector<std::string>>& front_matter_keys() {
+  static const std::map<std::string, std::vector<std::string>> keys = {
+      {"",
+       {"title", "source", "kind", "store", "combine", "sample", "samples", "claims", "radius_texels", "bias_texels",
+        "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel", "pass"}},
+      {"param", {"default", "min", "max", "choices", "unit", "text", "const"}},
+      {"disk", {"count", "seed", "pattern"}},
+      {"pass", {"store", "steps", "size", "anisotropy"}},
+      {"kernel", {"shape", "weights", "read"}}};
+  return keys;
+}
+
 FilterSpec parse_filter(const std::string& text, const std::filesystem::path& path) {
   const std::size_t open = text.find(kOpen);
   const std::size_t close = open == std::string::npos ? open : text.find(kClose, open);
@@ -336,6 +346,7 @@ FilterSpec parse_filter(const std::string& text, const std::filesystem::path& pa
   const TomlTable root(std::string_view(text).substr(begin, close - begin), "the front matter",
                        {spec.path, first_line, ErrorKind::kFilter});
   const std::vector<std::string> names = read_root(root, spec);
+  spec.front_matter = text.substr(begin, close - begin);
   spec.body = text.substr(close + kClose.size());
   spec.body_first_line = 1 + count_lines(std::string_view(text).substr(0, close));
   inspect_body(root, names, spec);

@@ -1,13 +1,18 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "base/toml.h"
 #include "filters/filter_spec.h"
 #include "filters/kernel.h"
 
 namespace shadowbench::filters {
+
+/// The keys that front matter may have: by table, "" being the root.
+const std::map<std::string, std::vector<std::string>>& front_matter_keys();
 
 /// Parses the text of a filter file: TOML between `/*+++` and `+++*/`, then GLSL.
 ///

@@ -143,7 +143,8 @@ Command make_advise_command() {
     const analysis::LimitSpec& spec = analysis::limit_table()[i];
     command.add(spec.option, &a->limits[i], spec.text);
   }
-  command.add("--requires", &a->claims, "what the filter must claim, such as contact-hardening; may be repeated");
+  command.add("--requires", &a->claims,
+              "what the filter must claim and the run show, such as contact-hardening; may be repeated");
   command.add("--scene", &a->scenes, "judge on this scene; may be repeated [all of the run]").names(ValueKind::kScene);
   command.add("--size", &a->size, "judge pictures of WxH pixels [all of the run]");
   command.add("--class", &a->width_class, "judge kernels of this class of width [any]")

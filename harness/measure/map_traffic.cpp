@@ -1,8 +1,10 @@
 #include "harness/measure/map_traffic.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <list>
 #include <map>
 #include <memory>
@@ -192,6 +194,55 @@ class Traffic {
   }
 };
 
+/// Reads what a lookup of so many reads may have read.
+class CountedLookup final : public filters::Lookup {
+ public:
+  CountedLookup(const CountedLayer& layer, int columns)
+      : grids_{make_grid(layer.map, layer.map.texel_bytes), make_grid(layer.map, 8), make_grid(layer.map, 16)},
+        pixels_(layer.pixels),
+        columns_(columns) {}
+
+  filters::ModelResult at(const filters::Receiver& receiver) const override {
+    const PixelReads& reads = pixels_[static_cast<std::size_t>(receiver.pixel.y * columns_ + receiver.pixel.x)];
+    for (std::size_t i = 0; i < grids_.size(); ++i) spread(grids_[i], receiver, reads.fetches[i], reads.reach_texels);
+    return {};
+  }
+
+ private:
+  using Grid = filters::TexelGrid<float>;
+  std::array<Grid, 3> grids_;
+  const std::vector<PixelReads>& pixels_;
+  int columns_;
+
+  static Grid make_grid(const filters::DepthMap& map, int texel_bytes) {
+    return Grid(map.size, map.border, texel_bytes);
+  }
+
+  static void spread(const Grid& grid, const filters::Receiver& receiver, int count, double reach_texels) {
+    const int side = static_cast<int>(std::ceil(std::sqrt(count)));
+    const double half = side > 1 ? std::max(reach_texels - 1.0, 0.0) : 0.0,
+                 step = side > 1 ? 2.0 * half / (side - 1) : 0.0;
+    const glm::dvec2 corner = glm::dvec2(receiver.uv) * static_cast<double>(grid.size()) - half - 0.5;
+    for (int i = 0; i < count; ++i) {
+      const glm::ivec2 low(glm::floor(corner + step * glm::dvec2(i % side, i / side)));
+      for (const int y : {0, 1})
+        for (const int x : {0, 1}) grid.read(low.x + x, low.y + y);
+    }
+  }
+};
+
+/// Nothing without a receiver.
+std::optional<std::vector<double>> count_traffic(const std::vector<TiledLayer>& tiled, std::size_t receivers,
+                                                 std::span<const CacheShape> caches) {
+  if (receivers == 0) return std::nullopt;
+  Traffic traffic(caches);
+  for (std::size_t tile = 0; tile < tiled.front().receivers.size() / kTilePixels; ++tile) {
+    traffic.begin_tile();
+    for (const TiledLayer& layer : tiled) traffic.ask(*layer.lookup, layer.tile(tile));
+  }
+  return traffic.share_bytes(receivers);
+}
+
 }  // namespace
 
 std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
@@ -211,13 +262,19 @@ std::optional<std::vector<double>> count_map_traffic(const filters::FilterReques
     tiled.emplace_back(model->prepare(input, filters::Precision::kFloat), layer.filter, view.width, view.height);
     receivers += layer.filter.size();
   }
-  if (receivers == 0) return std::nullopt;
-  Traffic traffic(caches);
-  for (std::size_t tile = 0; tile < tiled.front().receivers.size() / kTilePixels; ++tile) {
-    traffic.begin_tile();
-    for (const TiledLayer& layer : tiled) traffic.ask(*layer.lookup, layer.tile(tile));
+  return count_traffic(tiled, receivers, caches);
+}
+
+std::optional<std::vector<double>> count_map_traffic(const std::vector<CountedLayer>& layers, const ModelView& view,
+                                                     std::span<const CacheShape> caches) {
+  std::vector<TiledLayer> tiled;
+  std::size_t receivers = 0;
+  for (const CountedLayer& layer : layers) {
+    if (layer.receivers.empty()) continue;
+    tiled.emplace_back(std::make_unique<CountedLookup>(layer, view.width), layer.receivers, view.width, view.height);
+    receivers += layer.receivers.size();
   }
-  return traffic.share_bytes(receivers);
+  return count_traffic(tiled, receivers, caches);
 }
 
 }  // namespace shadowbench::measure

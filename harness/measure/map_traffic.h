@@ -16,6 +16,19 @@ struct CacheShape {
   int line_bytes = 0;  ///< a power of two, and no less than a texel has: 16 at most
 };
 
+/// What is known of a lookup without a scalar model: its reads are counted while it is drawn.
+struct PixelReads {
+  int fetches[3] = {};        ///< of texels of up to 32, of 64 and of 128 bits
+  double reach_texels = 0.0;  ///< from the receiver to the centre of the farthest texel, on either axis
+};
+
+/// A layer of a map with the receivers that it serves, and the reads of every pixel of the view, the lower row first.
+struct CountedLayer {
+  filters::DepthMap map;  ///< of which size, border, and the bytes of a narrow texel count
+  std::vector<filters::Receiver> receivers;
+  std::vector<PixelReads> pixels;
+};
+
 /// Counts the bytes that a filter's lookups fetch through each cache: the mean over the receivers.
 ///
 /// A line of L bytes holds L / (bytes of a texel) texels of one map, in a block as near to a square as powers of two
@@ -31,6 +44,11 @@ struct CacheShape {
 /// reads no more than four texels. The README says how little that misses.
 std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
                                                      const std::vector<ModelLayer>& layers, const ModelView& view,
+                                                     std::span<const CacheShape> caches);
+
+/// The same of lookups whose reads were counted: they are taken to lie evenly in the square that they reach, each in
+/// the middle of four texels, in maps of the depth map's size, one for each width of texels.
+std::optional<std::vector<double>> count_map_traffic(const std::vector<CountedLayer>& layers, const ModelView& view,
                                                      std::span<const CacheShape> caches);
 
 }  // namespace shadowbench::measure

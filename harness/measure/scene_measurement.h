@@ -26,7 +26,7 @@ struct MeasuredCell {
   render::FilterCost cost;
   std::vector<render::DrawnPass> passes;  ///< the lookup first; none of a user's filter, whose process has them
   std::vector<double> fetched_bytes;      ///< of a receiver's lookup, the mean, by the caches of the run's GPUs; empty
-                                          ///< without a scalar model or an attribution
+                                          ///< where TrafficMeter leaves it so
   render::DrawnPass empty_lookup;         ///< reads what the lookup does of its receivers, and nothing of the map
   gl::StepPointer frame;                  ///< how the picture was drawn; null unless the renderer has a recorder
   gl::StepPointer empty_frame;            ///< the same of the empty lookup

@@ -8,6 +8,7 @@
 #include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
 #include "reference/metrics/error_stats.h"
+#include "reference/metrics/penumbra_growth.h"
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
 #include "report/records/absence.h"
@@ -31,6 +32,23 @@ void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
   truth.standard_error = std::sqrt(squares / count);
   truth.weight_rmse = std::sqrt(gaps / count);
   truth.unanimous = unanimous / count;
+}
+
+void note_growth(records::CellRecord& record, std::span<const std::span<const float>> images, const SceneTruth& truth) {
+  const auto texel_m = record.map_scale.texel_m;
+  if (texel_m) {
+    record.penumbra.growth = metrics::measure_penumbra_growth({.images = images,
+                                                               .truth = truth.area.texels,
+                                                               .mask = truth.mask,
+                                                               .width_ws = truth.penumbra_ws,
+                                                               .texel_ws = *texel_m,
+                                                               .columns = truth.area.width});
+  }
+  if (!record.penumbra.growth)
+    record.absent["penumbra"] = texel_m ? records::explain_nothing_to_see(fmt::format(
+                                              "too few penumbrae are {:g} to {:g} texels wide, and of different widths",
+                                              metrics::kGrowthLimits.least_texels, metrics::kGrowthLimits.most_texels))
+                                        : "the renderer's map is not known";
 }
 
 constexpr double kTellingWeight = 0.01;
@@ -58,6 +76,13 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
   const bool is_ratio = weight == options::TruthWeight::kCosine;
   truth.ratio = truth.receivers.to_image(truth.rays.area.ratio);
   truth.area = is_ratio ? truth.ratio : truth.receivers.to_image(truth.rays.area.visibility);
+  for (std::size_t i = 0; i < truth.mask.size(); ++i) {
+    const float occluder_m = truth.rays.first_blockers_ws[i];
+    truth.penumbra_ws.push_back(
+        std::isfinite(occluder_m)
+            ? static_cast<float>(scene::penumbra_width(light, truth.receivers.image.points[i].position_ws, occluder_m))
+            : occluder_m);
+  }
   truth.standard_errors = is_ratio ? truth.rays.area.ratio_error : truth.rays.area.standard_error;
   summarise_errors(truth, truth.rays.area);
   return truth;
@@ -90,8 +115,7 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
     const std::string reason = !truth.absent.empty() ? truth.absent
                                : visibility.empty()  ? record.message
                                                      : "no pixel of the image is finite";
-    record.absent["error"] = reason;
-    record.absent["truth"] = reason;
+    for (const char* group : {"error", "truth", "penumbra"}) record.absent[group] = reason;
     return {};
   }
   std::ranges::for_each(other_phases, measure_phase);
@@ -102,6 +126,7 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
   std::vector<std::span<const float>> images = {visibility.texels};
   for (const images::Image& phase : other_phases)
     if (!phase.empty()) images.emplace_back(phase.texels);
+  note_growth(record, images, truth);
   note_flicker(record, metrics::measure_change(images, group, truth.mask));
   // Of the pictures as they are saved, so that `diff` finds the same.
   images::Image flip;

@@ -28,6 +28,7 @@ struct SceneTruth {
   images::Image area_picture;                  ///< shaded with `ratio`, linear RGB
   std::optional<metrics::FlipView> area_seen;  ///< that picture, rounded to half as it is saved, as FLIP sees it
   std::vector<std::uint8_t> mask;              ///< 1 where a pixel counts: a surface that faces the light
+  std::vector<float> penumbra_ws;              ///< width, metres: see scene::penumbra_width(); infinity where none is
   std::vector<float> standard_errors;          ///< of `area`, pixel by pixel
   double standard_error = 0.0;                 ///< root mean square over the pixels that count
   double weight_rmse = 0.0;   ///< between the fraction of the light that is seen and `ratio`, over the same pixels

@@ -1,7 +1,10 @@
 #include "harness/measure/traffic_meter.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "harness/gl/pixel_format.h"
+#include "harness/measure/filter_setup.h"
 #include "report/records/gpu_frame.h"
 
 namespace shadowbench::measure {
@@ -38,7 +41,7 @@ TrafficMeter::TrafficMeter(Renderer& renderer, const options::RunOptions& option
 }
 
 void TrafficMeter::measure(MeasuredCell& cell) {
-  if (cell.visibility.empty() || !filters::make_model(cell.request.spec)) return;
+  if (cell.passes.empty()) return;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const scene::LightFrustum& layer = light_.layers[i];
     const render::Bias bias = render::resolve_bias(options_.bias, layer, cell.request.spec, cell.request.values);
@@ -47,10 +50,31 @@ void TrafficMeter::measure(MeasuredCell& cell) {
         render::make_light_setup(layer, task_.scene->light, bias, options_.seed, options_.range));
   }
   const ModelView view{gbuffer_.width(), gbuffer_.height(), options_.seed, options_.bias.plane_max_tangent()};
-  auto bytes = count_map_traffic(cell.request, layers_, view, caches_);
+  auto bytes = filters::make_model(cell.request.spec) ? count_map_traffic(cell.request, layers_, view, caches_)
+               : cell.cost.fetches                    ? count_map_traffic(count_reads(cell), view, caches_)
+                                                      : std::nullopt;
   if (!bytes) return;
   for (double& each : *bytes) each /= step_ * step_;
   cell.fetched_bytes = std::move(*bytes);
+}
+
+std::vector<CountedLayer> TrafficMeter::count_reads(const MeasuredCell& cell) {
+  const gl::Recorder::Pause pause(renderer_.recorder.get());
+  const auto passes = make_filter_passes(renderer_, options_, *task_.scene, light_, cell.request);
+  passes->prefilter(light_.map);
+  std::vector<CountedLayer> layers;
+  for (const render::CountedReads& counted : passes->count_reads(renderer_.shaders, gbuffer_, light_.map)) {
+    const ModelLayer& own = layers_[layers.size()];
+    CountedLayer& layer = layers.emplace_back(CountedLayer{own.map, own.filter, {}});
+    if (passes->encoded_format()) layer.map.texel_bytes = gl::pixel_format(*passes->encoded_format()).bytes_per_texel;
+    for (std::size_t i = 0; i < counted.reads.size() / 4; ++i) {
+      const int of_64 = static_cast<int>(counted.wide[2 * i]), of_128 = static_cast<int>(counted.wide[2 * i + 1]);
+      const int all = std::max(static_cast<int>(counted.reads[4 * i]), 0);
+      layer.pixels.push_back({{all - of_64 - of_128, of_64, of_128},
+                              static_cast<double>(counted.reads[4 * i + 1]) - passes->blurred_reach()});
+    }
+  }
+  return layers;
 }
 
 }  // namespace shadowbench::measure

@@ -19,8 +19,9 @@ class TrafficMeter {
   TrafficMeter(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets,
                std::optional<double> texels_per_pixel);
 
-  /// Notes the bytes of one receiver's lookup, one number for each GPU; leaves the cell as it is where the filter has
-  /// no scalar model, or the view no receiver. Cost: a readback of the receivers, and count_map_traffic().
+  /// Notes the bytes of one receiver's lookup, one number for each GPU; leaves the cell as it is where another process
+  /// drew it, where the filter reads the map's samplers itself, or the view has no receiver. What a filter without a
+  /// scalar model reads is counted: it is drawn again. Cost: a readback of the receivers, and count_map_traffic().
   void measure(MeasuredCell& cell);
 
  private:
@@ -32,6 +33,8 @@ class TrafficMeter {
   render::GBuffer gbuffer_;
   std::vector<CacheShape> caches_;
   std::vector<ModelLayer> layers_;
+
+  std::vector<CountedLayer> count_reads(const MeasuredCell& cell);
 };
 
 }  // namespace shadowbench::measure

@@ -195,8 +195,8 @@ ReceiverReads FilterPasses::receiver_reads() const {
           lookup_.has("gbuffer_position"), lookup_.has("gbuffer_normal")};
 }
 
-void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer,
-                                 const ShadowMap& map) {
+std::vector<CountedReads> FilterPasses::count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer,
+                                                    const ShadowMap& map) {
   const int stored_bytes = encoded_format() ? gl::pixel_format(*encoded_format()).bytes_per_texel : 0;
   filters::CountedLoops counted_loops = filters::count_loops(request_.spec.body);
   gl::Program counting = compile_lookup(shaders,
@@ -208,9 +208,7 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
   const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   const gl::Texture reads("reads", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   const gl::Texture wide_reads("wide reads", GL_RG32F, gbuffer.width(), gbuffer.height());
-  std::vector<double> sums(static_cast<std::size_t>(gbuffer.width()) * static_cast<std::size_t>(gbuffer.height()),
-                           -1.0);
-  double reach = -1.0;
+  std::vector<CountedReads> counted;
   for (int layer = 0; layer < layers(); ++layer) {
     select(layer);
     set_uniforms(counting, layers_[static_cast<std::size_t>(layer)].light);
@@ -226,14 +224,26 @@ void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const
       triangle_.draw_masked();
     else
       triangle_.draw();
-    const std::vector<float> counted = reads.read_floats(4), wide = wide_reads.read_floats(2);
+    counted.push_back({reads.read_floats(4), wide_reads.read_floats(2)});
+  }
+  return counted;
+}
+
+double FilterPasses::blurred_reach() const { return filters::prefilter_radius_texels(request_.spec, request_.values); }
+
+void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer,
+                                 const ShadowMap& map) {
+  std::vector<double> sums(static_cast<std::size_t>(gbuffer.width()) * static_cast<std::size_t>(gbuffer.height()),
+                           -1.0);
+  double reach = -1.0;
+  for (const CountedReads& layer : count_reads(shaders, gbuffer, map)) {
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      if (counted[4 * i] < 0.0f) continue;
-      sums[i] = std::max(sums[i], 0.0) + static_cast<double>(counted[4 * i]);
-      reach = std::max(reach, static_cast<double>(counted[4 * i + 1]));
-      cost.fetches_64 += static_cast<double>(wide[2 * i]);
-      cost.fetches_128 += static_cast<double>(wide[2 * i + 1]);
-      cost.most_turns = std::max(cost.most_turns, static_cast<int>(counted[4 * i + 2]));
+      if (layer.reads[4 * i] < 0.0f) continue;
+      sums[i] = std::max(sums[i], 0.0) + static_cast<double>(layer.reads[4 * i]);
+      reach = std::max(reach, static_cast<double>(layer.reads[4 * i + 1]));
+      cost.fetches_64 += static_cast<double>(layer.wide[2 * i]);
+      cost.fetches_128 += static_cast<double>(layer.wide[2 * i + 1]);
+      cost.most_turns = std::max(cost.most_turns, static_cast<int>(layer.reads[4 * i + 2]));
     }
   }
   std::erase_if(sums, [](double sum) { return sum < 0.0; });

@@ -26,6 +26,12 @@ struct FilterCost {
   std::int64_t prefilter_texels = 0;  ///< texels that encode, blur and the filter's own passes write
 };
 
+/// What the lookups of a layer read, pixel by pixel, the lower row first.
+struct CountedReads {
+  std::vector<float> reads;  ///< four a pixel: fetches, or -1 without a lookup; their reach, texels; turns of a loop
+  std::vector<float> wide;   ///< two a pixel: of the fetches those of texels of 64, and of 128 bits
+};
+
 /// What a lookup reads of its receivers; the compiler drops what no filter uses.
 struct ReceiverReads {
   bool place = false;     ///< its place in the map, and its depth
@@ -108,6 +114,12 @@ class FilterPasses {
 
   /// Compiles and runs the counting variant of the lookup. Call after prefilter().
   FilterCost measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
+
+  /// The same, layer by layer. Requires a filter that does not read the samplers itself.
+  std::vector<CountedReads> count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
+
+  /// How far from where they are, in texels, the lookup's fetches reach by what a blur before it has brought there.
+  double blurred_reach() const;
 
   /// What the lookup reads of its receivers: a pass that reads as much, and nothing of the map, costs what is not the
   /// filter's own.

@@ -63,7 +63,8 @@ void GpuCosts::add_to(std::vector<measure::MeasuredCell>& cells) {
         cell.record.absent["gpu." + gpu.name] = record.refused;
       else if (!record.estimate)
         cell.record.absent["gpu." + gpu.name + ".frame_ms"] =
-            "the filter has no scalar model, so that what its reads bring from memory is not known";
+            cell.cost.fetches ? "the map has no receiver in view"
+                              : "the filter reads the map's samplers itself, so that its reads are not counted";
     }
   }
   if (!options_.gpus.empty()) return;

@@ -9,8 +9,8 @@
 
 #include "base/content_hash.h"
 #include "base/error.h"
+#include "base/input_file.h"
 #include "filters/kernel_width.h"
-#include "filters/model.h"
 #include "harness/measure/light_width.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/options/run_options.h"
@@ -68,29 +68,44 @@ void add_scene(ContentHash& hash, const scene::Scene& scene) {
   hash.add(fmt::format("{} {} {}", scene.background.r, scene.background.g, scene.background.b));
 }
 
-/// Names everything that a scene's cells are made from and their keys do not say: the program's commit, the
-/// options of the run, and the scene itself with its geometry, textures, cameras and light. Not the OpenGL: see
+/// Names the shaders that filters include and are drawn with: they are read when the program starts, so that its commit
+/// does not name them.
+std::string name_shaders(const std::filesystem::path& folder) {
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.insert(entry.path());
+  ContentHash hash;
+  for (const std::filesystem::path& file : files) {
+    hash.add(file.lexically_relative(folder).generic_string());
+    hash.add_values(std::span<const unsigned char>(read_file_bytes(file, kMebibyte)));
+  }
+  return hash.name();
+}
+
+/// Names everything that a scene's cells are made from and their keys do not say: the program's commit, its shaders,
+/// the options of the run, and the scene itself with its geometry, textures, cameras and light. Not the OpenGL: see
 /// CellRecord::machine.
-std::string name_scene_content(const options::RunOptions& options, const scene::Scene& scene) {
+std::string name_scene_content(const options::RunOptions& options, const scene::Scene& scene,
+                               const std::string& shaders) {
   ContentHash hash;
   hash.add(build_commit());
+  hash.add(shaders);
   add_options(hash, options);
   add_scene(hash, scene);
   return hash.name();
 }
 
-/// Names everything that one cell is made from: the above, and the filter's GLSL. Two cells of one key and one content
-/// differ in their times, and by what another OpenGL rounds, alone.
-std::string name_cell_content(const std::string& scene_content, const filters::FilterRequest& request) {
+/// Names everything that one cell is made from: the above, and the filter's file, with the time that a user's may take.
+/// Two cells of one key and one content differ in their times, and by what another OpenGL rounds, alone.
+std::string name_cell_content(const std::string& scene_content, const filters::FilterRequest& request,
+                              const options::RunOptions& options) {
   ContentHash hash;
   hash.add(scene_content);
+  hash.add(request.spec.front_matter);
   hash.add(request.spec.body);
-  hash.add(fmt::format("{} claims {}", request.user_file, fmt::join(request.spec.claims, " ")));
-  hash.add(fmt::format("moments {} exponent {} floor {} bound at zero {}", request.spec.holds_moments,
-                       request.spec.exponent, request.spec.variance_floor, request.spec.bound_at_zero));
   if (request.light_sigma_texels) hash.add(fmt::format("width by light {}", *request.light_sigma_texels));
-  const auto kernel = filters::find_kernel(request.spec, request.values);
-  hash.add(fmt::format("kernel {} model {}", kernel ? kernel->name() : "", request.spec.copy_of));
+  hash.add(request.spec.copy_of);
+  if (request.user_file) hash.add(fmt::format("ends after {} s", options.cell_timeout_s));
   return hash.name();
 }
 
@@ -205,6 +220,7 @@ class Planner {
  private:
   const options::RunOptions& options_;
   const std::string& renderer_;
+  const std::string shaders_ = name_shaders(options_.resources.shaders);
   RunPlan plan_;
   ContentHash hash_, own_hash_;
   std::optional<scene::EdgeMeter> meter_;  ///< of the scenes at `meter_place_`, which differ in their lights and fits
@@ -218,7 +234,7 @@ class Planner {
     for (const scene::Camera* camera : choose_views(options_, scene.scene))
       for (const int map_size : options_.map_sizes) tasks.push_back({&scene.scene, camera, map_size, options_.filters});
     take_light_widths(scene, tasks);
-    const std::string content = name_scene_content(scene.options, scene.scene);
+    const std::string content = name_scene_content(scene.options, scene.scene, shaders_);
     for (const measure::SceneTask& task : tasks) add_task(index, task, content);
   }
 
@@ -246,7 +262,7 @@ class Planner {
     planned.task.filters.clear();
     for (const filters::FilterRequest& request : task.filters) {
       const std::string key = measure::make_record(plan_.scenes[scene].options, task, request).key;
-      const std::string content = name_cell_content(scene_content, request);
+      const std::string content = name_cell_content(scene_content, request, options_);
       add_cell(hash_, key, content);
       ++plan_.scene_cells[plan_.scenes[scene].place];
       const int cell = plan_.cells++;

@@ -112,12 +112,10 @@ class TaskRun {
     }
     Requests all = built_in;
     all.insert(all.end(), of_users.begin(), of_users.end());
-    if (!options_.part.is_worker()) {
-      score(measured);
-      measure_coverage(measured);
-    }
+    if (!options_.part.is_worker()) score(measured);
+    measure_coverage(measured);
     if (options_.frames > 1) accumulate(measured, built_in.size());
-    if (bench_.gpus.compile(measured.cells) && !options_.part.is_worker()) count_traffic(measured);
+    if (bench_.gpus.compile(measured.cells)) count_traffic(measured);
     begin(options::Work::kPictures, measured.cells.size(), "pictures");
     bench_.gpus.add_to(measured.cells);
     write_images(task_of(all), measured);

@@ -7,6 +7,7 @@
 
 #include "reference/metrics/artefacts.h"
 #include "reference/metrics/flip.h"
+#include "reference/metrics/penumbra_growth.h"
 
 namespace shadowbench::metrics {
 namespace {
@@ -133,6 +134,13 @@ std::vector<Metric> list_artefacts() {
        "over neighbours on one surface that cascades share differently, of the sum of what each cascade alone "
        "shows there times the change of its share",
        kNotKept},
+      {"penumbra.growth", at<&V::penumbra, &PenumbraRecord::growth>, "ratio", kAny, kNeither, "growth of penumbrae",
+       fmt::format(
+           "by how much the width of the image's penumbrae grows where the truth's grows by 1: 1 as the truth, 0 "
+           "one width for all. Over tiles of {} pixels: slope of (sum of v (1 - v) of the image's mean over the "
+           "phases / the truth's) x width over the width that the blockers' distance gives, where that is {:g} "
+           "to {:g} texels; each length of edge weighs the same",
+           kGrowthLimits.tile_pixels, kGrowthLimits.least_texels, kGrowthLimits.most_texels)},
   };
 }
 

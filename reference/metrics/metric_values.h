@@ -61,6 +61,11 @@ struct ArtefactRecord {
   std::optional<double> seam;
 };
 
+/// What becomes of penumbrae.
+struct PenumbraRecord {
+  std::optional<double> growth;
+};
+
 /// One of the parts that the error is the sum of.
 struct AttributionPart {
   std::optional<double> rms;
@@ -100,6 +105,7 @@ struct MetricValues {
   TruthRecord truth;
   CoverageRecord coverage;
   ArtefactRecord artefact;
+  PenumbraRecord penumbra;
   AttributionRecord attribution;
   StabilityRecord stability;
 };

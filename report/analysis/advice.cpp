@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "report/analysis/cell_group.h"
+#include "report/analysis/claims.h"
 #include "report/analysis/gains.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/trade_measures.h"
@@ -133,10 +134,13 @@ std::string find_missing_cell(const Configuration& configuration, const std::vec
 }
 
 Verdict judge_claim(const Configuration& configuration, const std::string& claim, const AdviceRequest& request) {
-  if (const auto claims = find_claims(configuration, request)) return {std::ranges::count(*claims, claim) > 0};
+  const auto claims = find_claims(configuration, request);
+  if (claims && std::ranges::count(*claims, claim) == 0) return {false};
   Verdict verdict;
-  verdict.absent = fmt::format("the run does not say what '{}' claims, and it is no built-in filter",
-                               configuration.cells.front()->filter);
+  verdict.absent = claims ? find_doubt(configuration.cells, claim)
+                          : fmt::format("the run does not say what '{}' claims, and it is no built-in filter",
+                                        configuration.cells.front()->filter);
+  verdict.kept = verdict.absent.empty();
   return verdict;
 }
 

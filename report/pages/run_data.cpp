@@ -10,6 +10,7 @@
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/cell_group.h"
+#include "report/analysis/claims.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
@@ -158,7 +159,7 @@ json make_configuration(const analysis::Configuration& configuration, const std:
                {"surroundings", configuration.surroundings},
                {"color", style.color},
                {"bias", describe_biases(configuration, biases)},
-               {"hardens", cell.claims && std::ranges::count(*cell.claims, "contact-hardening") > 0}};
+               {"hardens", analysis::shows_claim(configuration.cells, analysis::kContactHardening)}};
   for (const CostChoice& choice : choices) made[choice.field] = describe_cost(configuration.cells, choice);
   return made;
 }

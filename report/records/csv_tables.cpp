@@ -109,7 +109,8 @@ struct Column {
 /// "error.rmse" is rmse; groups whose fields say nothing alone stay: "bias.midpoint" is bias_midpoint.
 std::string name_column(std::string path, const About& about) {
   if (!about.column_name.empty()) return std::string(about.column_name);
-  const bool keeps_group = path.starts_with("truth.") || path.starts_with("kernel.") || path.starts_with("bias.");
+  const bool keeps_group = path.starts_with("truth.") || path.starts_with("kernel.") || path.starts_with("bias.") ||
+                           path.starts_with("penumbra.");
   if (!keeps_group) path.erase(0, path.find('.') + 1);
   std::ranges::replace(path, '.', '_');
   return path;

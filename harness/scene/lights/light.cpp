@@ -96,6 +96,13 @@ double light_size(const Light& light) {
   return std::visit([](const auto& kind) { return light_size(kind); }, light.kind);
 }
 
+double penumbra_width(const Light& light, const glm::vec3& receiver_ws, double occluder_m) {
+  const std::optional<Beam> beam = find_beam(light);
+  if (!beam) return light_size(light) * occluder_m;
+  const double distance = glm::length(glm::dvec3(receiver_ws) - beam->position_ws);
+  return light_size(light) * occluder_m / (distance - occluder_m) * beam->reference_m / distance;
+}
+
 truth::AreaLight make_area_light(const Light& light) {
   return std::visit([](const auto& kind) { return make_area_light(kind); }, light.kind);
 }

@@ -54,6 +54,10 @@ bool shines_on(const Light& light, const glm::vec3& point_ws);
 /// one in the scene its diameter in metres, of a rectangle that of the disk of its area.
 double light_size(const Light& light);
 
+/// The width of the penumbra that an occluder throws which is so many metres before a receiver, across the light's way;
+/// of a light in the scene as it would be at the distance that its map's texels are told for.
+double penumbra_width(const Light& light, const glm::vec3& receiver_ws, double occluder_m);
+
 /// The light as the truth traces it.
 truth::AreaLight make_area_light(const Light& light);
 

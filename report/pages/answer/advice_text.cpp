@@ -73,7 +73,7 @@ std::string remark(const analysis::Demand& demand, const analysis::Verdict& verd
 
 Row describe_limit(const analysis::Demand& demand, const analysis::Verdict& verdict, const records::RunRecord& run,
                    const analysis::Advice& advice) {
-  if (!verdict.worst) return {analysis::describe_demand(demand), "claimed"};
+  if (!verdict.worst) return {analysis::describe_demand(demand), "shown"};
   const bool is_time = demand.spec == &analysis::cost_spec(analysis::CostKind::kTime);
   const std::string unit = is_time ? " " + records::time_unit(run.gl) : demand.spec->gpu.empty() ? "" : " ms";
   const std::string worst = analysis::format_kept(*verdict.worst, demand.most);

@@ -35,6 +35,7 @@ class Advise : public ProgramTest {
     cell.error.rmse = rmse;
     cell.truth.se = 0.001;
     cell.absent.erase("error");
+    cell.penumbra.growth = 1.0;
     return cell;
   }
 
@@ -153,7 +154,7 @@ TEST_F(Advise, Requires_ReadsTheClaimsOfTheBuiltInFilters) {
   setenv("SHADOWBENCH_ROOT", with_claims().c_str(), 1);
   const Outcome outcome = run("advise --requires contact-hardening run");
   EXPECT_THAT(outcome.out, StartsWith("tent3x3: ")) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("--requires contact-hardening  claimed"));
+  EXPECT_THAT(outcome.out, HasSubstr("--requires contact-hardening  shown"));
   EXPECT_THAT(outcome.out, HasSubstr("without --requires contact-hardening  saves 3 ms (CPU)"));
   expect_refusal("advise run --requires temporal", 2,
                  {"no filter claims 'temporal'", "filters claim contact-hardening"});

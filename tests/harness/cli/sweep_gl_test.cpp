@@ -136,7 +136,7 @@ TEST_F(Sweep, FreshOverAFinishedReport_SaysHowManyTimesRepeat) {
   EXPECT_TRUE(results()["repeat"]["of"].is_null()) << "what was replaced was told something else";
 }
 
-TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCellsAndCount) {
+TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCells_AndNoAdviceWhereNothingShowsThem) {
   write("mine.glsl",
         "/*+++\ntitle = \"M\"\nsource = \"s\"\nkind = \"other\"\nclaims = [\"own-claim\"]\nradius_texels = 0\n+++*/\n"
         "float visibility(Receiver r) { return compare_nearest(r, vec2(0.0), r.depth); }\n");
@@ -146,7 +146,9 @@ TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCellsAndCount) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(results()["cells"][0]["claims"], json::array());
   EXPECT_EQ(results()["cells"][1]["claims"], json::array({"own-claim"}));
-  EXPECT_THAT(run("advise out --requires own-claim").out, ::testing::StartsWith("mine: "));
+  const Outcome advice = run("advise out --requires own-claim");
+  EXPECT_EQ(advice.exit_code, 1) << advice.out;
+  EXPECT_THAT(advice.out, ::testing::HasSubstr("'own-claim' is claimed, not shown: nothing is measured of it"));
   // So small a picture has too few pixels for rates.
   EXPECT_THAT(results()["cells"][0]["absent"]["artefact.leak"].get<std::string>(),
               ::testing::StartsWith("nothing to see: fewer than 100 receivers"));

@@ -159,5 +159,23 @@ TEST(MapTraffic, IsNothingWithoutAModelOrAReceiver) {
   EXPECT_FALSE(count_map_traffic(request, {make_steps(8, 8)}, {8, 8}, {{kHoldsAll}}));
 }
 
+/// Every lookup reads so often, of texels of one width, and so far.
+double count_reads(const ModelLayer& layer, const PixelReads& reads, const CacheShape& cache) {
+  const CountedLayer counted{layer.map, layer.filter, std::vector<PixelReads>(kSide * kSide, reads)};
+  return count_map_traffic({counted}, {kSide, kSide}, {{cache}}).value().front();
+}
+
+TEST(MapTraffic, ReadsThatWereCounted_FetchWhatAModelDoes) {
+  const ModelLayer layer = make_steps(kSide, kSide);
+  for (const CacheShape& cache : {kHoldsAll, CacheShape{16 * 128, 128}}) {
+    EXPECT_DOUBLE_EQ(count_reads(layer, {{1, 0, 0}, 1.0}, cache), count("pcf2x2", {layer}, cache));
+    EXPECT_NEAR(count_reads(layer, {{9, 0, 0}, 3.0}, cache), count("tent5x5", {layer}, cache), 0.05 * 4.0);
+    EXPECT_NEAR(count_reads(layer, {{16, 0, 0}, 4.0}, cache), count("tent7x7", {layer}, cache), 0.05 * 4.0);
+  }
+  EXPECT_EQ(count_reads(layer, {{0, 1, 0}, 1.0}, kHoldsAll), count("vsm", {layer}, kHoldsAll));
+  EXPECT_EQ(count_reads(layer, {{0, 0, 1}, 1.0}, kHoldsAll), count("evsm4", {layer}, kHoldsAll));
+  EXPECT_EQ(count_reads(layer, {{1, 1, 0}, 1.0}, kHoldsAll), 4.0 + 8.0) << "of two maps";
+}
+
 }  // namespace
 }  // namespace shadowbench::measure

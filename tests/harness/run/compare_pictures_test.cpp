@@ -277,8 +277,8 @@ TEST(MetricTable, NamesEveryNumberThatARunMeasures) {
   for (const metrics::Metric& metric : metrics::metric_table()) listed.emplace_back(metric.path);
   const records::CellRecord cell;
   records::visit_fields(cell, [&](const std::string& path, const auto&, const records::About& = {}) {
-    for (const char* group : {"error.", "truth.", "coverage.", "artefact.", "attribution.", "cost.", "stability.",
-                              "map_scale.", "receivers", "nan"})
+    for (const char* group : {"error.", "truth.", "coverage.", "artefact.", "penumbra.", "attribution.", "cost.",
+                              "stability.", "map_scale.", "receivers", "nan"})
       if (path.rfind(group, 0) == 0 && !path.ends_with("_ci95") && !path.ends_with("_replicates"))
         recorded.push_back(path);
   });

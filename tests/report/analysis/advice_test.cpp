@@ -1,5 +1,6 @@
 #include "report/analysis/advice.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -356,8 +357,9 @@ TEST(Advice, RmseKeptByLessThanTheTruthsStandardError_IsMarked) {
 }
 
 TEST(Advice, RequiredClaim_IsReadFromTheKnownFilters) {
-  const std::vector<records::CellRecord> cells = {
-      measure("cubes", "hard", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01), measure("cubes", "mine", 1.0, 0.01)};
+  std::vector<records::CellRecord> cells = {measure("cubes", "hard", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01),
+                                            measure("cubes", "mine", 1.0, 0.01)};
+  for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
   AdviceRequest request;
   request.demands = {{nullptr, 0.0, "contact-hardening"}};
   request.claims = {{"hard", {}}, {"soft", {"contact-hardening"}}, {"other", {"temporal"}}};
@@ -372,16 +374,43 @@ TEST(Advice, RequiredClaim_IsReadFromTheKnownFilters) {
 
 TEST(Advice, ClaimsInTheRecord_CountBeforeThoseOfTheKnownFilters) {
   std::vector<records::CellRecord> cells = {measure("cubes", "mine", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01)};
-  cells[0].claims = {{"contact-hardening", "own-claim"}};
+  cells[0].claims = {{"contact-hardening"}};
   cells[1].claims.emplace();
+  for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
   AdviceRequest request;
   request.claims = {{"soft", {"contact-hardening"}}};
-  for (const char* claim : {"contact-hardening", "own-claim"}) {
-    request.demands = {{nullptr, 0.0, claim}};
-    const Advice advice = advise(cells, request);
-    EXPECT_THAT(labels(advice.keeping), ElementsAre("mine")) << claim;
-    EXPECT_THAT(labels(advice.failing), ElementsAre("soft")) << claim;
-  }
+  request.demands = {{nullptr, 0.0, "contact-hardening"}};
+  const Advice advice = advise(cells, request);
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("mine"));
+  EXPECT_THAT(labels(advice.failing), ElementsAre("soft"));
+}
+
+TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
+  std::vector<records::CellRecord> cells;
+  for (const char* scene : {"ball", "cubes"})
+    for (const char* filter : {"grows", "shrinks", "same", "unseen"}) {
+      cells.push_back(measure(scene, filter, 1.0, 0.01));
+      cells.back().claims = {{"contact-hardening", "own-claim"}};
+      cells.back().absent["penumbra"] = records::explain_nothing_to_see("all are narrow");
+    }
+  cells[0].penumbra.growth = 0.9;
+  cells[1].penumbra.growth = -1.0;
+  cells[2].penumbra.growth = 0.9;
+  cells[6].penumbra.growth = 0.1;
+  AdviceRequest request;
+  request.demands = {{nullptr, 0.0, "contact-hardening"}};
+  const Advice advice = advise(cells, request);
+  EXPECT_THAT(labels(advice.keeping), ElementsAre("grows")) << "a place that cannot show it says nothing";
+  const std::string claimed = "'contact-hardening' is claimed, not shown: ";
+  const auto least = [](const char* scene, const char* by) {
+    return fmt::format("on {} its penumbrae widen by {} where the truth's widen by 1, and 0.5 is the least", scene, by);
+  };
+  EXPECT_THAT(reasons(advice),
+              ElementsAre(claimed + least("ball", "-1"), claimed + least("cubes", "0.1"), claimed + "all are narrow"));
+  request.demands[0].claim = "own-claim";
+  EXPECT_TRUE(advise(cells, request).keeping.empty());
+  EXPECT_THAT(describe_failure(advise(cells, request)),
+              HasSubstr("'own-claim' is claimed, not shown: nothing is measured of it"));
 }
 
 /// A cell with a leak rate on "cubes", and none on "fence", where too little is blocked.

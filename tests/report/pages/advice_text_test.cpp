@@ -191,8 +191,9 @@ TEST(AdviceJson, Nulls_AreExplainedBesideThem) {
     expect_nulls_explained(make_advice_json(make_run(), advise_on(cells, {max_rmse(most)})), "");
   analysis::AdviceRequest request;
   request.cheapest = analysis::CostKind::kBytes;
-  request.demands = {{nullptr, 0.0, "soft"}};
-  request.claims = {{"none", {"soft"}}, {"wide", {}}};
+  for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
+  request.demands = {{nullptr, 0.0, "contact-hardening"}};
+  request.claims = {{"none", {"contact-hardening"}}, {"wide", {}}};
   expect_nulls_explained(make_advice_json(make_run(), analysis::advise(cells, request)), "");
 }
 

@@ -1,0 +1,189 @@
+// Which finished cells a run goes on with: none that was made from something else.
+
+#include "harness/run/run_plan.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <map>
+
+#include "base/temporary_files.h"
+#include "filters/format/front_matter.h"
+#include "report/records/json_io.h"
+
+namespace shadowbench::run {
+namespace {
+
+constexpr const char* kRenderer = "a GL";
+
+/// A filter's file that has every key of front matter but `weights`, which stands in for a kernel's shape.
+constexpr const char* kFilter = R"(/*+++
+title = "t"
+source = "s"
+kind = "bound"
+bound_at_zero = "least"
+store = ["rg32f", "rg16f"]
+combine = "linear"
+sample = "linear"
+samples = 1
+claims = ["one"]
+radius_texels = "radius"
+bias_texels = 1.5
+teaching = false
+moments = true
+exponent = "c"
+variance_floor = "least"
+kernel = {shape = "gaussian:radius", read = "bilinear"}
+[param.radius]
+default = 3
+min = 0
+max = 9
+unit = "texels"
+text = "r"
+[param.c]
+default = 2.0
+choices = [2.0, 3.0]
+text = "c"
+[param.least]
+default = 0.0
+min = 0.0
+max = 0.5
+text = "l"
+[param.n]
+const = true
+default = 4
+min = 1
+max = 16
+text = "n"
+[param.m]
+const = true
+default = 4
+min = 1
+max = 16
+text = "m"
+[disk.points]
+count = "n"
+seed = 1
+pattern = "vogel"
+[pass.sum]
+store = "rg32f"
+steps = "levels"
+size = "full"
+anisotropy = 1
++++*/
+#include "lib/disk.glsl"
+vec4 encode(EncodeInput e) { return vec4(e.depth); }
+vec4 sum(PassInput p) { return vec4(0.0); }
+float visibility(Receiver r) { return 1.0; }
+)";
+
+/// Of every key a line, or a part of one, and what to put there.
+const std::map<std::string, std::pair<std::string, std::string>> kChanges = {
+    {".title", {"\"t\"", "\"other\""}},
+    {".source", {"\"s\"", "\"other\""}},
+    {".kind", {"kind = \"bound\"\nbound_at_zero = \"least\"", "kind = \"other\""}},
+    {".store", {"[\"rg32f\", \"rg16f\"]", "[\"rg16f\", \"rg32f\"]"}},
+    {".combine", {"combine = \"linear\"", "combine = [\"linear\", \"log\"]"}},
+    {".sample", {"sample = \"linear\"", "sample = [\"linear\", \"nearest\"]"}},
+    {".samples", {"samples = 1", "samples = [1, 2]"}},
+    {".claims", {"\"one\"", "\"two\""}},
+    {".radius_texels", {"radius_texels = \"radius\"", "radius_texels = 3"}},
+    {".bias_texels", {"bias_texels = 1.5", "bias_texels = 0"}},
+    {".teaching", {"teaching = false", "teaching = true"}},
+    {".moments", {"moments = true\nexponent = \"c\"\nvariance_floor = \"least\"", "moments = false\nexponent = \"c\""}},
+    {".exponent", {"exponent = \"c\"\n", ""}},
+    {".variance_floor", {"variance_floor = \"least\"\n", ""}},
+    {".bound_at_zero", {"bound_at_zero = \"least\"\n", ""}},
+    {".param", {"[disk.points]", "[param.more]\ndefault = true\ntext = \"m\"\n[disk.points]"}},
+    {".disk", {"[pass.sum]", "[disk.more]\ncount = \"n\"\n[pass.sum]"}},
+    {".kernel", {"kernel = {shape = \"gaussian:radius\", read = \"bilinear\"}\n", ""}},
+    {".pass", {"[pass.sum]\nstore = \"rg32f\"\nsteps = \"levels\"\nsize = \"full\"\nanisotropy = 1\n", ""}},
+    {"param.default", {"default = 3", "default = 4"}},
+    {"param.min", {"min = 0\n", "min = 1\n"}},
+    {"param.max", {"max = 9", "max = 10"}},
+    {"param.choices", {"[2.0, 3.0]", "[2.0, 4.0]"}},
+    {"param.unit", {"unit = \"texels\"", "unit = \"t\""}},
+    {"param.text", {"\"r\"", "\"other\""}},
+    {"param.const", {"choices = [2.0, 3.0]", "choices = [2.0, 3.0]\nconst = true"}},
+    {"disk.count", {"count = \"n\"", "count = \"m\""}},
+    {"disk.seed", {"seed = 1", "seed = 2"}},
+    {"disk.pattern", {"pattern = \"vogel\"", "pattern = \"blue-noise\""}},
+    {"pass.store", {"[pass.sum]\nstore = \"rg32f\"", "[pass.sum]\nstore = \"rg16f\""}},
+    {"pass.steps", {"steps = \"levels\"", "steps = \"once\""}},
+    {"pass.size", {"size = \"full\"", "size = \"half\""}},
+    {"pass.anisotropy", {"anisotropy = 1", "anisotropy = 4"}},
+    {"kernel.shape", {"gaussian:radius", "box:3"}},
+    {"kernel.weights", {"shape = \"gaussian:radius\"", "weights = [1, 2, 1]"}},
+    {"kernel.read", {"read = \"bilinear\"", "read = \"nearest\""}},
+};
+
+std::string replace_once(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// A folder in which one cell of a user's filter was measured.
+class FinishedCell : public ::testing::Test {
+ protected:
+  const ScratchFolder folder_{make_temporary_folder_path(std::filesystem::temp_directory_path(), "plan")};
+  options::RunOptions options_;
+
+  void SetUp() override {
+    std::filesystem::create_directories(folder_.path());
+    options_.resources = options::find_resources();
+    options_.scenes = {"ball"};
+    options_.out = folder_.path() / "out";
+    write_filter(kFilter);
+    options_.reference = options_.filters.front();
+    const RunPlan plan = make_plan(options_, kRenderer);
+    records::CellRecord cell;
+    cell.key = plan.tasks.at(0).keys.at(0);
+    cell.content = plan.tasks.at(0).contents.at(0);
+    cell.machine = records::MachineKind{.cpu = "", .renderer = kRenderer};
+    records::write_cell(options_.out, cell);
+    ASSERT_TRUE(is_finished());
+  }
+
+  void write_filter(const std::string& text) {
+    const std::filesystem::path file = folder_.path() / "mine.glsl";
+    std::ofstream(file) << text;
+    filters::Catalogue catalogue(options_.resources.filters);
+    catalogue.add_user_file(file);
+    options_.filters = catalogue.parse_requests("mine");
+  }
+
+  bool is_finished() const { return make_plan(options_, kRenderer).finished == 1; }
+};
+
+TEST_F(FinishedCell, AnyKeyOfFrontMatter_AsksForANewMeasurement) {
+  for (const auto& [table, keys] : filters::front_matter_keys()) {
+    for (const std::string& key : keys) {
+      SCOPED_TRACE(table + "." + key);
+      const auto change = kChanges.find(table + "." + key);
+      ASSERT_NE(change, kChanges.end()) << "say how this key may change";
+      write_filter(replace_once(kFilter, change->second.first, change->second.second));
+      EXPECT_FALSE(is_finished());
+    }
+  }
+  write_filter(kFilter);
+  EXPECT_TRUE(is_finished());
+}
+
+TEST_F(FinishedCell, WhatTheFilterIncludes_AsksForANewMeasurement) {
+  const std::filesystem::path shaders = folder_.path() / "shaders";
+  std::filesystem::copy(options_.resources.shaders, shaders, std::filesystem::copy_options::recursive);
+  options_.resources.shaders = shaders;
+  EXPECT_TRUE(is_finished());
+  std::ofstream(shaders / "lib" / "disk.glsl", std::ios::app) << "// more\n";
+  EXPECT_FALSE(is_finished());
+}
+
+TEST_F(FinishedCell, MoreTime_AsksForANewMeasurement) {
+  options_.cell_timeout_s *= 2.0;
+  EXPECT_FALSE(is_finished());
+}
+
+}  // namespace
+}  // namespace shadowbench::run
