@@ -18,6 +18,7 @@
 #include "report/files/file_name.h"
 #include "report/pages/answer/answer_data.h"
 #include "report/pages/external_section.h"
+#include "report/records/cell_key.h"
 #include "report/records/error_parts.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"

@@ -80,7 +80,7 @@ std::vector<double> list_told(const std::vector<CellRecord>& cells, const CellRe
     told.push_back(page.data["scopes"][0]["rows"][i]["worst"][field]["value"]);
   }
   analysis::AdviceRequest request = pages::choose_request(cells);
-  request.gainless = true;
+  request.whole = true;
   const auto advice = pages::make_advice_json(records::make_run(), analysis::advise(cells, request));
   EXPECT_EQ(advice["advised"]["cells"][0]["key"], cell.key);
   told.push_back(advice["advised"]["cost"]["mean"]);
