@@ -65,9 +65,7 @@ void require_claim(const std::vector<records::CellRecord>& cells, const AdviceRe
 // The cells that are asked about, but for those of places that say nothing of which filter is better.
 std::vector<const records::CellRecord*> leave_out(std::vector<const records::CellRecord*> chosen, Advice& advice) {
   advice.left_out = list_left_out(chosen);
-  std::erase_if(chosen, [&](const auto* cell) {
-    return std::ranges::count(advice.left_out, place_of(*cell), &LeftOutPlace::place) > 0;
-  });
+  std::erase_if(chosen, [&](const auto* cell) { return is_left_out(*cell, advice.left_out); });
   return chosen;
 }
 

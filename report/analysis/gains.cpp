@@ -57,6 +57,10 @@ std::vector<LeftOutPlace> list_left_out(const std::vector<const records::CellRec
   return left_out;
 }
 
+bool is_left_out(const records::CellRecord& cell, const std::vector<LeftOutPlace>& left_out) {
+  return std::ranges::count(left_out, place_of(cell), &LeftOutPlace::place) > 0;
+}
+
 std::string describe_state(PlaceState state) {
   switch (state) {
     case PlaceState::kMatters: return "matters";

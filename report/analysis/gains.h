@@ -39,6 +39,8 @@ PlaceState judge_place(const std::vector<const records::CellRecord*>& cells, con
 /// does not matter, unless there are no others.
 std::vector<LeftOutPlace> list_left_out(const std::vector<const records::CellRecord*>& cells);
 
+bool is_left_out(const records::CellRecord& cell, const std::vector<LeftOutPlace>& left_out);
+
 /// Names a state for people: "not tested: no receiver in view sees it".
 std::string describe_state(PlaceState state);
 

@@ -8,6 +8,8 @@
 
 #include "filters/kernel_width.h"
 #include "report/analysis/cell_group.h"
+#include "report/analysis/configuration.h"
+#include "report/analysis/gains.h"
 #include "report/files/file_name.h"
 #include "report/records/cell_key.h"
 #include "report/records/cell_names.h"
@@ -190,7 +192,10 @@ std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   const CellReader reader(cells);
   std::vector<TradeScope> scopes;
-  for (const auto& picture : group_indices(cells, all, picture_key))
+  const std::vector<LeftOutPlace> left_out = list_left_out(point_to(cells));
+  std::vector<std::size_t> counted = all;
+  std::erase_if(counted, [&](std::size_t i) { return is_left_out(cells[i], left_out); });
+  for (const auto& picture : group_indices(cells, counted, picture_key))
     if (group_indices(cells, picture, place_key).size() > 1) scopes.push_back(make_joint_scope(cells, picture, reader));
   for (const auto& place : group_indices(cells, all, place_key))
     scopes.push_back(make_place_scope(cells, place, reader));

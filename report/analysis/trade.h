@@ -44,7 +44,8 @@ void label_configurations(std::vector<TradeConfiguration>& configurations,
                           const std::vector<records::CellRecord>& cells);
 
 /// Sorts a run's cells into scopes: scenes together first, where there are several, then each scene by itself in the
-/// order in which it appears. Scenes together hold only configurations that every scene and view has.
+/// order in which it appears. Scenes together hold only configurations that every scene and
+/// view has, and leave out what list_left_out() does.
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells);
 
 /// The configurations of one filter that differ in nothing but the width of their kernel and the parameters that it

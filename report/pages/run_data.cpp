@@ -11,6 +11,7 @@
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
+#include "report/analysis/gains.h"
 #include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
@@ -141,7 +142,9 @@ std::string write_request(const records::CellRecord& cell) {
   return text;
 }
 
-json make_configuration(const analysis::Configuration& configuration, const std::vector<std::string>& filters,
+/// `counted` are the configuration's cells that are not left out of what is said of all scenes.
+json make_configuration(const analysis::Configuration& configuration,
+                        const std::vector<const records::CellRecord*>& counted, const std::vector<std::string>& filters,
                         const std::vector<CostChoice>& choices, const std::vector<records::BiasToShip>& biases) {
   const records::CellRecord& cell = *configuration.cells.front();
   const document::ChartStyle style =
@@ -161,7 +164,8 @@ json make_configuration(const analysis::Configuration& configuration, const std:
                {"color", style.color},
                {"bias", describe_biases(configuration, biases)},
                {"hardens", analysis::shows_claim(configuration.cells, analysis::kContactHardening)}};
-  for (const CostChoice& choice : choices) made[choice.field] = describe_cost(configuration.cells, choice);
+  for (const CostChoice& choice : choices)
+    made[choice.field] = counted.empty() ? json() : describe_cost(counted, choice);
   return made;
 }
 
@@ -210,11 +214,14 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
                                                          {"values", path_of(shown->images.truth_values)}});
   }
   const std::vector<analysis::Configuration> configurations = analysis::list_configurations(all);
+  const std::vector<analysis::LeftOutPlace> left_out = analysis::list_left_out(all);
   for (const analysis::Configuration& configuration : configurations) {
     for (const records::CellRecord* cell : configuration.cells)
       data["cells"].push_back(
           make_cell(*cell, data["configurations"].size(), analysis::find_place(places, *cell), choices));
-    data["configurations"].push_back(make_configuration(configuration, filters, choices, biases));
+    std::vector<const records::CellRecord*> counted = configuration.cells;
+    std::erase_if(counted, [&](const auto* cell) { return analysis::is_left_out(*cell, left_out); });
+    data["configurations"].push_back(make_configuration(configuration, counted, filters, choices, biases));
   }
   data["scopes"] = std::ranges::any_of(cells, records::is_advised)
                        ? make_answer_data(cells, configurations, classes, choices)

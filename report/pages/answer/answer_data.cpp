@@ -82,9 +82,7 @@ Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Co
   }
   scope.left_out = analysis::list_left_out(advised);
   for (analysis::Configuration& each : scope.configurations)
-    std::erase_if(each.cells, [&](const auto* cell) {
-      return std::ranges::count(scope.left_out, analysis::place_of(*cell), &analysis::LeftOutPlace::place) > 0;
-    });
+    std::erase_if(each.cells, [&](const auto* cell) { return analysis::is_left_out(*cell, scope.left_out); });
   return scope;
 }
 

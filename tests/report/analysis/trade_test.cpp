@@ -38,6 +38,15 @@ TEST(TradeScopes, AreEachScene_AndAllTogetherFirst) {
   EXPECT_THAT(make_trade_scopes({make_sweep_cell({"cubes"})}), SizeIs(1));
 }
 
+TEST(TradeScopes, APlaceThatTheAnswerLeavesOut_IsInNoMeanOverScenes) {
+  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"stack"}),
+                                            make_sweep_cell({"dark"})};
+  for (records::CellRecord& cell : cells) cell.truth.lit = 100;
+  ASSERT_THAT(make_trade_scopes(cells)[0].configurations[0].cells, SizeIs(3));
+  cells[2].truth.lit = 0;
+  EXPECT_THAT(make_trade_scopes(cells)[0].configurations[0].cells, ElementsAre(0, 1));
+}
+
 TEST(TradeScopes, MapSizesShareAFront_PicturesDoNot) {
   std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({}), make_sweep_cell({})};
   cells[1].map_size = 2048;
