@@ -70,7 +70,10 @@ class Configuration:
 
 
 def identify(cell):
-    return cell["filter"], json.dumps(cell["params"], sort_keys=True), cell["map_size"], cell["fit"]
+    """What makes cells one configuration on all scenes: a radius that each scene's light set counts as one."""
+    by_light = cell.get("kernel", {}).get("by_light")
+    params = {**cell["params"], **({by_light: "light"} if by_light else {})}
+    return cell["filter"], json.dumps(params, sort_keys=True), cell["map_size"], cell["fit"]
 
 
 def read_time(cell):
