@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kGpuRun = "run --out out --fresh --scene cubes --rounds 1 --phases 1 --map-size ";
+constexpr const char* kGpuRun = "run --out out --fresh --scene cubes --rounds 1 --phases 1 --width own --map-size ";
 
 /// A filter without weights: the mean of so many hardware fetches along a side.
 std::string plain_pcf(int side) {
