@@ -8,7 +8,7 @@ radius_texels = "radius"
 bias_texels = 1
 [param.radius]
 default = 4
-min = 0
+min = 1
 max = 64
 unit = "texels"
 text = "half-width of the Gaussian prefilter; wider is softer at no cost to the lookup"

@@ -27,6 +27,7 @@ int sweep_bias(const BiasArguments& arguments) {
   filters::Catalogue catalogue(options.resources.filters);
   catalogue.add_user_files(options.filter_files);
   options.filters = parse_filters(catalogue, arguments.filters, options.filter_files);
+  filters::refuse_light_widths(options.filters);
   require_distinct(options.filters);
   print_presets(options.filters);
   options.attribution = false;

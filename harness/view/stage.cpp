@@ -75,7 +75,8 @@ bool Stage::draw_map(const ViewState& state, bool map_changed) {
   const options::RunOptions& options = state.options;
   std::vector<scene::LightFrustum> layers = measure::fit_map_layers(
       options,
-      {state.scene, state.scene.light, state.active_camera(), state.map_size(), measure::padding_texels(options)},
+      {state.scene, state.scene.light, state.active_camera(), state.map_size(), measure::padding_texels(options),
+       measure::list_phase_shifts(options.phases, options.seed).front()},
       [&]() -> const render::GBuffer& { return *gbuffer_; });
   const bool other_map = !light_ || map_changed || light_->map.size() != state.map_size() ||
                          light_->map.layers() != static_cast<int>(layers.size()) ||

@@ -23,7 +23,7 @@ from pathlib import Path
 
 EXPERIMENT = ["run", "--scene", "stack", "--scene", "cubes", "--filters",
               "none,pcf2x2,tent3x3,poisson:radius=2,poisson:radius=4,vsm:radius=2,vsm:radius=4,esm:radius=2,esm:radius=4,evsm4,pcss",
-              "--map-size", "512", "--size", "240x135", "--rounds", "4", "--no-grids", "--yes"]
+              "--map-size", "512", "--size", "240x135", "--rounds", "4", "--width", "own", "--no-grids", "--yes"]
 # What a cell has of its own, and what cells of one view and map share.
 OWN_IMAGES, SHARED_IMAGES = ("picture", "visibility", "values"), ("truth_picture", "truth_values")
 RATES = ("error.flip", "artefact.acne", "artefact.leak", "artefact.contact_gap", "artefact.noise")

@@ -49,7 +49,8 @@ TEST_F(Command, UserFilter_GetsCellAndPictures) {
   EXPECT_EQ(document["filter_files"]["nine_compares"],
             std::string(SHADOWBENCH_SOURCE_DIR) + "/tests/user_filters/nine_compares.glsl");
   EXPECT_TRUE(cell["kernel"]["sigma_texels"].is_null());
-  EXPECT_EQ(cell["absent"]["kernel"], "the filter declares no kernel, and has no scalar model that knows it");
+  EXPECT_EQ(cell["absent"]["kernel.sigma_texels"],
+            "the filter declares no kernel, and has no scalar model that knows it");
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["picture"].get<std::string>()));
   for (const auto& entry : std::filesystem::directory_iterator(folder() / "out"))
     EXPECT_NE(entry.path().filename().string().rfind(".worker", 0), 0u) << entry.path();

@@ -63,7 +63,7 @@ TEST_F(Suspects, AreOnNoFront_AndInNoAdvice) {
   const Outcome advice = run("advise out --max-rmse 1 --json");
   EXPECT_EQ(advice.exit_code, 0) << advice.err;
   EXPECT_THAT(advice.out, HasSubstr("wrong on cubes (suspect: "));
-  EXPECT_THAT(read_text(folder() / "out" / "summary.md"), HasSubstr("Not ranked or advised: constant"));
+  EXPECT_THAT(read_text(folder() / "out" / "summary.md"), HasSubstr("cubes: constant is suspect: "));
   const std::string check = "/usr/bin/python3 -m jsonschema -i '" + (folder() / "out" / "results.json").string() +
                             "' '" + (folder() / "out" / "results.schema.json").string() + "'";
   EXPECT_EQ(std::system(check.c_str()), 0);

@@ -210,7 +210,7 @@ TEST_F(Sweep, ShardsOfTwoKindsOfMachine_AreMerged_AndOneWarningSaysSo) {
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(merged["cells"][i]["machine"]["renderer"] == "Another rasteriser", i % 2 == 1) << i;
   EXPECT_THAT(run("advise out --max-rmse 1").out,
-              HasSubstr(" × none a frame, moving light; lowest ratio to 'none' of 4"));
+              HasSubstr(" × none a frame, moving light; lowest ratio to 'none' of 2 on the front"));
   const Outcome refused = run("advise out --max-ms 100");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("--max-ms: several kinds of machine measured the run"));

@@ -83,7 +83,7 @@ TEST_F(TuneCommand, IsTheSameTwice) {
 /// What is made small is what 'run' reports, of the same map.
 TEST_F(TuneCommand, Scores_AreThoseOfRun) {
   ASSERT_EQ(run("run --out report --scene cubes --map-size 128 --size 96x54 --rounds 1 --phases 1 --no-attribution "
-                "--filters poisson --pad-texels 4")
+                "--filters poisson --width own --pad-texels 4")
                 .exit_code,
             0);
   const nlohmann::json error = read_results()["cells"][0]["error"];
