@@ -52,8 +52,8 @@ std::string warn_of_mixed_machines(const std::vector<MachineCount>& machines) {
     kinds.push_back(fmt::format("machine {} is {}", kinds.size() + 1, describe_machine(each)));
   return fmt::format(
       "{}: {}. Times of two kinds do not compare. What a filter costs is therefore said as its ratio to 'none', which "
-      "was timed in the same rounds on the same machine; what needs milliseconds (how times grow with picture, map and "
-      "lights, which kind of map pays) is left out. Milliseconds stand in the tables of each scene and in timings.csv, "
+      "was timed in the same rounds on the same machine; what needs milliseconds (charts over lights and maps) is "
+      "left out. Milliseconds stand in the tables of each scene and in timings.csv, "
       "with their machine.",
       kMixedMachines, fmt::join(kinds, "; "));
 }

@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cost_curves.h"
-#include "report/analysis/maps/map_family.h"
 #include "report/analysis/trade.h"
 #include "report/records/absence.h"
 #include "report/records/json_io.h"
@@ -156,20 +155,6 @@ TEST(MixedMachines, AdviceComparesNoRatiosOfTwoMaps) {
   EXPECT_EQ(describe_choice(advice), "lowest ratio to 'none', on the smallest picture and map,");
 }
 
-/// The ratios of these cells are those of their times on one machine: from which width on a prefiltered map pays is the
-/// same, whatever measured what.
-TEST(MixedMachines, CrossoversFollowRatios) {
-  std::vector<records::CellRecord> cells = make_crossing_cells("cubes");
-  const auto expected = make_comparison_table(make_width_charts(cells, make_trade_scopes(cells)));
-  ASSERT_THAT(expected.rows, Not(IsEmpty()));
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    cells[i] = move_to(cells[i], make_kind(i % 2 == 0 ? "A slow CPU" : "A fast CPU"), i % 2 == 0 ? 10.0 : 0.1);
-  const auto withheld = *withhold_mixed_times(cells);
-  const auto charts = make_width_charts(withheld, make_trade_scopes(withheld));
-  EXPECT_EQ(make_comparison_table(charts).rows, expected.rows);
-  EXPECT_TRUE(charts.at(0).costs[kStaticCost].is(CostKind::kRatio));
-}
-
 TEST(MixedMachines, WhatNeedsMilliseconds_IsSilent) {
   std::vector<records::CellRecord> cells = make_mixed_cells();
   for (const records::CellRecord& each : make_mixed_cells()) {
@@ -188,9 +173,6 @@ TEST(MixedMachines, WhatNeedsMilliseconds_IsSilent) {
   EXPECT_THAT(make_light_charts(withheld, make_trade_scopes(withheld)), IsEmpty());
   ASSERT_THAT(list_map_families(cells), Not(IsEmpty()));
   EXPECT_THAT(list_map_families(withheld), IsEmpty());
-  for (records::CellRecord& cell : cells) cell.fit = "tight";
-  ASSERT_THAT(make_growth_table(cells).header, SizeIs(2));
-  EXPECT_THAT(make_growth_table(*withhold_mixed_times(cells)).header, SizeIs(1));
 }
 
 }  // namespace
