@@ -99,9 +99,7 @@ class FrontChart {
   ChartSeries make_front(std::span<const std::size_t> members) const {
     const Configuration& configuration = configuration_of(members.front());
     const std::string name(analysis::name_class(configuration.width_class));
-    const std::string map =
-        cost_.is(analysis::CostKind::kRatio) ? fmt::format(", map {}", configuration.map_size) : std::string();
-    ChartSeries line = start_line(fmt::format("front, {}{}", name, map), document::kInk, document::LineStyle::kSteps);
+    ChartSeries line = start_line("front, " + name, document::kInk, document::LineStyle::kSteps);
     for (const std::size_t member : members) line.points.push_back(make_corner(member, configuration));
     return line;
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "filters/kernel_width.h"
-#include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/text_tables.h"
 #include "report/pages/trade_charts.h"
@@ -76,9 +75,7 @@ void add_charts(Blocks& blocks, const char* heading, document::ChartChoice chart
 
 }  // namespace
 
-std::optional<Trade> make_trade(const std::vector<records::CellRecord>& measured) {
-  const auto withheld = analysis::withhold_mixed_times(measured);
-  const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
+std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
   Trade trade;
   trade.scopes = analysis::make_trade_scopes(cells);
   trade.has_fronts = analysis::has_trade(trade.scopes);

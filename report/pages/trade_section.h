@@ -18,8 +18,8 @@ struct Trade {
   std::vector<analysis::MapFamily> map_families;
 };
 
-/// Finds the trade of a run's cells, without their times where withhold_mixed_times() leaves them out; nothing where
-/// has_trade() is false, no frame of several lights was timed, and no filter has maps of several fits.
+/// Finds the trade of a run's cells; nothing where has_trade() is false, no frame of several lights was timed, and no
+/// filter has maps of several fits.
 std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells);
 
 /// Makes the section that shows the trade: fronts, and charts of cost over width, lights and maps. `cells` are those
