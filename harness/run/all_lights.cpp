@@ -11,6 +11,7 @@
 #include "harness/run/float_images.h"
 #include "harness/run/task_images.h"
 #include "report/analysis/advice_words.h"
+#include "report/analysis/cell_group.h"
 #include "report/analysis/trade_measures.h"
 #include "report/files/file_name.h"
 #include "report/images/grid.h"
@@ -81,9 +82,10 @@ std::string describe_frame(const std::vector<Lit>& lights, const std::string& la
     if (cell == lit.cells.end()) return {};
     cells.push_back(*cell);
   }
+  if (auto withheld = analysis::withhold_mixed_times(cells)) cells = std::move(*withheld);
   const analysis::CostKind kind = analysis::choose_cost(cells);
   const auto cost = analysis::measure_cost(analysis::point_to(cells), kind, analysis::LightMotion::kMoving);
-  if (!cost || kind == analysis::CostKind::kRatio) return {};
+  if (!cost) return {};
   return fmt::format("{} for all {} lights, each with a map of its own",
                      analysis::format_cost(cost->mean * static_cast<double>(lights.size()), kind, gl), lights.size());
 }

@@ -17,7 +17,6 @@
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
 #include "report/analysis/gains.h"
-#include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -171,8 +170,7 @@ double sum_times(const Candidate& candidate, LightMotion light) {
 
 void sort_by_cost(std::vector<Candidate>& candidates, const AdviceRequest& request) {
   const auto key = [&](const Candidate& candidate) {
-    const auto size = request.cheapest == CostKind::kRatio ? size_of(candidate.configuration) : std::pair(0, 0);
-    return std::tuple(size, candidate.cost.mean, candidate.rmse ? candidate.rmse->value : kInfinity,
+    return std::tuple(candidate.cost.mean, candidate.rmse ? candidate.rmse->value : kInfinity,
                       sum_times(candidate, request.light));
   };
   std::ranges::stable_sort(candidates, {}, key);
@@ -280,23 +278,6 @@ void require_gpu(const std::vector<records::CellRecord>& cells, const std::strin
                 fmt::format("the run has no costs on '{}'{}", gpu, did_you_mean_or_known(gpu, known)));
 }
 
-void refuse_mixed_times(const AdviceRequest& request) {
-  for (const Demand& demand : request.demands) {
-    if (demand.spec != &cost_spec(CostKind::kTime)) continue;
-    refuse(
-        fmt::format("{}: several kinds of machine measured the run, and their times do not compare; leave it out: "
-                    "the cheapest is found by its ratio to 'none'",
-                    demand.spec->option));
-  }
-}
-
-std::optional<records::Interval> find_interval(const records::CellRecord& cell, const CostKind& kind,
-                                               LightMotion light) {
-  if (kind == CostKind::kTime) return frame_interval(cell, light);
-  const auto& ratio = frame_ratio(cell, light);
-  return kind == CostKind::kRatio && ratio ? std::optional(ratio->ci95) : std::nullopt;
-}
-
 }  // namespace
 
 bool beats(const Candidate& a, const Candidate& b) {
@@ -342,7 +323,7 @@ std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& 
     if (!value) return std::nullopt;
     const auto time = kind == CostKind::kTime ? frame_time(*cell, light) : std::nullopt;
     quartiles.push_back(time ? Estimate{*value, time->q1, time->q3} : Estimate{*value, *value, *value});
-    if (const auto interval = find_interval(*cell, kind, light))
+    if (const auto interval = time ? frame_interval(*cell, light) : std::nullopt)
       ci95.push_back({*value, interval->low, interval->high});
   }
   const Estimate mean = mean_over_scenes(quartiles);
@@ -353,21 +334,11 @@ std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& 
   return cost;
 }
 
-std::pair<int, int> size_of(const Configuration& configuration) {
-  const records::CellRecord& cell = *configuration.cells.front();
-  return {cell.width * cell.height, cell.map_size};
-}
-
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
   const Cost &a = cheaper.cost, &b = dearer.cost;
   CostGap gap{b.mean - a.mean, a.mean > 0.0 ? (b.mean - a.mean) / a.mean : 0.0, b.mean <= a.mean, Basis::kExact};
-  if (!kind.is_measured()) return gap;
+  if (kind != CostKind::kTime) return gap;
   const bool alike = cheaper.configuration.surroundings == dearer.configuration.surroundings;
-  if (kind == CostKind::kRatio && !alike) {
-    gap.tied = true;
-    gap.basis = Basis::kNone;
-    return gap;
-  }
   const bool common = a.ci95 && b.ci95 && alike;
   gap.basis = common ? Basis::kInterval : Basis::kQuartiles;
   gap.tied = common ? a.ci95->high >= b.ci95->low : a.quartiles.high >= b.quartiles.low;
@@ -380,10 +351,6 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
   if (request.cheapest.kind == CostKind::kGpu) require_gpu(cells, request.cheapest.gpu);
   Advice advice;
   advice.request = request;
-  if (mixes_machines(cells)) {
-    refuse_mixed_times(request);
-    if (request.cheapest == CostKind::kTime) advice.request.cheapest = CostKind::kRatio;
-  }
   const std::vector<const records::CellRecord*> asked = choose_cells(cells, request, advice),
                                                 chosen = choose_class(asked, request.width_class);
   advice.places = list_places(chosen);

@@ -45,11 +45,11 @@ Verdict judge_limit(const Configuration& configuration, const Demand& demand, Li
                     const std::vector<Place>& places);
 
 /// A cost over all places: mean_over_scenes() with each place's quartiles, and with its interval as frame_interval()
-/// gives it, or that of its ratio.
+/// gives it.
 struct Cost {
   double mean = 0.0;
   records::Interval quartiles;            ///< of all but times: the mean twice
-  std::optional<records::Interval> ci95;  ///< of times and ratios alone; empty where a place has none
+  std::optional<records::Interval> ci95;  ///< of times alone; empty where a place has none
 };
 
 /// Measures what a configuration costs over `cells`, which are one or more; nothing where a cell has no value.
@@ -84,7 +84,6 @@ enum class Basis {
   kExact,      ///< all but times have none
   kInterval,   ///< 95 % intervals, measured under the same circumstances
   kQuartiles,  ///< of the times, where circumstances differ or there is no interval
-  kNone,       ///< ratios to `none` under other circumstances are to another `none`: nothing tells them apart
 };
 
 /// How much more one configuration costs than another.
@@ -95,12 +94,7 @@ struct CostGap {
   Basis basis = Basis::kExact;
 };
 
-/// What a configuration is ordered by before its ratio to `none`, which says nothing of a frame of another size: the
-/// pixels of its picture, and its map's texels along a side.
-std::pair<int, int> size_of(const Configuration& configuration);
-
-/// Compares two costs. Requires that the mean of `cheaper` is not above that of `dearer`, or that
-/// they are ratios under different settings.
+/// Compares two costs. Requires that the mean of `cheaper` is not above that of `dearer`.
 CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind);
 
 /// How far one demand is in the way. Indices are into Advice::failing.
@@ -132,14 +126,12 @@ struct Advice {
 /// them is advised. Where nothing that is seen is limited, they must be clearly better than the cheapest configuration
 /// without a filter, unless none is: that stands in for the limit that is missing.
 ///
-/// Costs that are equal are ordered by RMSE, then time. Where several kinds of machine measured the cells, their ratio
-/// to `none` stands for their time, smaller pictures and maps come first, and `cells` are those of
-/// withhold_mixed_times(). Filters for teaching are left out, and with a class of width those of others. A
-/// configuration that was not measured in a place, did not finish there, or lacks a value there is not judged; nor is
-/// one without an RMSE, where others have one. A value that has nothing to be measured on in some places, as
-/// is_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells` outlive what is returned.
-/// Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have, or a claim that no filter
-/// makes, or a limit on times of mixed machines; Error(kInput) where there is no cell.
+/// Costs that are equal are ordered by RMSE, then time. Filters for teaching are left out, and with a class of width
+/// those of others. A configuration that was not measured in a place, did not finish there, or lacks a value there is
+/// not judged; nor is one without an RMSE, where others have one. A value that has nothing to be measured on in some
+/// places, as is_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells` outlive what
+/// is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have, or a claim
+/// that no filter makes; Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
 
 }  // namespace shadowbench::analysis

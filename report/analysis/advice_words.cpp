@@ -48,11 +48,6 @@ std::string describe_tie(const Advice& advice, const CostGap& gap) {
     return fmt::format("a tie, at the same cost: {} is named first for {}", name,
                        explain_order(first, second, advice.request.light));
   }
-  if (gap.basis == Basis::kNone) {
-    const bool smaller = size_of(first.configuration) < size_of(second.configuration);
-    return fmt::format("not to be compared, for a ratio to 'none' under other settings is to another 'none': {} is {}",
-                       name, smaller ? "named first for its smaller picture or map" : "standing first in the run");
-  }
   return fmt::format("a tie, for their {} overlap: {} is named first for its lower mean",
                      gap.basis == Basis::kInterval ? "95 % intervals" : "quartiles", name);
 }
@@ -61,7 +56,7 @@ std::string count_ties(const Advice& advice) {
   std::vector<std::string> labels;
   for (std::size_t i = 2; i < advice.keeping.size(); ++i) {
     const CostGap gap = compare_costs(advice.keeping[0], advice.keeping[i], advice.request.cheapest);
-    if (!gap.tied || gap.basis == Basis::kNone) continue;
+    if (!gap.tied) continue;
     labels.push_back(advice.keeping[i].configuration.name);
   }
   if (labels.empty()) return "";
@@ -116,7 +111,7 @@ std::vector<const records::CellRecord*> list_judged_cells(const Advice& advice) 
 }
 
 bool uses_time(const AdviceRequest& request) {
-  return request.cheapest.is_measured() ||
+  return request.cheapest == CostKind::kTime ||
          std::ranges::any_of(
              request.demands, [](const Demand& d) { return d.spec == &cost_spec(CostKind::kTime); });
 }
@@ -125,18 +120,10 @@ bool is_of_one_round(const std::optional<records::Ratio>& ratio) {
   return ratio && ratio->median != 1.0 && ratio->ci95.low == ratio->ci95.high;
 }
 
-// What a time is, or, of mixed machines, what stands for it.
 void add_time_notes(std::vector<std::string>& notes, const std::vector<const records::CellRecord*>& cells,
                     const records::GlRecord& gl, const AdviceRequest& request) {
-  if (request.cheapest == CostKind::kRatio) {
-    notes.push_back(
-        "Several kinds of machine measured the run, and their times do not compare: a cost is the ratio of a whole "
-        "frame to that of 'none', which was timed in the same rounds. With another picture, map, bias or light it is "
-        "the ratio to another 'none': of such costs neither is called the cheaper one, and smaller pictures and maps "
-        "come first.");
-  }
   const std::vector<std::string> gpus = list_gpus(cells);
-  if (gl.software && request.cheapest != CostKind::kRatio)
+  if (gl.software)
     notes.push_back(
         fmt::format("Times are {}: a GPU ranks filters differently{}.", records::describe_clock(gl),
                     gpus.empty() ? "" : fmt::format("; there are estimates for {}", fmt::join(gpus, ", "))));
@@ -178,7 +165,6 @@ std::string describe_left_out(const LeftOutPlace& left_out, const Advice& advice
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl) {
   switch (cost.kind) {
     case CostKind::kTime: return fmt::format("{} {}", records::format_number(value), records::time_unit(gl));
-    case CostKind::kRatio: return fmt::format("{} {}", records::format_number(value), kRatioUnit);
     case CostKind::kBytes: return fmt::format("{} bytes", records::format_number(value));
     case CostKind::kFetches:
       return fmt::format("{} {}", records::format_number(value), value == 1.0 ? "fetch" : "fetches");
@@ -212,16 +198,6 @@ std::string describe_cost(const Advice& advice) {
   return fmt::format("Cost: {}.",
                      counted ? std::string(counted->definition)
                              : make_frame_measure(request.cheapest, request.light, list_judged_cells(advice)).meaning);
-}
-
-std::string describe_choice(const Advice& advice) {
-  assert(!advice.keeping.empty());
-  const CostKind kind = advice.request.cheapest;
-  if (kind != CostKind::kRatio) return "cheapest";
-  const bool any_apart = std::ranges::any_of(advice.keeping, [&](const Candidate& other) {
-    return compare_costs(advice.keeping.front(), other, kind).basis == Basis::kNone;
-  });
-  return any_apart ? "lowest ratio to 'none', on the smallest picture and map," : "lowest ratio to 'none'";
 }
 
 std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl) {

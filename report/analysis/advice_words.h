@@ -29,10 +29,6 @@ std::string describe_frame(const AdviceRequest& request);
 /// Says what its cost is: of a frame, of which one, and what is left out.
 std::string describe_cost(const Advice& advice);
 
-/// What makes the advised one the advised one, to precede "of those that keep the limits": "cheapest". Requires
-/// one that keeps the demands.
-std::string describe_choice(const Advice& advice);
-
 /// Why the runner-up lost, or that it ties and why it is named second. Requires two that keep the demands.
 std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl);
 

@@ -51,6 +51,24 @@ std::optional<std::vector<records::CellRecord>> leave_out_external(const std::ve
   return own;
 }
 
+bool mixes_machines(const std::vector<records::CellRecord>& cells) {
+  return std::ranges::any_of(
+      cells, [&](const records::CellRecord& cell) { return cell.machine != cells.front().machine; });
+}
+
+std::optional<std::vector<records::CellRecord>> withhold_mixed_times(const std::vector<records::CellRecord>& cells) {
+  if (!mixes_machines(cells)) return std::nullopt;
+  std::vector<records::CellRecord> without = cells;
+  for (records::CellRecord& cell : without) {
+    std::erase_if(cell.absent, [](const auto& entry) { return entry.first.starts_with("time_ms"); });
+    cell.time_ms = {};
+    cell.lights.reset();
+    cell.absent["time_ms"] = cell.absent["lights"] =
+        "several kinds of machine measured the run, whose times do not compare";
+  }
+  return without;
+}
+
 std::optional<std::size_t> find_class(const records::CellRecord& cell) {
   const std::vector<std::string> names = filters::list_width_names();
   const auto found = std::ranges::find(names, cell.kernel.width_class.value_or(""));

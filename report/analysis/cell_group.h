@@ -26,6 +26,12 @@ std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells
 /// where there are none.
 std::optional<std::vector<records::CellRecord>> leave_out_external(const std::vector<records::CellRecord>& cells);
 
+/// Whether several kinds of machine measured the cells, so that their times do not compare.
+bool mixes_machines(const std::vector<records::CellRecord>& cells);
+
+/// A copy of the cells without times where mixes_machines(); `absent` says why. Nothing where one kind measured them.
+std::optional<std::vector<records::CellRecord>> withhold_mixed_times(const std::vector<records::CellRecord>& cells);
+
 /// The class of a cell's kernel, an index into filters::list_width_names(); empty where it has none.
 std::optional<std::size_t> find_class(const records::CellRecord& cell);
 

@@ -40,10 +40,6 @@ const std::optional<records::OwnTime>& own_time(const records::CellRecord& cell,
 std::optional<double> LimitSpec::read(const records::CellRecord& cell, LightMotion light) const {
   if (metric) return metric->read(cell);
   if (!gpu.empty()) return read_estimate(cell, gpu, light);
-  if (is_ratio) {
-    const auto& ratio = frame_ratio(cell, light);
-    return ratio ? std::optional(ratio->median) : std::nullopt;
-  }
   const auto time = frame_time(cell, light);
   return time ? std::optional(time->median) : std::nullopt;
 }
@@ -64,10 +60,8 @@ std::span<const LimitSpec> limit_table() {
 }
 
 const LimitSpec& cost_spec(const CostKind& cost) {
-  static const LimitSpec ratio{"", "ratio_to_none", "ratio of the time of a frame to that of none", nullptr, "", true};
   switch (cost.kind) {
     case CostKind::kTime: return find_spec("time_ms");
-    case CostKind::kRatio: return ratio;
     case CostKind::kBytes: return find_spec("cost.map_bytes");
     case CostKind::kFetches: return find_spec("cost.fetches");
     case CostKind::kGpu: break;

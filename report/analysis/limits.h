@@ -9,16 +9,12 @@
 
 namespace shadowbench::analysis {
 
-/// Stands behind a ratio to `none`.
-inline constexpr const char* kRatioUnit = "× none";
-
 /// Which passes a frame pays for: map, prefilter and the filter's own lookup (moving), or that lookup alone (static).
 enum class LightMotion { kMoving, kStatic };
 
-/// What is to be cheap: the time of a frame, its ratio to that of `none`, the maps' bytes, fetches, or the estimate of
-/// a frame on a GPU.
+/// What is to be cheap: the time of a frame, the maps' bytes, fetches, or the estimate of a frame on a GPU.
 struct CostKind {
-  enum Kind { kTime, kRatio, kBytes, kFetches, kGpu };
+  enum Kind { kTime, kBytes, kFetches, kGpu };
 
   // NOLINTNEXTLINE(google-explicit-constructor): a kind alone is a cost, but for GPUs
   CostKind(Kind of = kTime, std::string on = {}) : kind(of), gpu(std::move(on)) {}
@@ -28,11 +24,8 @@ struct CostKind {
 
   bool operator==(const CostKind&) const = default;
 
-  /// Whether it says how long a frame takes, in milliseconds or beside `none`.
-  bool is_of_frame() const { return is_measured() || kind == kGpu; }
-
-  /// Whether it was timed, and so has an interval.
-  bool is_measured() const { return kind == kTime || kind == kRatio; }
+  /// Whether it is the milliseconds of a frame.
+  bool is_of_frame() const { return kind == kTime || kind == kGpu; }
 };
 
 /// One number of a cell that may be limited; less is better.
@@ -40,9 +33,8 @@ struct LimitSpec {
   std::string option;             ///< "--max-rmse"
   std::string field;              ///< of the record: "error.rmse"; "time_ms" for a sum over passes
   std::string text;               ///< for help
-  const metrics::Metric* metric;  ///< null: the time of a frame, its ratio, or an estimate
+  const metrics::Metric* metric;  ///< null: the time of a frame, or an estimate
   std::string gpu = {};           ///< of an estimate: the GPU that it is for
-  bool is_ratio = false;          ///< the frame's ratio to `none`
 
   std::optional<double> read(const records::CellRecord& cell, LightMotion light) const;
 };
@@ -50,7 +42,7 @@ struct LimitSpec {
 /// Lists everything that may be limited: the metrics of the table that have an option, and the time of a frame.
 std::span<const LimitSpec> limit_table();
 
-/// What a cost is read by, and limited: of a frame, by --max-ms, where it is milliseconds.
+/// What a cost is read by, and limited: of a frame, by --max-ms.
 const LimitSpec& cost_spec(const CostKind& cost);
 
 /// Returns what a filter costs in one frame, without what every lookup pays. For cells of runs that did not time empty

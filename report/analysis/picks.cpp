@@ -40,7 +40,7 @@ std::optional<std::size_t> find_knee(const std::vector<Candidate>& keeping, std:
   for (std::size_t i = 1; i < last; ++i) {
     const double below = measure_knee(fast, best, keeping[i]);
     if (below <= most || !is_clearly_less_error(*keeping[i].rmse, *fast.rmse) ||
-        !are_costs_told_apart(keeping[i], best, kind) || compare_costs(fast, keeping[i], kind).basis == Basis::kNone)
+        !are_costs_told_apart(keeping[i], best, kind))
       continue;
     knee = i;
     most = below;
@@ -50,10 +50,9 @@ std::optional<std::size_t> find_knee(const std::vector<Candidate>& keeping, std:
 
 std::string explain_fast(const Advice& advice) {
   const bool gains = advice.keeping.front().gains && !limits_what_is_seen(advice.request);
-  return fmt::format("the {}{}", describe_choice(advice),
-                     gains                            ? " clearly better than " + advice.unfiltered
-                     : advice.request.demands.empty() ? ""
-                                                      : " that keeps the limits");
+  return fmt::format("the cheapest{}", gains                            ? " clearly better than " + advice.unfiltered
+                                       : advice.request.demands.empty() ? ""
+                                                                        : " that keeps the limits");
 }
 
 std::string explain_balanced(const Candidate& fast, const Candidate& knee, const Candidate& best) {
@@ -99,7 +98,7 @@ std::vector<Pick> list_picks(const Advice& advice) {
   std::vector<Pick> picks = choose_picks(advice);
   for (Pick& pick : picks) {
     const Candidate& candidate = advice.keeping[pick.index];
-    assert(advice.request.cheapest == CostKind::kRatio || !is_beaten(candidate, advice));
+    assert(!is_beaten(candidate, advice));
     if (const std::string beaten = describe_larger_map(candidate, advice.beaten); !beaten.empty())
       pick.why += "; " + beaten;
   }

@@ -29,38 +29,37 @@ std::string describe_work(const records::WorkRecord& work) {
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-void add_machine(Facts& facts, const records::RunRecord& run) {
-  facts.emplace_back("times", records::describe_clock(run.gl));
-  facts.emplace_back("GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version));
-  facts.emplace_back(
-      "machine",
-      fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
-                  run.machine.load_at_start ? records::format_number(*run.machine.load_at_start) : records::kNothing));
-  facts.emplace_back("system", fmt::format("{} · {}", run.machine.os, run.machine.compiler));
-}
-
-void add_machines(Facts& facts, const std::vector<MachineCount>& machines) {
-  for (std::size_t i = 0; i < machines.size(); ++i)
-    facts.emplace_back(fmt::format("machine {}", i + 1), describe_machine(machines[i]));
-}
-
 }  // namespace
 
-Facts list_run_facts(const records::RunRecord& run, const std::vector<MachineCount>& machines) {
+Facts list_run_facts(const records::RunRecord& run) {
   Facts facts = {{"experiment", describe_experiment(run.experiment)},
                  {"command", fmt::format("{}", fmt::join(run.command, " "))},
                  {"commit", run.commit},
-                 {"seed", fmt::format("{}", run.seed)}};
-  if (machines.size() > 1)
-    add_machines(facts, machines);
-  else
-    add_machine(facts, run);
-  facts.emplace_back("work", describe_work(run.work));
+                 {"seed", fmt::format("{}", run.seed)},
+                 {"times", records::describe_clock(run.gl)},
+                 {"GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version)},
+                 {"machine", fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
+                                         records::format_number(run.machine.load_at_start))},
+                 {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
+                 {"work", describe_work(run.work)}};
   if (run.repeat.of.value_or(0) > 0) {
     facts.emplace_back("repeat", fmt::format("{} those of the run that this one replaced ({} cells)",
                                              describe_overlap(run.repeat), run.repeat.cells.value_or(0)));
   }
   return facts;
+}
+
+std::string warn_of_mixed_machines(const std::vector<records::CellRecord>& cells) {
+  std::map<std::string, int> kinds;
+  for (const records::CellRecord& cell : cells)
+    ++kinds[cell.machine ? records::describe_machine_kind(*cell.machine) : "one that the cells do not name"];
+  std::vector<std::string> names;
+  for (const auto& [kind, count] : kinds)
+    names.push_back(fmt::format("{} ({} cell{})", kind, count, count == 1 ? "" : "s"));
+  return fmt::format(
+      "{}: {}. Times from different machines do not compare, and are left out; timings.csv has them. Costs are "
+      "estimates for GPUs, where the run has any; fetches and bytes depend on no machine.",
+      kMixedMachines, fmt::join(names, "; "));
 }
 
 std::map<std::string, int> count_absences(const std::vector<records::CellRecord>& cells) {

@@ -27,8 +27,6 @@ std::string settings_without(const records::CellRecord& cell, std::initializer_l
   return records::dump_line(settings);
 }
 
-// What shares a reference for ratios: everything but the filter is the same.
-
 std::string place_key(const records::CellRecord& cell) {
   return settings_without(cell, {"filter", "params", "map_size"});
 }
@@ -169,14 +167,6 @@ void label_series(std::vector<WidthSeries>& all) {
   }
 }
 
-// Who may be compared with whom: kernels of one class of width, and by a ratio to `none` on maps of one size alone.
-std::optional<std::size_t> find_group(const TradeConfiguration& own, const Measure& cost,
-                                      const std::set<int>& map_sizes) {
-  if (!own.width_class || !cost.is(CostKind::kRatio)) return own.width_class;
-  const auto map = std::distance(map_sizes.begin(), map_sizes.find(own.map_size));
-  return *own.width_class + static_cast<std::size_t>(map) * filters::list_width_names().size();
-}
-
 }  // namespace
 
 void label_configurations(std::vector<TradeConfiguration>& configurations,
@@ -242,8 +232,6 @@ TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::siz
   TradeFront front;
   front.error = error;
   front.cost = cost;
-  std::set<int> map_sizes;
-  for (const TradeConfiguration& each : scope.configurations) map_sizes.insert(each.map_size);
   for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
     const Measured& e = scope.configurations[i].errors[error];
     const Measured& c = scope.configurations[i].costs[cost];
@@ -252,8 +240,7 @@ TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::siz
       continue;
     }
     front.configurations.push_back(i);
-    front.points.push_back(
-        {*e.estimate, *c.estimate, find_group(scope.configurations[i], scope.costs[cost], map_sizes)});
+    front.points.push_back({*e.estimate, *c.estimate, scope.configurations[i].width_class});
   }
   front.placements = find_front(front.points);
   front.members = list_members(front.points, front.placements);

@@ -72,8 +72,7 @@ struct TradeFront {
   std::map<std::string, int> left_out;  ///< reason to number of configurations without one of the two
 };
 
-/// Finds the front of a scope: one of each class of width, for a wider kernel is a softer shadow, not a worse filter;
-/// where the cost is a ratio to `none`, one of each class and size of map, for each map has a `none` of its own.
+/// Finds the front of a scope: one of each class of width, for a wider kernel is a softer shadow, not a worse filter.
 TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::size_t cost);
 
 /// Is there a scope in which three cells or more have an error and a cost? Below that there is no trade to show.

@@ -11,7 +11,6 @@
 #include "report/analysis/cell_group.h"
 #include "report/analysis/configuration.h"
 #include "report/analysis/limits.h"
-#include "report/analysis/machines/machine_kinds.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
 #include "report/records/gpu_frame.h"
@@ -36,10 +35,7 @@ Measured read_frame(const records::CellRecord& cell, const Measure& cost) {
   if (!value) return miss(cell, cost.field());
   Estimate estimate = exact(*value);
   const auto set = [&](double low, double high) { estimate = {*value, low, high}; };
-  if (cost.is(CostKind::kRatio)) {
-    const records::Interval& interval = frame_ratio(cell, cost.light)->ci95;
-    set(interval.low, interval.high);
-  } else if (cost.is(CostKind::kTime)) {
+  if (cost.is(CostKind::kTime)) {
     const auto time = frame_time(cell, cost.light);
     const auto interval = frame_interval(cell, cost.light);
     interval ? set(interval->low, interval->high) : set(time->q1, time->q3);
@@ -149,10 +145,10 @@ std::vector<std::string> list_gpus(const std::vector<const records::CellRecord*>
 
 CostKind choose_cost(const std::vector<records::CellRecord>& cells) {
   const auto is_of_cpu = [](const auto& cell) { return cell.external || (cell.machine && cell.machine->software); };
-  if (std::ranges::all_of(cells, is_of_cpu))
+  if (mixes_machines(cells) || std::ranges::all_of(cells, is_of_cpu))
     for (const std::string& gpu : list_gpus(point_to(cells)))
       if (const CostKind cost(CostKind::kGpu, gpu); has_estimate(cells, cost)) return cost;
-  return frame_cost_kind(cells);
+  return CostKind::kTime;
 }
 
 Measure make_frame_measure(const CostKind& cost, LightMotion light,
@@ -168,14 +164,6 @@ Measure make_frame_measure(const CostKind& cost, LightMotion light,
         records::kGpuFrameWidth, records::kGpuFrameHeight, cost.gpu, name_light(light),
         is_moving ? "prefilter and lookups" : "lookups", is_moving ? "drawing the map, and " : "",
         records::kEstimateFactor);
-  } else if (cost.kind == CostKind::kRatio) {
-    made.id += "_ratio";
-    made.name = fmt::format("ratio to 'none' on the same map, {} light", name_light(light));
-    made.meaning = fmt::format(
-        "time {} with one map, {} light ({}), over that of 'none' in the same rounds, and so on the same machine, map "
-        "and picture; on a map of another size it is the ratio to another 'none', so that each size of map has fronts "
-        "of its own; interval: 95 % of the median",
-        describe_picture(cells), name_light(light), is_moving ? "map, prefilter and lookups" : "lookups");
   } else {
     made.name =
         is_moving ? "time of map, prefilter and filter, moving light" : "time of the filter alone, static light";
@@ -193,7 +181,7 @@ std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& 
   const auto add = [&](const CostKind& cost) {
     if (cost != costs.front()) costs.push_back(cost);
   };
-  add(frame_cost_kind(cells));
+  if (!mixes_machines(cells)) add(CostKind::kTime);
   for (const std::string& gpu : list_gpus(all)) add({CostKind::kGpu, gpu});
   std::vector<Measure> measures;
   for (const CostKind& cost : costs)
@@ -211,7 +199,7 @@ std::string Measure::field() const {
 
 std::string unit_of(const Measure& measure, const records::GlRecord& gl) {
   if (measure.is(CostKind::kTime)) return records::time_unit(gl);
-  return measure.is(CostKind::kRatio) ? kRatioUnit : measure.is(CostKind::kGpu) ? "ms" : "";
+  return measure.is(CostKind::kGpu) ? "ms" : "";
 }
 
 std::string name_axis(const Measure& measure, const records::GlRecord& gl) {

@@ -42,8 +42,8 @@ Estimate mean_over_scenes(const std::vector<Estimate>& estimates);
 const std::array<Measure, kErrorMeasures>& list_error_measures();
 
 /// The cost that all of a run's answer, tables, charts and pictures are in unless something else is asked for: of a
-/// frame, on the first GPU that cells have an estimate for where a software rasteriser drew them all, whose times say
-/// nothing of a GPU; else in the run's clock, or as the ratio to `none` where several kinds of machine measured them.
+/// frame, in the run's clock; but where a software rasteriser drew all cells, whose times say nothing of a GPU, or
+/// several kinds of machine did, on the first GPU that cells have an estimate for, if there is one.
 CostKind choose_cost(const std::vector<records::CellRecord>& cells);
 
 /// Describes the cost of a frame: its light, what is left out, and how sure it is.
@@ -57,7 +57,7 @@ std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& 
 /// Names the GPUs that cells have costs on.
 std::vector<std::string> list_gpus(const std::vector<const records::CellRecord*>& cells);
 
-/// The unit of what a frame costs: "ms (CPU)", "× none"; empty for all else.
+/// The unit of what a frame costs: "ms (CPU)"; empty for all else.
 std::string unit_of(const Measure& measure, const records::GlRecord& gl);
 
 /// Names a measure with its unit: "time of the lookup, ms: CPU time (software rasteriser)".
@@ -80,7 +80,7 @@ struct Measured {
 Measured read_error(const records::CellRecord& cell, const Measure& measure);
 
 /// Reads a cost from a cell; `measure` is of list_cost_measures(). Times: frame_time() with
-/// frame_interval(), or where that is missing with the quartiles. Ratios: frame_ratio() with its interval.
+/// frame_interval(), or where that is missing with the quartiles.
 Measured read_cost(const records::CellRecord& cell, const Measure& measure);
 
 /// Whether a cell is the one that ratios refer to: its own ratio is exactly 1 [1, 1].

@@ -12,10 +12,8 @@ const startAnswer = (holder) => {
     measure.option === "--max-ms"
       ? { ...measure, field: kTime, title: "time of a frame" }
       : { ...measure, field: measure.id };
-  const isRatio = () => run.ratios && !costChoice().gpu; // to 'none'
   const limits = run.measures.filter(({ option }) => option).map(nameLimit);
   const limitOf = (field) => limits.find((limit) => limit.field === field);
-  const canLimit = (field) => limitOf(field) && !(field === kTime && isRatio());
   const titleOf = (field) => limitOf(field)?.title ?? field;
   const fieldOf = (field) => (field === kTime ? costChoice().field : field);
   const [all] = run.scopes;
@@ -23,9 +21,6 @@ const startAnswer = (holder) => {
   // The worst value of a configuration in a scope, or a text that says why there is none.
   const worstOf = (index, field, scope = all) => scope.rows[index].worst[fieldOf(field)];
   const costOf = (index, scope = all) => scope.rows[index][costChoice().field];
-  // Of mixed machines, costs are ratios to `none`, which under other settings is another one.
-  const areComparable = (a, b) =>
-    !isRatio() || run.configurations[a.index].surroundings === run.configurations[b.index].surroundings;
   // Whether the cost of one cannot be told from that of another, which ranks behind it.
   const areTied = ({ tied }, { rank }) => tied.some(([from, end]) => from <= rank && rank < end);
   const limitsWhatIsSeen = () => Object.keys(state.limits).some((field) => limitOf(field).group !== "cost");
@@ -84,7 +79,6 @@ const startAnswer = (holder) => {
       hasOthers: keeping.length + beaten.length + noGain.length > 1,
       rmseOf: ({ index }) => scope.rows[index].rmse,
       costOf: ({ index }) => costOf(index, scope),
-      areComparable,
       areTied,
       why: gained
         ? `cheapest clearly better than ${labelOf(unfiltered.index)}`
@@ -176,21 +170,14 @@ const startAnswer = (holder) => {
   const explainSecond = (best, second) => {
     if (!second) return explain("Runner-up:", "no other on the front keeps the limits.");
     const times = `at ${format(costOf(second.index) / costOf(best.index))} times the cost`;
-    const apart = "whose ratio is to another 'none', and is not compared";
-    const stands = !areComparable(best, second)
-      ? apart
-      : areTied(best, second)
-        ? "whose cost cannot be told from it"
-        : times;
+    const stands = areTied(best, second) ? "whose cost cannot be told from it" : times;
     explain("Runner-up:", second.index, `, ${stands}; ${compareWorst(best.index, second.index)}.`);
   };
   const explainChoice = ({ keeping, failing, noGain, beaten, unfiltered, gained }) => {
     const [best, second] = keeping;
     const tied = keeping.filter((other) => areTied(best, other));
     const configuration = run.configurations[best.index];
-    const smallest = keeping.every((other) => areComparable(best, other)) ? "" : ", on the smallest picture and map,";
-    const cheapest = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
-    const lead = isRatio() ? `it has the lowest ratio to 'none'${smallest}` : cheapest;
+    const lead = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
     const bounds = describeBounds(best.index);
     const limited = Object.keys(state.limits).length > 0 || state.soft;
     const judged = limited ? "that keep the limits" : gained ? "on the Pareto front" : "that can be judged";
@@ -206,7 +193,7 @@ const startAnswer = (holder) => {
     const kernel = configuration.sigma === null ? "of no one width that is known" : configuration.kernel;
     explain("Kernel:", `${kernel}${configuration.params && `; ${configuration.params}`}.`);
     explainSecond(best, second);
-    const isCheaper = (other) => areComparable(best, other) && costOf(other.index) < costOf(best.index);
+    const isCheaper = (other) => costOf(other.index) < costOf(best.index);
     const cheaper = failing.find(
       (other) => other.broken.length === 1 && limitOf(other.broken[0]) && isCheaper(other) && !areTied(other, best),
     );
@@ -354,7 +341,7 @@ const startAnswer = (holder) => {
   };
   const showSliders = () => {
     sliders.replaceChildren();
-    limits.filter(({ field }) => canLimit(field)).forEach(addSlider);
+    limits.forEach(addSlider);
   };
   const change = () => {
     const asked = Object.entries(state.limits).map((limit) => limit.join(":"));
@@ -401,7 +388,7 @@ const startAnswer = (holder) => {
       if (run.costs.some((each) => each.id === id)) shadowbench.cost = cost.value = id;
       if (width === "" || run.classes.includes(width)) state.wide = wide.value = width;
       state.soft = soft.checked = claim === kClaim && !softLabel.hidden;
-      const isKnown = ([field, most]) => canLimit(field) && most && Number.isFinite(Number(most));
+      const isKnown = ([field, most]) => limitOf(field) && most && Number.isFinite(Number(most));
       const known = asked.map((text) => text.split(":")).filter(isKnown);
       state.limits = Object.fromEntries(known.map(([field, most]) => [field, Number(most)]));
       showSliders();

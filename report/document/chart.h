@@ -20,7 +20,7 @@ enum class LineStyle {
 };
 
 /// The mark at a point.
-enum class Mark { kNone, kCircle, kSquare, kTriangle, kDiamond, kTriangleDown, kCross };
+enum class Mark { kNone, kCircle, kSquare, kTriangle, kDiamond, kTriangleDown };
 
 /// The colour of lines that belong to no filter.
 inline constexpr const char* kInk = "#1c1f24";

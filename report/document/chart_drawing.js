@@ -16,7 +16,6 @@ const kMarks = {
   triangle: (r) => `M0,${-r}L${r},${r}L${-r},${r}z`,
   diamond: (r) => `M0,${-r - 1}L${r + 1},0L0,${r + 1}L${-r - 1},0z`,
   down: (r) => `M0,${r}L${r},${-r}L${-r},${-r}z`,
-  cross: (r) => `M${-r},${-r}L${r},${r}M${-r},${r}L${r},${-r}`,
 };
 
 let clips = 0;
@@ -41,7 +40,7 @@ const addMark = (parent, { mark, color, filled }, x, y) =>
   addPath(parent, kMarks[mark](5), color, {
     transform: `translate(${x.toFixed(2)},${y.toFixed(2)})`,
     "stroke-width": 1.5,
-    fill: filled && mark !== "cross" ? color : "none",
+    fill: filled ? color : "none",
   });
 
 // Breaks a text into lines of at most a width.

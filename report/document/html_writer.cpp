@@ -144,7 +144,7 @@ class ChartPacker {
 
   json pack(const Chart& chart) {
     static constexpr const char* kLines[] = {"none", "steps", "solid", "dashed", "ties"};
-    static constexpr const char* kMarks[] = {"none", "circle", "square", "triangle", "diamond", "down", "cross"};
+    static constexpr const char* kMarks[] = {"none", "circle", "square", "triangle", "diamond", "down"};
     json series = json::array();
     for (const ChartSeries& each : chart.series) {
       json points = json::array();

@@ -1,21 +1,20 @@
 // Fast, balanced and best of the configurations that keep the limits, as name_picks() of the program has them: each with
 // the columns of the answer where it stands. `keeping` has the cheapest first.
-const pickThree = (keeping, { hasOthers, rmseOf, costOf, areComparable, areTied, why }) => {
+const pickThree = (keeping, { hasOthers, rmseOf, costOf, areTied, why }) => {
   const share = (part) => `${Math.round(100 * part)} %`;
   const [fast] = keeping;
   const known = keeping.every((each) => rmseOf(each));
   const least = known && keeping.reduce((a, b) => (rmseOf(b).value < rmseOf(a).value ? b : a));
   const best = known && keeping.find((each) => !isErrorLess(rmseOf(least), rmseOf(each)));
   if (!best || best === fast) return [{ columns: best && hasOthers ? [0, 2] : [0], ...fast, why }];
-  const isDearer = areComparable(fast, best) && !areTied(fast, best);
+  const isDearer = !areTied(fast, best);
   const times = isDearer && costOf(fast) > 0 ? `, ${format(costOf(best) / costOf(fast))} × fast's cost` : "";
   const ofCost = (each) => (costOf(each) - costOf(fast)) / (costOf(best) - costOf(fast));
   const ofGain = (each) => (rmseOf(fast).value - rmseOf(each).value) / (rmseOf(fast).value - rmseOf(best).value);
   const below = (each) => ofGain(each) - ofCost(each); // the straight line from fast to best
-  const between = keeping.slice(1, keeping.indexOf(best)).filter((each) => {
-    const isBetween = areComparable(fast, each) && areComparable(each, best) && !areTied(each, best);
-    return isBetween && isErrorLess(rmseOf(each), rmseOf(fast));
-  });
+  const between = keeping
+    .slice(1, keeping.indexOf(best))
+    .filter((each) => !areTied(each, best) && isErrorLess(rmseOf(each), rmseOf(fast)));
   const knee = isDearer && between.reduce((a, b) => (below(b) > (a ? below(a) : 0) ? b : a), null);
   const gain = knee && `${share(ofGain(knee))} of the quality gain for ${share(ofCost(knee))} of the extra cost`;
   return [

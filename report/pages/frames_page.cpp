@@ -8,7 +8,6 @@
 #include <set>
 
 #include "base/error.h"
-#include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/summary.h"
 #include "report/files/file_name.h"
 #include "report/records/format.h"

@@ -90,8 +90,7 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"error", "which error: rmse, kernel_rmse, leak, flip"},
           {"cost",
            "which cost, the one that the page begins with first: of a frame with one map, moving and static in ms of "
-           "the run's clock and picture, or moving_ratio and static_ratio to 'none' where several kinds of machine "
-           "measured the run, gpu.NAME.moving and gpu.NAME.static in ms of 1920x1080; fetches, bytes"},
+           "the run's clock and picture, gpu.NAME.moving and gpu.NAME.static in ms of 1920x1080; fetches, bytes"},
           {"cell", "the cell's key; of all scenes: the keys of its cells, joined by +"},
           {"filter", "the filter's id"},
           {"params", "the filter's parameters as JSON"},

@@ -12,7 +12,6 @@
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
 #include "report/analysis/gains.h"
-#include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
 #include "report/document/chart.h"
@@ -55,14 +54,13 @@ json list_measures(const std::vector<CostChoice>& costs) {
   json measures = json::array();
   bool is_limited = false;
   for (const CostChoice& cost : costs) {
-    const bool is_limit = !is_limited && !cost.measure.is(analysis::CostKind::kRatio);
     measures.push_back(make_measure({.id = cost.field,
                                      .title = cost.title,
                                      .text = cost.measure.meaning,
                                      .unit = cost.unit,
-                                     .option = is_limit ? "--max-ms" : "",
+                                     .option = is_limited ? "" : "--max-ms",
                                      .group = "cost"}));
-    is_limited = is_limited || is_limit;
+    is_limited = true;
   }
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty())
@@ -79,11 +77,11 @@ json list_values(const records::CellRecord& cell, const std::vector<CostChoice>&
   return values;
 }
 
-/// Of times and ratios the 95 % intervals, or the quartiles where there are none.
+/// Of times the 95 % intervals, or the quartiles where there are none.
 json list_intervals(const records::CellRecord& cell, const std::vector<CostChoice>& costs) {
   json intervals = json::object();
   for (const CostChoice& choice : costs) {
-    const auto cost = choice.measure.cost->is_measured() ? measure_cost({&cell}, choice) : std::nullopt;
+    const auto cost = choice.measure.is(analysis::CostKind::kTime) ? measure_cost({&cell}, choice) : std::nullopt;
     if (!cost) continue;
     const records::Interval& interval = cost->ci95 ? *cost->ci95 : cost->quartiles;
     intervals[choice.field] = {interval.low, interval.high};
@@ -177,8 +175,7 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   const std::vector<analysis::Place> places = analysis::list_places(all);
   const std::vector<std::string> filters = analysis::list_filters(cells);
   const std::vector<CostChoice> choices = list_cost_choices(run, cells);
-  json data{{"ratios", analysis::mixes_machines(cells)},
-            {"files", records::value_json(run.filter_files)},
+  json data{{"files", records::value_json(run.filter_files)},
             {"measures", list_measures(choices)},
             {"costs", json::array()},
             {"cost", choices.front().measure.id},

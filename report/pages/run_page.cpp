@@ -128,17 +128,12 @@ std::optional<document::Bars> make_bars(const analysis::CellGroup& group) {
   return bars;
 }
 
-std::string describe_times(const records::RunRecord& run, const std::vector<analysis::MachineCount>& machines) {
-  return machines.size() < 2 ? records::describe_clock(run.gl)
-                             : "times of machines of several kinds do not compare; the warnings name the machines";
-}
-
 /// Tables of one scene.
-void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord& run, const analysis::CellGroup& group,
-                 const std::vector<analysis::MachineCount>& machines) {
+void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord& run,
+                 const analysis::CellGroup& group) {
   blocks.emplace_back(document::Paragraph{records::describe_settings(group.cells.front()), true});
   blocks.emplace_back(
-      document::Table{"What it costs: " + describe_times(run, machines), make_cost_table(group, run.gl, machines)});
+      document::Table{"What it costs: " + records::describe_clock(run.gl), make_cost_table(group, run.gl)});
   const bool offset = std::ranges::any_of(group.cells, [](const records::CellRecord& cell) {
     const auto shares = records::list_shares(cell);
     return shares && records::has_offsets(*shares);
@@ -171,10 +166,9 @@ void add_groups(std::vector<document::Block>& blocks, const records::RunRecord& 
         fmt::format("The run has {} cells: of more than {}, tables of each scene are left out. timings.csv and "
                     "accuracy.csv have all numbers.",
                     cells.size(), kMostCellsInDetail)});
-  const std::vector<analysis::MachineCount> machines = analysis::count_machines(cells);
   for (const analysis::CellGroup& group : analysis::group_cells(cells)) {
     document::Details details{head_group(run, cells, group.cells.front()), {}};
-    if (!is_large) add_numbers(details.blocks, run, group, machines);
+    if (!is_large) add_numbers(details.blocks, run, group);
     add_pictures(details.blocks, group);
     if (!details.blocks.empty()) blocks.emplace_back(std::move(details));
   }
@@ -309,8 +303,7 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
   section.blocks.emplace_back(explain_columns("timings.csv", records::list_csv_columns(records::CsvTable::kTimings)));
   section.blocks.emplace_back(explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy)));
   section.blocks.emplace_back(
-      document::Details{"Machine, OpenGL, command and seed",
-                        {document::Facts{analysis::list_run_facts(run, analysis::count_machines(cells))}}});
+      document::Details{"Machine, OpenGL, command and seed", {document::Facts{analysis::list_run_facts(run)}}});
   section.blocks.emplace_back(document::Links{"Data:",
                                               {{"summary.md", "summary.md"},
                                                {"timings.csv", "timings.csv"},
@@ -322,11 +315,9 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
 
 }  // namespace
 
-document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& measured,
+document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                              const std::optional<Trade>& trade, const std::vector<records::GpuTimes>& machines,
                              const std::vector<records::BiasToShip>& biases) {
-  const auto withheld = analysis::withhold_mixed_times(measured);
-  const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
   const analysis::AdviceRequest request = choose_request(cells);
   document::Page page{"Shadow filters compared", {make_answer_section(run, cells, request, biases)}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
@@ -349,7 +340,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   if (auto external = make_external_section(cells)) add(std::move(*external));
   if (trade) add(make_trade_section(run, own, *trade));
   if (auto gpus = make_gpu_section(own)) add(std::move(*gpus));
-  add(make_evidence_section(run, measured));
+  add(make_evidence_section(run, cells));
   return page;
 }
 

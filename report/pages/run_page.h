@@ -13,9 +13,8 @@ namespace shadowbench::pages {
 
 /// Makes the page of a run: the choice of a filter, where errors come from, warnings, the table of all numbers, the
 /// viewer, the trade; folded away the tables of each scene, what is absent and why, the columns of the CSV files, and
-/// the machine. Where several kinds of machine measured the cells, milliseconds stand in the tables of each scene
-/// alone, and everything else has ratios to `none`; see withhold_mixed_times(). Times of `machines` are costs to choose
-/// from; `biases` are what a sweep of the bias recommends.
+/// the machine. `cells` have no times where several kinds of machine measured them: withhold_mixed_times(). Times of
+/// `machines` are costs to choose from; `biases` are what a sweep of the bias recommends.
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                              const std::optional<Trade>& trade, const std::vector<records::GpuTimes>& machines = {},
                              const std::vector<records::BiasToShip>& biases = {});

@@ -25,7 +25,6 @@ std::string format_own(const std::optional<records::OwnTime>& time) {
 }
 
 constexpr const char* kKernelColumn = "kernel's width (class)";
-constexpr int kMachineColumn = 3;  // before the times
 
 using Metrics = std::vector<const metrics::Metric*>;
 
@@ -78,17 +77,10 @@ std::string format_shares(const records::CellRecord& cell) {
   return fmt::format("{}", fmt::join(texts, " / "));
 }
 
-std::string number_machine(const std::vector<analysis::MachineCount>& machines, const records::CellRecord& cell) {
-  const auto found = std::ranges::find(machines, cell.machine, &analysis::MachineCount::kind);
-  return fmt::format("{}", found - machines.begin() + 1);
-}
-
 }  // namespace
 
-records::TextTable make_cost_table(const analysis::CellGroup& group, const records::GlRecord& gl,
-                                   const std::vector<analysis::MachineCount>& machines) {
-  const bool mixed = machines.size() > 1;
-  const std::string unit = mixed ? "ms" : records::time_unit(gl);
+records::TextTable make_cost_table(const analysis::CellGroup& group, const records::GlRecord& gl) {
+  const std::string unit = records::time_unit(gl);
   const Metrics costs = list_tabled("cost");
   records::TextTable table;
   table.header = {"filter",
@@ -99,7 +91,6 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
                   fmt::format("lookup, {}, median [quartiles]", unit),
                   fmt::format("prefilter, {}", unit),
                   fmt::format("map, {}", unit)};
-  if (mixed) table.header.insert(table.header.begin() + kMachineColumn, "machine");
   add_titles(table.header, costs);
   table.header.emplace_back("status");
   for (const records::CellRecord& cell : group.cells) {
@@ -108,7 +99,6 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
         records::describe_kernel(cell.kernel), format_own(cell.time_ms.moving), format_own(cell.time_ms.static_light),
         format_quartiles(cell.time_ms.lookup), format_quartiles(cell.time_ms.prefilter),
         format_quartiles(cell.time_ms.map)});
-    if (mixed) row.insert(row.begin() + kMachineColumn, number_machine(machines, cell));
     add_values(row, costs, cell);
     row.push_back(records::describe_status(cell));
   }

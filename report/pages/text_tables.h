@@ -4,17 +4,14 @@
 #include <vector>
 
 #include "report/analysis/cell_group.h"
-#include "report/analysis/machines/machine_kinds.h"
 #include "report/document/blocks.h"
 #include "report/records/csv_tables.h"
 #include "report/records/text_table.h"
 
 namespace shadowbench::pages {
 
-/// Makes the table of what a group's cells cost, for people, one row per cell, its times being those of `gl`; where
-/// several kinds of machine measured the run, each row says the number of its own, counted from 1 in `machines`.
-records::TextTable make_cost_table(const analysis::CellGroup& group, const records::GlRecord& gl,
-                                   const std::vector<analysis::MachineCount>& machines = {});
+/// Makes the table of what a group's cells cost, for people, one row per cell, its times being those of `gl`.
+records::TextTable make_cost_table(const analysis::CellGroup& group, const records::GlRecord& gl);
 
 /// Makes the table of how wrong a group's cells are and why, for people, one row per cell.
 records::TextTable make_accuracy_table(const analysis::CellGroup& group);

@@ -13,7 +13,6 @@ namespace shadowbench::pages {
 namespace {
 
 using Configuration = analysis::TradeConfiguration;
-using analysis::LightMotion;
 using document::ChartSeries;
 
 /// An axis over all configurations of a scope that have the measure.
@@ -100,9 +99,7 @@ class FrontChart {
   ChartSeries make_front(std::span<const std::size_t> members) const {
     const Configuration& configuration = configuration_of(members.front());
     const std::string name(analysis::name_class(configuration.width_class));
-    const std::string map =
-        cost_.is(analysis::CostKind::kRatio) ? fmt::format(", map {}", configuration.map_size) : std::string();
-    ChartSeries line = start_line(fmt::format("front, {}{}", name, map), document::kInk, document::LineStyle::kSteps);
+    ChartSeries line = start_line("front, " + name, document::kInk, document::LineStyle::kSteps);
     for (const std::size_t member : members) line.points.push_back(make_corner(member, configuration));
     return line;
   }
@@ -203,34 +200,34 @@ document::ChartAxis choose_y_axis(const std::vector<ChartSeries>& series) {
   return document::choose_log_axis(values, ends);
 }
 
-/// Time or ratio over the kernel's width or over lights, of one state of the light.
+/// Cost over the kernel's width or over lights, of one state of the light: kMovingCost or kStaticCost.
 class CurveChart {
  public:
-  CurveChart(const analysis::CostChart& chart, LightMotion light, const records::GlRecord& gl)
+  CurveChart(const analysis::CostChart& chart, std::size_t light, const records::GlRecord& gl)
       : chart_(chart), light_(light), gl_(gl) {}
 
   document::Chart make(const std::vector<std::string>& filters) const {
     document::Chart made;
-    const char* state = light_ == LightMotion::kStatic ? "static" : "moving";
+    const char* state = light_ == analysis::kStaticCost ? "static" : "moving";
     made.id = fmt::format("{}.map{}.{}.{}", chart_.scope_id, chart_.map_size, is_lights_ ? "lights" : "width", state);
     made.title = chart_.title;
-    made.x_name = is_lights_ ? "lights, each with a map of its own" : "kernel's width (standard deviation), texels";
+    made.x_name = is_lights_ ? "lights, each with a map of its own" : "kernel width (standard deviation), texels";
     made.y_name = is_lights_ ? fmt::format("time of a frame, ms: {}", records::describe_clock(gl_))
                              : analysis::name_axis(cost_, gl_);
     for (const analysis::CostCurve& curve : chart_.curves)
       made.series.push_back(make_series(curve, style_among(filters, curve.filter)));
     made.x = make_x_axis();
     made.y = choose_y_axis(made.series);
-    made.series.push_back(is_lights_ ? make_proportion(made.y) : make_crossings());
     if (!is_lights_) made.notes = {"solid: prefiltered", "dashed: read at every lookup"};
     return made;
   }
 
  private:
   document::ChartAxis make_x_axis() const {
-    if (!is_lights_) return document::choose_axis(places_, {}, document::TickKind::kNumber);
-    document::ChartAxis axis{true, places_.front() / 1.12, places_.back() * 1.12, {}};
-    for (const double count : places_) axis.ticks.push_back({count, fmt::format("{}", count)});
+    const std::vector<double> places = chart_.places();
+    if (!is_lights_) return document::choose_axis(places, {}, document::TickKind::kNumber);
+    document::ChartAxis axis{true, places.front() / 1.12, places.back() * 1.12, {}};
+    for (const double count : places) axis.ticks.push_back({count, fmt::format("{}", count)});
     return axis;
   }
 
@@ -248,61 +245,36 @@ class CurveChart {
     series.line = is_lights_ || curve.prefiltered ? document::LineStyle::kSolid : document::LineStyle::kDashed;
     for (const analysis::CurvePoint& p : curve.points)
       series.points.push_back(
-          {exactly(p.at), p.cost[light_], {}, {curve.label, say_place(p.at), say_cost(p.cost[light_])}});
+          {exactly(p.at), p.costs[light_], {}, {curve.label, say_place(p.at), say_cost(p.costs[light_])}});
     return series;
-  }
-
-  ChartSeries make_crossings() const {
-    ChartSeries series;
-    series.color = document::kInk;
-    series.mark = document::Mark::kCross;
-    for (const analysis::CurveComparison& each : analysis::compare_curves(chart_))
-      for (const auto& [width, cost] : each.crossings[light_])
-        series.points.push_back(
-            {exactly(width),
-             exactly(cost),
-             records::format_number(width),
-             {chart_.curves[each.a].label + " × " + chart_.curves[each.b].label, say_place(width)}});
-    if (!series.points.empty()) series.title = "crossing";
-    return series;
-  }
-
-  /// What grows in proportion, from the corner of the chart on.
-  ChartSeries make_proportion(const document::ChartAxis& y) const {
-    const double from = places_.front(), to = std::min(places_.back(), from * y.high / y.low);
-    ChartSeries line = start_line("in proportion", "#9aa0a8", document::LineStyle::kSolid);
-    line.points = {{exactly(from), exactly(y.low)}, {exactly(to), exactly(y.low * to / from)}};
-    return line;
   }
 
   const analysis::CostChart& chart_;
-  LightMotion light_;
+  std::size_t light_;
   const records::GlRecord& gl_;
-  const std::vector<double> places_ = analysis::list_measured({&chart_, 1});
   const bool is_lights_ = chart_.axis == analysis::CurveAxis::kLights;
-  const analysis::Measure& cost_ =
-      chart_.costs[light_ == LightMotion::kStatic ? analysis::kStaticCost : analysis::kMovingCost];
+  const analysis::Measure& cost_ = chart_.costs[light_];
 };
 
-/// The maps of a filter: RMSE over what a frame costs in which the map is drawn, a curve for each fit.
-document::Chart make_map_chart(const analysis::MapFamily& family, const records::GlRecord& gl) {
+/// The maps of a filter: RMSE over the cost of a frame that draws the map, a curve for each fit.
+document::Chart make_map_chart(const analysis::MapFamily& family, const analysis::Measure& cost,
+                               const records::GlRecord& gl) {
   document::Chart made;
-  made.title = fmt::format("{} on {}", family.name, family.place);
+  made.title = family.title;
   made.id = "maps." + files::make_file_stem(made.title);
-  made.x_name = fmt::format("time of map, prefilter and lookup, ms: {}", records::describe_clock(gl));
-  made.y_name = "RMSE to the area truth";
+  made.x_name = analysis::name_axis(cost, gl);
+  made.y_name = analysis::list_error_measures()[0].name;
   std::vector<double> costs, ends;
-  for (const analysis::MapUse& map : family.maps) {
-    const analysis::Estimate cost = map.frame();
-    costs.push_back(cost.value);
-    ends.insert(ends.end(), {cost.low, cost.high});
+  for (const analysis::MapPoint& map : family.maps) {
+    costs.push_back(map.cost.value);
+    ends.insert(ends.end(), {map.cost.low, map.cost.high});
     auto series = std::ranges::find(made.series, map.fit, &ChartSeries::title);
     if (series == made.series.end()) {
       made.series.push_back(start_series(map.fit, document::style_of(made.series.size())));
       series = std::prev(made.series.end());
       series->line = document::LineStyle::kSolid;
     }
-    series->points.push_back({cost, map.rmse, fmt::format("{}", map.size)});
+    series->points.push_back({map.cost, map.rmse, fmt::format("{}", map.size)});
   }
   made.x = document::choose_axis(costs, ends, document::TickKind::kNumber);
   made.y = choose_y_axis(made.series);
@@ -339,16 +311,17 @@ document::ChartChoice make_curve_choice(const std::string& id, const std::vector
       id, {{"where", {}}, {"light", {"static: lookup", "moving: map, prefilter, lookup"}}}, {}};
   for (const analysis::CostChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
-    for (const LightMotion light : analysis::kBothLights)
+    for (const std::size_t light : {analysis::kStaticCost, analysis::kMovingCost})
       choice.charts.push_back(CurveChart(chart, light, gl).make(filters));
   }
   return choice;
 }
 
-document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const records::GlRecord& gl) {
+document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const analysis::Measure& cost,
+                                      const records::GlRecord& gl) {
   document::ChartChoice choice{"maps", {{"filter", {}}}, {}};
   for (const analysis::MapFamily& family : families) {
-    choice.charts.push_back(make_map_chart(family, gl));
+    choice.charts.push_back(make_map_chart(family, cost, gl));
     choice.selectors[0].options.push_back(choice.charts.back().title);
   }
   return choice;

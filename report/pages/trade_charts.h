@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "report/analysis/cost_curves.h"
-#include "report/analysis/maps/map_family.h"
 #include "report/analysis/trade.h"
 #include "report/document/chart.h"
 
@@ -20,12 +19,12 @@ inline constexpr std::size_t kMostCellsInDetail = 2000;
 document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
                                         const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
 
-/// Draws what a frame costs over the kernel's width, crossings marked, or over lights, for every chart and state of the
-/// light; over lights both axes are logarithmic, and in proportion is the slope of the grey line.
+/// Draws a frame's cost over the kernel width or over lights, for every chart and state of the light.
 document::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
                                         const std::vector<std::string>& filters, const records::GlRecord& gl);
 
-/// Draws RMSE over the cost of a frame for the maps of every family, a curve for each fit.
-document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const records::GlRecord& gl);
+/// Draws RMSE over cost for the maps of every family, a curve for each fit. `cost` is make_map_measure().
+document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const analysis::Measure& cost,
+                                      const records::GlRecord& gl);
 
 }  // namespace shadowbench::pages

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "filters/kernel_width.h"
-#include "report/analysis/machines/machine_kinds.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/text_tables.h"
 #include "report/pages/trade_charts.h"
@@ -22,24 +21,14 @@ constexpr const char* kFrontsNote =
 constexpr const char* kLargeNote =
     "The run has more than {} cells: beaten ones, and the lines from narrow to wide kernels, are left out of these "
     "charts. fronts.csv has them.";
-constexpr const char* kCrossoversNote =
-    "A width counts where both were measured, or one was and the other is interpolated between its neighbours; cheaper "
-    "and dearer are said where the 95 % intervals do not overlap. Crosses mark where the medians meet.";
 constexpr const char* kLightsNote =
-    "Light 0 is the scene's; the others are it, turned about the vertical in equal steps, each with a frustum, a depth "
-    "map and an encoded map of its own. Still: maps and prefilters are kept, and each light is looked up; moving: all "
-    "of them are drawn in every frame. Shading is left out. In brackets: the 95 % interval of the per-round ratio to "
-    "the reference under as many lights, times its median (quartiles where the run does not hold the reference); "
-    "cheaper is said where these do not overlap. Growth is fitted to each filter's own medians, in brackets what its "
-    "quartiles allow: each number of lights is timed in rounds of its own, and drift of the machine between them is in "
-    "the growth, not in the order. Off a line: how far a median is at most.";
+    "Light 0 is the scene's; the others are copies, turned about the vertical in equal steps, each with a frustum and "
+    "maps of its own. Static: maps and prefilters are kept, and each light is looked up; moving: every frame draws all "
+    "of them. Shading is left out. Whiskers: the 95 % interval of the per-round ratio to the reference under as many "
+    "lights, times its median (quartiles where the run does not hold the reference).";
 constexpr const char* kMapsNote =
     "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
-    "stand still; every other fit follows a camera, and is drawn anew for each and whenever it moves. Cost: medians of "
-    "map, prefilter and whole lookup, added. Each map is timed in rounds of its own: cheaper is said where costs "
-    "differ by more than the passes' quartiles do, and than empty lookups do between the maps (drift: the slowest over "
-    "the fastest). As accurate: the RMSE is not clearly larger. Other views are taken to have the error and the cost "
-    "of the one that was measured.";
+    "stand still; every other fit follows a camera, and is drawn anew whenever it moves.";
 
 /// How fronts are read: what dominated and tied mean, what the intervals are, how scenes are combined, and what each of
 /// `costs` is.
@@ -77,64 +66,16 @@ void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector
   blocks.emplace_back(explain_columns("fronts.csv", list_front_columns()));
 }
 
-/// A heading, a sentence, charts, a table that is folded away, and how it is read.
-void add_finding(Blocks& blocks, const char* heading, const std::string& sentence, document::ChartChoice charts,
-                 std::vector<document::Table> tables, const char* note) {
+void add_charts(Blocks& blocks, const char* heading, document::ChartChoice charts, const char* note) {
+  if (charts.charts.empty()) return;
   blocks.emplace_back(document::Heading{heading});
-  if (!sentence.empty()) blocks.emplace_back(document::Paragraph{sentence});
-  if (!charts.charts.empty()) blocks.emplace_back(std::move(charts));
-  document::Details details{"Table, and how to read it", {}};
-  for (document::Table& table : tables)
-    if (!table.table.rows.empty()) details.blocks.emplace_back(std::move(table));
-  details.blocks.emplace_back(document::Paragraph{note, true});
-  blocks.emplace_back(std::move(details));
-}
-
-void add_widths(Blocks& blocks, const records::RunRecord& run, const std::vector<std::string>& filters,
-                const std::vector<analysis::CostChart>& charts) {
-  if (charts.empty()) return;
-  add_finding(blocks, "From which width of the kernel on a prefiltered map pays", analysis::summarize_widths(charts),
-              make_curve_choice("width", charts, filters, run.gl),
-              {{"Prefiltered maps against many taps, widths in texels", analysis::make_comparison_table(charts)}},
-              kCrossoversNote);
-}
-
-void add_growth(Blocks& blocks, const std::vector<records::CellRecord>& cells) {
-  records::TextTable table = analysis::make_growth_table(cells);
-  if (table.header.size() < 2) return;
-  blocks.emplace_back(document::Heading{"How times grow"});
-  blocks.emplace_back(
-      document::Table{"Time grows as the size to the power of: 1 is in proportion, 0 not at all", table});
-}
-
-void add_lights(Blocks& blocks, const records::RunRecord& run, const std::vector<std::string>& filters,
-                const std::vector<analysis::CostChart>& charts) {
-  if (charts.empty()) return;
-  std::vector<analysis::CostChart> drawn = charts;
-  std::erase_if(drawn, [](const analysis::CostChart& chart) {
-    return analysis::list_measured({&chart, 1}).size() < 2;
-  });
-  add_finding(
-      blocks, "How a frame's cost grows with its lights", analysis::summarize_lights(charts, run.gl),
-      make_curve_choice("lights", drawn, filters, run.gl),
-      {{fmt::format("Time of a frame, ms: {}", records::describe_clock(run.gl)), analysis::make_light_table(charts)},
-       {"Filters that change order", analysis::make_comparison_table(charts)}},
-      kLightsNote);
-}
-
-void add_maps(Blocks& blocks, const records::RunRecord& run, const std::vector<analysis::MapFamily>& families) {
-  const std::string sentence = analysis::summarize_maps(families, run.gl);
-  if (sentence.empty()) return;
-  add_finding(
-      blocks, "Which map: one for all, one for each view, or layers", sentence, make_map_choice(families, run.gl),
-      {{"Each filter's maps, the map drawn in every frame", analysis::make_map_table(families, run.gl)}}, kMapsNote);
+  blocks.emplace_back(std::move(charts));
+  if (note) blocks.emplace_back(document::Paragraph{note, true});
 }
 
 }  // namespace
 
-std::optional<Trade> make_trade(const std::vector<records::CellRecord>& measured) {
-  const auto withheld = analysis::withhold_mixed_times(measured);
-  const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
+std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
   Trade trade;
   trade.scopes = analysis::make_trade_scopes(cells);
   trade.has_fronts = analysis::has_trade(trade.scopes);
@@ -149,13 +90,13 @@ document::Section make_trade_section(const records::RunRecord& run, const std::v
                                      const Trade& trade) {
   document::Section section{"trade", "The trade", {}};
   const std::vector<std::string> filters = analysis::list_filters(cells);
-  if (trade.has_fronts) {
-    add_fronts(section.blocks, run, cells, trade);
-    add_widths(section.blocks, run, filters, trade.width_charts);
-    add_growth(section.blocks, cells);
-  }
-  add_lights(section.blocks, run, filters, trade.light_charts);
-  add_maps(section.blocks, run, trade.map_families);
+  if (trade.has_fronts) add_fronts(section.blocks, run, cells, trade);
+  add_charts(section.blocks, "Cost over the kernel width",
+             make_curve_choice("width", trade.width_charts, filters, run.gl), nullptr);
+  add_charts(section.blocks, "Cost over the number of lights",
+             make_curve_choice("lights", trade.light_charts, filters, run.gl), kLightsNote);
+  add_charts(section.blocks, "Error and cost of maps of several fits",
+             make_map_choice(trade.map_families, analysis::make_map_measure(cells), run.gl), kMapsNote);
   return section;
 }
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "report/analysis/cost_curves.h"
-#include "report/analysis/maps/map_family.h"
 #include "report/analysis/trade.h"
 #include "report/document/blocks.h"
 
@@ -19,13 +18,12 @@ struct Trade {
   std::vector<analysis::MapFamily> map_families;
 };
 
-/// Finds the trade of a run's cells, without their times where withhold_mixed_times() leaves them out; nothing where
-/// has_trade() is false, no frame of several lights was timed, and no filter has maps of several fits.
+/// Finds the trade of a run's cells; nothing where has_trade() is false, no frame of several lights was timed, and no
+/// filter has maps of several fits.
 std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells);
 
-/// Makes the section that shows the trade: fronts, crossovers, growth with sizes and with lights, and maps. `cells` are
-/// those that may be compared. Of each finding but the fronts it has a table, a chart where there is something to draw,
-/// and at most a sentence.
+/// Makes the section that shows the trade: fronts, and charts of cost over width, lights and maps. `cells` are those
+/// that may be compared.
 document::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                      const Trade& trade);
 

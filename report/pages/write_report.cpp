@@ -4,7 +4,7 @@
 
 #include "base/atomic_file.h"
 #include "report/analysis/cell_group.h"
-#include "report/analysis/machines/machine_kinds.h"
+#include "report/analysis/summary.h"
 #include "report/pages/frames_page.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/run_page.h"
@@ -26,8 +26,8 @@ void add_warnings(records::RunRecord& run, const std::vector<records::CellRecord
   }
   // Shards that were merged have warned of their own machines.
   std::erase_if(run.warnings, [](const std::string& warning) { return warning.starts_with(analysis::kMixedMachines); });
-  if (const auto machines = analysis::count_machines(cells); machines.size() > 1)
-    run.warnings.insert(run.warnings.begin(), analysis::warn_of_mixed_machines(machines));
+  if (analysis::mixes_machines(cells))
+    run.warnings.insert(run.warnings.begin(), analysis::warn_of_mixed_machines(cells));
 }
 
 }  // namespace
@@ -43,8 +43,10 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run,
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));
-  const auto without_external = analysis::leave_out_external(cells);
-  const std::vector<records::CellRecord>& own = without_external ? *without_external : cells;
+  const auto withheld = analysis::withhold_mixed_times(cells);
+  const std::vector<records::CellRecord>& shown = withheld ? *withheld : cells;
+  const auto without_external = analysis::leave_out_external(shown);
+  const std::vector<records::CellRecord>& own = without_external ? *without_external : shown;
   const std::optional<Trade> trade = make_trade(own);
   if (trade && trade->has_fronts) {
     AtomicFile file(dir / "fronts.csv");
@@ -55,7 +57,7 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run,
     write_page(dir, "frames", make_frames_page(cells, run));
   else
     remove_page(dir, "frames");  // of another run into this folder
-  write_page(dir, "run", make_run_page(run, cells, trade, machines, biases));
+  write_page(dir, "run", make_run_page(run, shown, trade, machines, biases));
   records::write_results(dir, run, cells);
 }
 

@@ -20,7 +20,6 @@ using Json = nlohmann::ordered_json;
 std::string name_of(const analysis::CostKind& cost) {
   switch (cost.kind) {
     case analysis::CostKind::kTime: return "time";
-    case analysis::CostKind::kRatio: return "ratio_to_none";
     case analysis::CostKind::kBytes: return "bytes";
     case analysis::CostKind::kFetches: return "fetches";
     case analysis::CostKind::kGpu: break;
@@ -32,10 +31,9 @@ const char* name_of(analysis::Basis basis) {
   switch (basis) {
     case analysis::Basis::kExact: return "exact";
     case analysis::Basis::kInterval: return "ci95";
-    case analysis::Basis::kQuartiles: return "quartiles";
-    case analysis::Basis::kNone: break;
+    case analysis::Basis::kQuartiles: break;
   }
-  return "none";
+  return "quartiles";
 }
 
 constexpr const char* kClaim = "a claim has no size";
@@ -109,7 +107,7 @@ Json settings_json(const records::CellRecord& cell) {
 }
 
 std::string explain_no_interval(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
-  if (!request.cheapest.is_measured()) return "only times have an interval";
+  if (request.cheapest != analysis::CostKind::kTime) return "only times have an interval";
   for (const records::CellRecord* cell : candidate.configuration.cells)
     if (!analysis::frame_interval(*cell, request.light)) return records::explain_absence(*cell, "ratio_to_none");
   return "not measured";
@@ -255,11 +253,10 @@ void set_answer(Json& json, const analysis::Advice& advice, const records::GlRec
 }  // namespace
 
 Json make_advice_json(const records::RunRecord& run, const analysis::Advice& advice) {
-  const bool is_ratio = advice.request.cheapest == analysis::CostKind::kRatio;
   Json json = {{"fits", !advice.keeping.empty()},
                {"commit", run.commit},
-               {"clock", is_ratio ? "that of 'none' in the same rounds" : records::describe_clock(run.gl)},
-               {"time_unit", is_ratio ? analysis::kRatioUnit : records::time_unit(run.gl)},
+               {"clock", records::describe_clock(run.gl)},
+               {"time_unit", records::time_unit(run.gl)},
                {"software", run.gl.software},
                {"renderer", run.gl.renderer},
                {"asked", request_json(advice)}};

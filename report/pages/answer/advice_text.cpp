@@ -210,9 +210,9 @@ std::string describe_answer(const records::RunRecord& run, const analysis::Advic
     parts.push_back(fmt::format("a kernel of {}", analysis::describe_kernel(best.configuration)));
   if (!cell.params.empty()) parts.push_back(records::describe_params(records::named_params(cell)));
   const std::string with = parts.empty() ? "" : wrap(fmt::format("with {}", fmt::join(parts, ", ")));
-  return fmt::format("{}: {}{}; {} of {} on the front{}\n{}", best.configuration.name,
+  return fmt::format("{}: {}{}; cheapest of {} on the front{}\n{}", best.configuration.name,
                      analysis::format_cost(best.cost.mean, advice.request.cheapest, run.gl),
-                     analysis::describe_frame(advice.request), analysis::describe_choice(advice), advice.keeping.size(),
+                     analysis::describe_frame(advice.request), advice.keeping.size(),
                      advice.request.demands.empty() ? "" : " that keep the limits", with);
 }
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "report/analysis/advice_words.h"
+#include "report/analysis/cell_group.h"
 #include "report/analysis/gains.h"
-#include "report/analysis/machines/machine_kinds.h"
 #include "report/analysis/picks.h"
 #include "report/analysis/trade_measures.h"
 #include "report/pages/answer/answer_data.h"

@@ -44,9 +44,7 @@ json list_worst(const analysis::Configuration& configuration, const std::vector<
   };
   for (const analysis::LimitSpec& spec : analysis::limit_table())
     if (spec.metric) add(spec.field, spec, analysis::LightMotion::kMoving);
-  for (const CostChoice& cost : costs)
-    if (!cost.measure.is(analysis::CostKind::kRatio))
-      add(cost.field, analysis::cost_spec(*cost.measure.cost), cost.measure.light);
+  for (const CostChoice& cost : costs) add(cost.field, analysis::cost_spec(*cost.measure.cost), cost.measure.light);
   return worst;
 }
 
@@ -56,7 +54,7 @@ json list_ties(const analysis::Advice& advice, std::size_t rank) {
   std::size_t end = 0;
   for (std::size_t other = rank + 1; other < advice.keeping.size(); ++other) {
     const auto gap = analysis::compare_costs(advice.keeping[rank], advice.keeping[other], advice.request.cheapest);
-    if (!gap.tied || gap.basis == analysis::Basis::kNone) continue;
+    if (!gap.tied) continue;
     if (end != other) ranges.push_back({other, other});
     ranges.back()[1] = end = other + 1;
   }

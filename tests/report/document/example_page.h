@@ -16,7 +16,7 @@ inline Chart make_example_chart(const std::string& id) {
   chart.y = {false, 0.0, 0.1, {{0.0, "0"}, {0.05, "0.05"}, {0.1, "0.1"}}};
   ChartSeries line{"front", "#1c1f24", Mark::kNone, true, false, LineStyle::kSteps, false, {}};
   ChartSeries points{"vsm <b>", "#0072b2", Mark::kDiamond, true, false, LineStyle::kDashed, true, {}};
-  ChartSeries beaten{"", "#0072b2", Mark::kCross, false, true, LineStyle::kNone, true, {}};
+  ChartSeries beaten{"", "#0072b2", Mark::kSquare, false, true, LineStyle::kNone, true, {}};
   for (int i = 0; i < 6; ++i) {
     const double x = 1.0 + 0.02 * i, y = 0.06 - 0.001 * i;
     line.points.push_back({about(x), about(y), "label " + std::to_string(i + 1)});

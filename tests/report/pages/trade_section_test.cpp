@@ -120,17 +120,39 @@ TEST(TradeSection, FrontOfOnePoint_HasNoLine_AndNamesHaveSixDigits) {
     }
 }
 
-TEST(TradeSection, TimesOverTheWidth_AreChartsWithTheirCrossings) {
+TEST(TradeSection, CostOverWidth_IsAChartOfEachStateOfTheLight) {
   const auto cells = make_crossing_cells("cubes");
   const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
   const document::ChartChoice& choice = find_choice(section, "width");
   ASSERT_THAT(choice.charts, SizeIs(2));
-  const document::ChartSeries& crossings = choice.charts[0].series.back();
-  ASSERT_THAT(crossings.points, SizeIs(1));
-  EXPECT_EQ(crossings.title, "crossing");
-  EXPECT_NEAR(crossings.points[0].x.value, 3.0, 1e-9);
-  EXPECT_EQ(crossings.points[0].label, "3");
-  EXPECT_EQ(choice.charts[0].x_name, "kernel's width (standard deviation), texels");
+  EXPECT_EQ(choice.charts[0].id, "cubes.main.960x540.map1024.width.static");
+  EXPECT_THAT(list_titles(choice.charts[0]), ElementsAre("none", "poisson", "vsm"));
+  EXPECT_EQ(choice.charts[0].series[1].line, document::LineStyle::kDashed);
+  EXPECT_EQ(choice.charts[0].series[2].line, document::LineStyle::kSolid) << "prefiltered";
+}
+
+/// Too few cells for a front: what was timed under several lights is drawn all the same.
+TEST(TradeSection, CostOverLights_NeedsNoFront) {
+  std::vector<CellRecord> cells = {make_sweep_cell({})};
+  const Quartiles ms{2.0, 1.5, 2.5, 9};
+  const Ratio one{1.0, {1.0, 1.0}};
+  cells[0].lights = {{1, ms, ms, one, one, 4096}, {4, ms, ms, one, one, 16384}};
+  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::Chart& chart = find_choice(section, "lights").charts.at(0);
+  EXPECT_EQ(chart.x_name, "lights, each with a map of its own");
+  EXPECT_THAT(chart.y_name, HasSubstr("CPU time (software rasteriser)"));
+  EXPECT_THAT(chart.series.at(0).points, SizeIs(2));
+  EXPECT_THROW(find_choice(section, "front"), std::runtime_error);
+}
+
+TEST(TradeSection, MapsOfSeveralFits_AreACurveEach) {
+  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({.map_size = 2048}), make_sweep_cell({})};
+  cells[2].fit = "view";
+  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::Chart& chart = find_choice(section, "maps").charts.at(0);
+  EXPECT_THAT(list_titles(chart), ElementsAre("tight fit", "view fit"));
+  EXPECT_THAT(chart.series[0].points, SizeIs(2));
+  EXPECT_EQ(chart.series[0].points[1].label, "2048");
 }
 
 TEST(TradeSection, ChartsOfThePage_AreJsonThatHoldsEveryPoint) {
@@ -179,11 +201,10 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "fronts.csv"));
 }
 
-TEST(TradeSection, Summary_SaysFrontsCrossoversAndColumns) {
+TEST(TradeSection, Summary_SaysFrontsAndColumns) {
   const TemporaryFolder folder("trade_summary");
   const std::string summary = write_and_read(folder, make_crossing_cells("cubes"), "summary.md");
-  for (const char* text : {"## The trade", "from a kernel width of 4 texels on", "**dominated_by**:"})
-    EXPECT_THAT(summary, HasSubstr(text));
+  for (const char* text : {"## The trade", "**dominated_by**:"}) EXPECT_THAT(summary, HasSubstr(text));
   EXPECT_LT(summary.find("## The trade"), summary.find("What it costs: "));
 }
 
