@@ -104,6 +104,7 @@ Json describe_view(const run::PlannedScene& planned, const scene::Camera& camera
                {"view", camera.name},
                {"model", model_name(planned)},
                {"units", "metres, degrees; right-handed, +y up; matrices are columns first, clip space is -1 .. 1"},
+               {"origin", list(planned.scene.origin_ws)},
                {"width", options.width},
                {"height", options.height},
                {"truth", run::name_view(planned, camera)}};

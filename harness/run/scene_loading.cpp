@@ -12,7 +12,6 @@
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/unseen_light.h"
-#include "reference/truth/occluders.h"
 #include "report/records/format.h"
 
 namespace shadowbench::run {
@@ -29,20 +28,6 @@ void warn_of_blending(scene::Scene& scene) {
                     material.name));
     return;
   }
-}
-
-/// Single precision is spent on the distance from the origin: rays then start far off their surfaces, and miss
-/// contacts.
-void warn_of_distance(scene::Scene& scene) {
-  const scene::Bounds bounds = scene.bounds();
-  const glm::vec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)), size = bounds.max - bounds.min;
-  const float farthest = std::max({largest.x, largest.y, largest.z});
-  const float offset = truth::origin_offset(farthest, farthest);
-  if (offset < 1e-4f * std::max({size.x, size.y, size.z})) return;
-  scene.warnings.push_back(
-      fmt::format("{} m from the origin, single precision leaves positions uncertain, and rays start {} m off their "
-                  "surfaces: what is smaller is not seen; move the scene to the origin",
-                  farthest, offset));
 }
 
 /// A mesh that encloses no volume casts no shadow, or only a part of one, where front faces are culled.
@@ -109,7 +94,6 @@ scene::Scene load_scene(const options::RunOptions& options, const std::string& a
   load.light = options.light;
   scene::Scene scene = scene::load(argument, load);
   if (options.truth && options.map.blend_casters == render::BlendCasters::kOpaque) warn_of_blending(scene);
-  if (options.truth && !options.part.is_worker()) warn_of_distance(scene);
   if (options.bias.map.cull_front) warn_of_open_meshes(scene);
   return scene;
 }

@@ -38,9 +38,10 @@ std::vector<std::uint32_t> to_triangles(const std::vector<std::uint32_t>& corner
 /// Builds a model from a parsed file, part by part.
 class GltfImporter {
  public:
-  GltfImporter(const tinygltf::Model& source, std::string where) : source_(source), where_(std::move(where)) {}
+  GltfImporter(const tinygltf::Model& source, std::string where, const glm::dvec3& origin)
+      : source_(source), where_(std::move(where)), origin_(origin) {}
 
-  MeshFile import(const glm::dmat4& world_from_file) {
+  MeshFile import() {
     warn_of_extensions();
     if (!source_.scenes.empty()) result_.extras = read_scene_extras(default_scene(source_).extras, where_);
     GltfMaterials materials = read_gltf_materials(source_, where_);
@@ -48,7 +49,7 @@ class GltfImporter {
     result_.textures = std::move(materials.textures);
     texcoords_ = std::move(materials.texcoords);
     std::ranges::for_each(materials.warnings, [&](const std::string& message) { warn(message); });
-    nodes_ = place_nodes(source_, world_from_file, where_);
+    nodes_ = place_nodes(source_, glm::translate(glm::dmat4(1.0), -origin_), where_);
     for (const PlacedNode& placed : nodes_) {
       const tinygltf::Node& node = find_element(source_.nodes, placed.node, "there is no node", where_);
       if (node.camera >= 0) add_camera(node, placed.world_from_node);
@@ -87,6 +88,7 @@ class GltfImporter {
     for (const Mesh& local : local_meshes(node.mesh)) {
       for (std::size_t i = 0; i < places.size(); ++i) {
         count_corners(local.indices.size());
+        note_rounding(local, places[i]);
         Mesh mesh = transform_mesh(local, places[i]);
         if (i == 0)
           meshes.push_back(std::move(mesh));
@@ -95,6 +97,16 @@ class GltfImporter {
       }
     }
     return meshes;
+  }
+
+  /// The file's own positions are in single precision, however far from their node's origin they are.
+  void note_rounding(const Mesh& local, const glm::dmat4& world_from_node) {
+    double farthest = 0.0, scale = 0.0;
+    for (const Vertex& vertex : local.vertices)
+      for (int axis = 0; axis < 3; ++axis)
+        farthest = std::max(farthest, std::abs(static_cast<double>(vertex.position_ws[axis])));
+    for (int axis = 0; axis < 3; ++axis) scale = std::max(scale, glm::length(glm::dvec3(world_from_node[axis])));
+    result_.rounding_m = std::max(result_.rounding_m, 0x1p-24 * farthest * scale);
   }
 
   /// The primitives of a node's mesh at rest: as the joints stand that the nodes describe.
@@ -267,11 +279,12 @@ class GltfImporter {
       for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>(source.color[static_cast<std::size_t>(i)]);
     const toml::table extras = read_light_extras(source.extras);
     result_.aimed.push_back(!extras.empty());
-    result_.lights.push_back(extras.empty() ? std::move(light) : with_gltf_extras(light, extras, where_));
+    result_.lights.push_back(extras.empty() ? std::move(light) : with_gltf_extras(light, extras, where_, origin_));
   }
 
   const tinygltf::Model& source_;
   std::string where_;
+  glm::dvec3 origin_;
   MeshFile result_;
   std::set<std::string> warned_;
   std::vector<PlacedNode> nodes_;
@@ -284,7 +297,7 @@ class GltfImporter {
 
 MeshFile import_gltf(const std::filesystem::path& file, const glm::dvec3& origin) {
   const tinygltf::Model source = parse_gltf(file);
-  return GltfImporter(source, file.string()).import(glm::translate(glm::dmat4(1.0), -origin));
+  return GltfImporter(source, file.string(), origin).import();
 }
 
 }  // namespace shadowbench::scene

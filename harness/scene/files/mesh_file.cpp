@@ -154,6 +154,7 @@ Scene add_mesh_file(Scene scene, MeshFile file) {
     mesh.material += first_material;
     scene.meshes.push_back(std::move(mesh));
   }
+  scene.rounding_m = std::max(scene.rounding_m, file.rounding_m);
   std::ranges::move(file.textures, std::back_inserter(scene.textures));
   std::ranges::move(file.warnings, std::back_inserter(scene.warnings));
   return scene;

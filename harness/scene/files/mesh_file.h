@@ -28,6 +28,7 @@ struct MeshFile {
   std::vector<Camera> cameras;
   std::vector<Light> lights;  ///< named where there are several
   std::vector<bool> aimed;    ///< of each light, whether the file says where it is as strong as a sun
+  double rounding_m = 0.0;    ///< of positions, as the file has them
   SceneExtras extras;
   std::vector<std::string> warnings;
 };

@@ -77,14 +77,14 @@ std::string tga_of(const std::string& texels) {
 const std::string kHalfBlack = tga_of(std::string("\x00\x00\x00\xff\xff\xff\xff\xff", 8));
 const std::string kGrey = tga_of(std::string("\x80\x80\x80\xff\x80\x80\x80\xff", 8));
 const std::string kHalfClear = tga_of(std::string("\xff\xff\xff\x00\xff\xff\xff\xff", 8));
-constexpr const char* kObjQuad =
+constexpr const char* kTexturedObj =
     "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
 
 /// A square whose material library has these lines; pictures stand beside it.
 Found obj_of(const char* what, const std::string& lines, Content right) {
   right.opacities.push_back(1.0);  // the default material
   return {what,
-          {{"a.obj", kObjQuad},
+          {{"a.obj", kTexturedObj},
            {"m.mtl", "newmtl m\n" + lines},
            {"half.tga", kHalfBlack},
            {"grey.tga", kGrey},
@@ -178,7 +178,7 @@ std::vector<Found> list_obj_files() {
   return {
       {"a byte order mark", {{"a.obj", marked}}, {.triangles = 1}},
       {"a byte order mark in the library",
-       {{"a.obj", kObjQuad}, {"m.mtl", "\xef\xbb\xbfnewmtl m\nd 0.25\n"}},
+       {{"a.obj", kTexturedObj}, {"m.mtl", "\xef\xbb\xbfnewmtl m\nd 0.25\n"}},
        {.opacities = {0.25, 1.0}, .warnings = {"blends"}}},
       {"references with backslashes",
        {{"a.obj", "mtllib .\\tex\\m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"}, {"tex/m.mtl", "newmtl m\n"}},
@@ -270,7 +270,7 @@ TEST(FoundScenes, WhatCannotBeRead_IsNamed) {
   for (const std::string& text : {wide, unmarked})
     EXPECT_THAT(error_of([&] { import_obj(folder.write("a.obj", text)); }).message(), HasSubstr("UTF-16"));
   folder.write("m.mtl", "newmtl m\nmap_d absent.tga\n");
-  EXPECT_THAT(error_of([&] { import_obj(folder.write("a.obj", kObjQuad)); }).what(), HasSubstr("absent.tga"));
+  EXPECT_THAT(error_of([&] { import_obj(folder.write("a.obj", kTexturedObj)); }).what(), HasSubstr("absent.tga"));
   for (const auto& [parts, complaint] :
        {std::pair(with_instances(R"("TRANSLATION": 2, "SCALE": 0)"), "differ in their number"),
         std::pair(with_instances(R"("TRANSLATION": "x")"), "must be an accessor"),
