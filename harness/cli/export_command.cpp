@@ -13,9 +13,10 @@ namespace {
 int export_scenes(RunArguments& arguments, const std::vector<std::string>& words) {
   options::find_told<std::string>(arguments.told, "--filters") = kReferenceFilter;
   const options::RunOptions options = make_run_options(arguments, words);
-  const auto folders = work_with_progress(
+  const engines::ExportedScenes exported = work_with_progress(
       options.out, [&](options::Progress& progress) { return engines::export_scenes(options, progress); });
-  for (const std::filesystem::path& folder : folders) fmt::print("{}\n", (folder / "scene.json").string());
+  for (const std::filesystem::path& folder : exported.folders) fmt::print("{}\n", (folder / "scene.json").string());
+  if (arguments.strict) require_no_warnings(exported.warnings, "scene");
   return 0;
 }
 
@@ -34,6 +35,7 @@ Command make_export_command() {
       .names(ValueKind::kScene)
       .require();
   add_told(command, *a, {"--ground", "--view", "--light-name", "--light", "--size", "--map-size", "--fit"});
+  add_strict(command, *a, "exit code 1 where a scene has a warning, as 'run' gives it; the scenes are written");
   add_drawing_options(command, *a);
   a->out = "report/out/scenes";
   command.action = [a](const CommandLine& line) { return export_scenes(*a, line.words()); };

@@ -72,14 +72,23 @@ void add_run_options(Command& command, RunArguments& a) {
            fmt::format("A,B: two of the filters; phases are doubled until their RMSEs are told apart, or {} are done",
                        options::kMostAveraged))
       .never_empty("two of the run's filters, such as tent5x5,castano5");
-  command.add("--strict", &a.strict,
-              "exit code 1 where the finished run has a warning, or a cell that failed; the report is written all the "
-              "same");
+  add_strict(command, a,
+             "exit code 1 where the finished run has a warning, or a cell that failed; the report is written");
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");
   command.add("--worker", &a.worker, "").hide();
   command.add("--check", &a.check, "").hide();
   command.add("--task", &a.task, "").hide();
   command.add("--every-step", &a.every_step, "").hide();
+}
+
+void add_strict(Command& command, RunArguments& arguments, const std::string& means) {
+  command.add("--strict", &arguments.strict, means + " all the same");
+}
+
+void require_no_warnings(const std::vector<std::string>& warnings, const std::string& owner) {
+  if (warnings.empty()) return;
+  throw Error(ErrorKind::kLimit, fmt::format("--strict: the {} has {} warning{}: {}", owner, warnings.size(),
+                                             warnings.size() == 1 ? "" : "s, the first", warnings.front()));
 }
 
 std::string apply_experiment(const CommandLine& line, RunArguments& arguments) {

@@ -36,6 +36,12 @@ void add_run_options(Command& command, RunArguments& arguments);
 /// Adds some of them, by their names.
 void add_told(Command& command, RunArguments& arguments, const std::vector<std::string>& names);
 
+/// Adds --strict. `means` says what is done all the same.
+void add_strict(Command& command, RunArguments& arguments, const std::string& means);
+
+/// What --strict asks for. Throws Error(kLimit), with the first, where there are warnings of `owner`.
+void require_no_warnings(const std::vector<std::string>& warnings, const std::string& owner);
+
 /// Takes what an experiment file says for every option that was not given on the command line. An experiment that names
 /// no filters takes those of the default one. Returns the experiment's title. Throws Error as options::read_experiment
 /// and options::expand_filters, and Error(kInput) for a value that its option refuses.

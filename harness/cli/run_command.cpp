@@ -35,15 +35,13 @@ void run_engines(const options::RunOptions& options, const RunArguments& argumen
 }
 
 /// What --strict asks of a report, whether it was written now or before. Throws Error(kLimit).
-void require_no_warnings(const std::filesystem::path& out) {
+void require_sound_report(const std::filesystem::path& out) {
   const records::Results results = records::read_results(out / "results.json");
   std::vector<std::string> complaints = results.run.warnings;
   for (const records::CellRecord& cell : results.cells)
     if (cell.status != records::CellStatus::kOk && cell.warnings.empty())
       complaints.push_back(fmt::format("{}: {}: {}", cell.scene, cell.filter, cell.message));
-  if (complaints.empty()) return;
-  throw Error(ErrorKind::kLimit, fmt::format("--strict: the report has {} warning{}: {}", complaints.size(),
-                                             complaints.size() == 1 ? "" : "s, the first", complaints.front()));
+  require_no_warnings(complaints, "report");
 }
 
 /// Leaves in the run's folder which filters cannot be used, for `regress`, where that is what ended the run.
@@ -98,7 +96,7 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
       },
       "what was finished stays, and the same command goes on from there", arguments.every_step);
   fmt::print("report: {}\n", (options.out / "index.html").string());
-  if (arguments.strict) require_no_warnings(options.out);
+  if (arguments.strict) require_sound_report(options.out);
   return 0;
 }
 

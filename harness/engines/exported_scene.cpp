@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 #include <sstream>
 
 #include "base/atomic_file.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/provenance.h"
+#include "harness/run/scene_loading.h"
 #include "harness/run/task_images.h"
 #include "harness/scene/files/gltf_writer.h"
 #include "reference/truth/truth_cache.h"
@@ -102,6 +104,7 @@ Json describe_view(const run::PlannedScene& planned, const scene::Camera& camera
                {"view", camera.name},
                {"model", model_name(planned)},
                {"units", "metres, degrees; right-handed, +y up; matrices are columns first, clip space is -1 .. 1"},
+               {"origin", list(planned.scene.origin_ws)},
                {"width", options.width},
                {"height", options.height},
                {"truth", run::name_view(planned, camera)}};
@@ -126,11 +129,18 @@ void write_exported_scene(const std::filesystem::path& folder, const run::Planne
   write_text_file(folder / "scene.json", description.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::vector<std::filesystem::path> export_scenes(const options::RunOptions& options, options::Progress& progress) {
+ExportedScenes export_scenes(const options::RunOptions& options, options::Progress& progress) {
   measure::Renderer renderer = measure::make_renderer(options.backend, options.resources);
   truth::TruthCache cache(options.cache, [&](const std::string& message) { progress.note("warning: " + message); });
   const run::RunPlan plan = run::make_plan(options, renderer.context->info().renderer);
-  std::vector<std::filesystem::path> folders;
+  ExportedScenes exported;
+  const auto warn = [&](const std::string& message) {
+    if (std::ranges::count(exported.warnings, message) > 0) return;
+    exported.warnings.push_back(message);
+    progress.note("warning: " + message);
+  };
+  for (const run::PlannedScene& planned : plan.scenes)
+    std::ranges::for_each(run::list_scene_warnings(planned.options, planned.scene), warn);
   std::map<std::filesystem::path, std::pair<const run::PlannedTask*, Json>> scenes;
   for (const run::PlannedTask& each : plan.tasks) {
     const run::PlannedScene& planned = plan.scenes[each.scene];
@@ -140,7 +150,7 @@ std::vector<std::filesystem::path> export_scenes(const options::RunOptions& opti
     const std::filesystem::path folder = options.out / run::task_stem(named, each.task);
     if (!scenes.contains(folder)) {
       scenes[folder] = {&each, describe_view(planned, *each.task.camera)};
-      folders.push_back(folder);
+      exported.folders.push_back(folder);
     }
     measure::SceneAssets assets(renderer, planned.options, planned.scene, cache,
                                 measure::padding_texels(planned.options));
@@ -151,9 +161,9 @@ std::vector<std::filesystem::path> export_scenes(const options::RunOptions& opti
     const run::PlannedScene& planned = plan.scenes[scene.first->scene];
     write_exported_scene(folder, planned, *scene.first->task.camera, scene.second);
     if (scene::find_cookie(planned.scene.light))
-      progress.note(fmt::format("{}: the picture that the light shines through is left out", planned.scene.name));
+      warn(fmt::format("{}: the picture that the light shines through is left out", planned.scene.name));
   }
-  return folders;
+  return exported;
 }
 
 }  // namespace shadowbench::engines

@@ -25,8 +25,15 @@ nlohmann::ordered_json describe_map(const run::PlannedScene& planned, int map_si
 void write_exported_scene(const std::filesystem::path& folder, const run::PlannedScene& planned,
                           const scene::Camera& camera, const nlohmann::ordered_json& description);
 
+/// What was written, and what the user was told of it.
+struct ExportedScenes {
+  std::vector<std::filesystem::path> folders;
+  std::vector<std::string> warnings;
+};
+
 /// Writes a folder for each scene, light, view and picture size of a run: OUT/<stem>/<scene>.glb and scene.json, with
-/// the map of every fit and size. Returns the folders. Throws Error as make_plan(), and Error(kOutput).
-std::vector<std::filesystem::path> export_scenes(const options::RunOptions& options, options::Progress& progress);
+/// the map of every fit and size. Tells the warnings of a run of these scenes. Throws Error as make_plan(), and
+/// Error(kOutput).
+ExportedScenes export_scenes(const options::RunOptions& options, options::Progress& progress);
 
 }  // namespace shadowbench::engines

@@ -164,6 +164,7 @@ images::Metadata describe_task(const options::RunOptions& options, const measure
   metadata["shadowbench:seed"] = static_cast<double>(options.seed);
   metadata["shadowbench:renderer"] = info.renderer;
   metadata["shadowbench:camera_position_ws"] = scene::write_vector(camera.position_ws);
+  metadata["shadowbench:origin_ws"] = scene::write_vector(glm::vec3(task.scene->origin_ws));
   metadata["shadowbench:camera_forward_ws"] = scene::write_vector(camera.forward_ws);
   for (const auto& [name, value] : scene::light_metadata(task.scene->light)) metadata["shadowbench:" + name] = value;
   if (measured.cells.empty()) return metadata;

@@ -18,11 +18,11 @@
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
 #include "harness/run/run_progress.h"
+#include "harness/run/scene_loading.h"
 #include "harness/run/supersampled_pictures.h"
 #include "harness/run/task_run.h"
 #include "harness/run/time_forecast.h"
 #include "harness/run/worker_process.h"
-#include "harness/scene/unseen_light.h"
 #include "harness/spirv/webgl.h"
 #include "reference/truth/truth_cache.h"
 #include "report/analysis/repeat.h"
@@ -291,52 +291,16 @@ class Experiment {
     progress_.note("warning: " + message);
   }
 
-  void warn_of_light_below(const scene::Scene& scene) {
-    const scene::Bounds bounds = scene.bounds();
-    const glm::vec3 middle = 0.5f * (bounds.min + bounds.max);
-    const float up = scene::to_light(scene.light, {middle.x, bounds.min.y, middle.z}).y;
-    if (up >= 0.0f) return;
-    const std::string name = scene.light.name.empty() ? "the light" : fmt::format("the light '{}'", scene.light.name);
-    const std::string warning(
-        fmt::format("{}: {} shines from below, {} degrees under the horizon, where no floor faces it; give it an "
-                    "elevation above 0, "
-                    "in the scene or with --light",
-                    scene.name, name, records::format_number(glm::degrees(std::asin(-static_cast<double>(up))))));
-    if (told_.insert(warning).second) warn(warning);
-  }
-
-  void warn_of_unseen_light(const PlannedScene& planned) {
-    const std::vector<const scene::Camera*> chosen = choose_views(options_, planned.scene);
-    std::vector<scene::Camera> views;
-    for (const scene::Camera* each : chosen) views.push_back(*each);
-    const double aspect = static_cast<double>(planned.options.width) / planned.options.height;
-    const std::string advice = scene::advise_on_unseen_light(planned.scene, views, aspect);
-    if (views.empty() || advice.empty()) return;
-    warn(fmt::format("{}: the light reaches no surface in view, so that nothing is tested under it; {}",
-                     planned.scene.name, advice));
-  }
-
-  /// The map of a sun has no behind, and a light without a cone shines there too.
-  void warn_of_tests_without_effect(const scene::Scene& scene) {
-    const std::optional<scene::Beam> beam = scene::find_beam(scene.light);
-    if (options_.range.behind_test || options_.part.is_worker() || (beam && beam->has_edge())) return;
-    warn(scene.name + ": --behind-test off changes nothing: only a light with a cone has a behind");
-  }
-
   void note_scene(const PlannedScene& planned) {
     const scene::Scene& scene = planned.scene;
-    if (!options_.part.is_worker()) warn_of_light_below(scene);  // of each light, where a scene has several
     const auto is_it = [&](const records::SceneRecord& known) { return known.name == scene.name; };
     if (std::any_of(run_.scenes.begin(), run_.scenes.end(), is_it)) return;
     run_.scenes.push_back({scene.name, scene.title, list_view_words(planned)});
-    if (!options_.part.is_worker()) warn_of_unseen_light(planned);
-    // What is said of the scene holds for all its lights.
     const std::string whole = scene::name_without_light(scene) + ": ";
     for (const std::string& note : scene.notes)
       if (!options_.part.is_worker() && told_.insert(whole + note).second) progress_.note(whole + note);
-    for (const std::string& warning : scene.warnings)
-      if (told_.insert(whole + warning).second) warn(whole + warning);
-    warn_of_tests_without_effect(scene);
+    for (const std::string& warning : list_scene_warnings(planned.options, scene))
+      if (told_.insert(warning).second) warn(warning);
   }
 
   /// Traces what all cells of a view and map ask for, and leaves it in the cache.

@@ -4,11 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "base/error.h"
+#include "harness/run/run_plan.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
-#include "reference/truth/occluders.h"
+#include "harness/scene/unseen_light.h"
+#include "report/records/format.h"
 
 namespace shadowbench::run {
 namespace {
@@ -26,20 +30,6 @@ void warn_of_blending(scene::Scene& scene) {
   }
 }
 
-/// Single precision is spent on the distance from the origin: rays then start far off their surfaces, and miss
-/// contacts.
-void warn_of_distance(scene::Scene& scene) {
-  const scene::Bounds bounds = scene.bounds();
-  const glm::vec3 largest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)), size = bounds.max - bounds.min;
-  const float farthest = std::max({largest.x, largest.y, largest.z});
-  const float offset = truth::origin_offset(farthest, farthest);
-  if (offset < 1e-4f * std::max({size.x, size.y, size.z})) return;
-  scene.warnings.push_back(
-      fmt::format("{} m from the origin, single precision leaves positions uncertain, and rays start {} m off their "
-                  "surfaces: what is smaller is not seen; move the scene to the origin",
-                  farthest, offset));
-}
-
 /// A mesh that encloses no volume casts no shadow, or only a part of one, where front faces are culled.
 void warn_of_open_meshes(scene::Scene& scene) {
   for (const scene::Mesh& mesh : scene.meshes) {
@@ -51,7 +41,50 @@ void warn_of_open_meshes(scene::Scene& scene) {
   }
 }
 
+/// Empty unless the light shines from below.
+std::string describe_light_below(const scene::Scene& scene) {
+  const scene::Bounds bounds = scene.bounds();
+  const glm::vec3 middle = 0.5f * (bounds.min + bounds.max);
+  const float up = scene::to_light(scene.light, {middle.x, bounds.min.y, middle.z}).y;
+  if (up >= 0.0f) return "";
+  const std::string name = scene.light.name.empty() ? "the light" : fmt::format("the light '{}'", scene.light.name);
+  return fmt::format(
+      "{}: {} shines from below, {} degrees under the horizon, where no floor faces it; give it an elevation above 0, "
+      "in the scene or with --light",
+      scene.name, name, records::format_number(glm::degrees(std::asin(-static_cast<double>(up)))));
+}
+
+/// Empty unless no surface in view is lit.
+std::string describe_unseen_light(const options::RunOptions& options, const scene::Scene& scene) {
+  std::vector<scene::Camera> views;
+  for (const scene::Camera* each : choose_views(options, scene)) views.push_back(*each);
+  const double aspect = static_cast<double>(options.width) / options.height;
+  const std::string advice = scene::advise_on_unseen_light(scene, views, aspect);
+  if (views.empty() || advice.empty()) return "";
+  return fmt::format("{}: the light reaches no surface in view, so that nothing is tested under it; {}", scene.name,
+                     advice);
+}
+
+/// The map of a sun has no behind, and a light without a cone shines there too.
+std::string describe_test_without_effect(const options::RunOptions& options, const scene::Scene& scene) {
+  const std::optional<scene::Beam> beam = scene::find_beam(scene.light);
+  if (options.range.behind_test || (beam && beam->has_edge())) return "";
+  return scene.name + ": --behind-test off changes nothing: only a light with a cone has a behind";
+}
+
 }  // namespace
+
+std::vector<std::string> list_scene_warnings(const options::RunOptions& options, const scene::Scene& scene) {
+  std::vector<std::string> warnings;
+  // What is said of the scene holds for all its lights.
+  for (const std::string& warning : scene.warnings)
+    warnings.push_back(scene::name_without_light(scene) + ": " + warning);
+  if (options.part.is_worker()) return warnings;
+  for (const std::string& warning : {describe_light_below(scene), describe_unseen_light(options, scene),
+                                     describe_test_without_effect(options, scene)})
+    if (!warning.empty()) warnings.push_back(warning);
+  return warnings;
+}
 
 scene::Scene load_scene(const options::RunOptions& options, const std::string& argument) {
   scene::LoadOptions load;
@@ -61,7 +94,6 @@ scene::Scene load_scene(const options::RunOptions& options, const std::string& a
   load.light = options.light;
   scene::Scene scene = scene::load(argument, load);
   if (options.truth && options.map.blend_casters == render::BlendCasters::kOpaque) warn_of_blending(scene);
-  if (options.truth && !options.part.is_worker()) warn_of_distance(scene);
   if (options.bias.map.cull_front) warn_of_open_meshes(scene);
   return scene;
 }

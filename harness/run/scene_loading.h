@@ -22,4 +22,8 @@ std::vector<scene::Scene> list_lit_scenes(const options::RunOptions& options, co
 /// Loads all of a run's scenes, in its order. Throws Error as load_scene(), and Error(kUsage) where two have one name.
 std::vector<scene::Scene> load_scenes(const options::RunOptions& options);
 
+/// What the user is to know of one light's scene before it is measured: the warnings of loading, which other lights of
+/// the scene repeat, and whether its light shows nothing.
+std::vector<std::string> list_scene_warnings(const options::RunOptions& options, const scene::Scene& scene);
+
 }  // namespace shadowbench::run

@@ -185,6 +185,17 @@ std::vector<Attempt> list_attempts(const Scene& framed, const ViewFreedom& free,
   return attempts;
 }
 
+/// Moving the scene to its own origin does not bring back what its file has lost.
+void warn_of_rounding(Scene& scene) {
+  constexpr double kMost = 1e-5;  // of the scene's size: a twenty-fifth of a texel of a map of 4096
+  const Bounds bounds = scene.bounds();
+  if (bounds.empty() || scene.rounding_m < kMost * static_cast<double>(glm::length(bounds.max - bounds.min))) return;
+  scene.warnings.push_back(fmt::format(
+      "single precision rounds positions in its file to {:.2g} m, so far are they from their nodes' origins; "
+      "move the model to its origin in its own program",
+      2.0 * scene.rounding_m));
+}
+
 std::string name_angles(const SkyAngles& angles) {
   return fmt::format("azimuth {}, elevation {}", angles.azimuth_deg, angles.elevation_deg);
 }
@@ -347,6 +358,7 @@ std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free, c
 }
 
 Scene complete(Scene scene, const Completion& completion, const std::string& where) {
+  warn_of_rounding(scene);
   ViewFreedom free{.sun = completion.needs_sun && !completion.light};
   if (completion.ground) free.ground_y = ground_height(scene);
   scene = validate(with_placed_lights(std::move(scene), completion), where);

@@ -79,16 +79,20 @@ bool is_path(const std::string& name_or_path) {
   return name_or_path.find('/') != std::string::npos || fs::path(name_or_path).has_extension();
 }
 
-Scene load_model(const fs::path& file, const LoadOptions& options) {
-  MeshFile model = import_mesh_file(file);
+Scene load_model(const fs::path& file, const LoadOptions& options, const glm::dvec3& origin = glm::dvec3(0.0)) {
+  MeshFile model = import_mesh_file(file, origin);
   Scene scene;
+  scene.origin_ws = origin;
   scene.name = file.stem().string();
   scene.cameras = std::move(model.cameras);
   const std::vector<Light> lights = model.lights;
   const std::vector<bool> aimed = model.aimed;
   scene.title = model.extras.title.value_or(scene.name);
   scene.background = model.extras.background.value_or(scene.background);
-  scene = validate_geometry(add_mesh_file(std::move(scene), std::move(model)), file.string());
+  scene = add_mesh_file(std::move(scene), std::move(model));
+  if (const glm::dvec3 way = find_way_off(scene.bounds()); way != glm::dvec3(0.0))
+    return load_model(file, options, origin + way);
+  scene = validate_geometry(std::move(scene), file.string());
   const Bounds bounds = scene.bounds();
   for (std::size_t i = 0; i < lights.size(); ++i)
     scene.other_lights.push_back(aimed[i] ? lights[i] : aim_light(lights[i], 0.5f * (bounds.min + bounds.max)));

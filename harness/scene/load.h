@@ -53,8 +53,9 @@ Scene load(const std::string& name_or_path, const LoadOptions& options);
 Scene load_scene(const std::filesystem::path& file, double aspect = 16.0 / 9.0,
                  const std::optional<SkyAngles>& light = std::nullopt);
 
-/// Reads the [camera] of a scene file; its directions are not yet checked. Throws kInput.
-Camera read_camera(const TomlTable& table);
+/// Reads the [camera] of a scene file, relative to the scene's origin; its directions are not yet checked. Throws
+/// kInput.
+Camera read_camera(const TomlTable& table, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// Reads a scene file's title alone. Throws as load_scene does.
 std::string read_scene_title(const std::filesystem::path& file);

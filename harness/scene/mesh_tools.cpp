@@ -23,6 +23,28 @@ glm::vec3 normalize_or_keep_zero(const glm::dvec3& v) {
   return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
 }
 
+/// An affine transform of positions and normals.
+class VertexTransform {
+ public:
+  explicit VertexTransform(const glm::dmat4& world_from_local)
+      : world_from_local_(world_from_local),
+        side_(glm::determinant(glm::dmat3(world_from_local)) < 0.0 ? -1.0 : 1.0),
+        normal_matrix_(side_ * cofactor_matrix(glm::dmat3(world_from_local))) {}
+
+  bool mirrors() const { return side_ < 0.0; }
+
+  Vertex operator()(Vertex vertex) const {
+    vertex.position_ws = glm::vec3(world_from_local_ * glm::dvec4(glm::dvec3(vertex.position_ws), 1.0));
+    vertex.normal_ws = normalize_or_keep_zero(normal_matrix_ * glm::dvec3(vertex.normal_ws));
+    return vertex;
+  }
+
+ private:
+  glm::dmat4 world_from_local_;
+  double side_;
+  glm::dmat3 normal_matrix_;
+};
+
 using Position = std::tuple<float, float, float>;
 
 /// Where more faces meet, a tree sums their normals, since to compare each with each would take their square.
@@ -84,15 +106,23 @@ glm::dvec3 area_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& 
 }
 
 Mesh transform_mesh(Mesh mesh, const glm::dmat4& world_from_local) {
-  const glm::dmat3 linear(world_from_local);
-  const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
-  const glm::dmat3 normal_matrix = side * cofactor_matrix(linear);
-  for (Vertex& vertex : mesh.vertices) {
-    vertex.position_ws = glm::vec3(world_from_local * glm::dvec4(glm::dvec3(vertex.position_ws), 1.0));
-    vertex.normal_ws = normalize_or_keep_zero(normal_matrix * glm::dvec3(vertex.normal_ws));
-  }
-  if (side > 0.0) return mesh;
+  const VertexTransform transform(world_from_local);
+  for (Vertex& vertex : mesh.vertices) vertex = transform(vertex);
+  if (!transform.mirrors()) return mesh;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  return mesh;
+}
+
+Mesh transform_mesh(Mesh mesh, const std::function<glm::dmat4(std::size_t vertex)>& world_from_local) {
+  std::vector<bool> mirrored;
+  mirrored.reserve(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const VertexTransform transform(world_from_local(i));
+    mesh.vertices[i] = transform(mesh.vertices[i]);
+    mirrored.push_back(transform.mirrors());
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    if (mirrored[mesh.indices[i]]) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace shadowbench::scene {
 /// Normals go through the inverse transpose; a mirroring transform (negative determinant) reverses the winding, so that
 /// outward faces stay outward.
 Mesh transform_mesh(Mesh mesh, const glm::dmat4& world_from_local);
+
+/// The same with a transform for each vertex; a triangle is reversed as its first vertex is.
+Mesh transform_mesh(Mesh mesh, const std::function<glm::dmat4(std::size_t vertex)>& world_from_local);
 
 /// Adds the second mesh's triangles to the first, which keeps its name and material.
 Mesh join_meshes(Mesh first, const Mesh& second);

@@ -1,5 +1,10 @@
 #include "harness/scene/scene.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "harness/scene/validate.h"
+
 namespace shadowbench::scene {
 namespace {
 
@@ -30,6 +35,15 @@ Bounds Scene::bounds() const {
   for (const Mesh& mesh : meshes)
     for (const Vertex& vertex : mesh.vertices) box.add(vertex.position_ws);
   return box;
+}
+
+glm::dvec3 find_way_off(const Bounds& bounds) {
+  constexpr double kFar = 4.0, kLeastSize = 1e-6;  // of the scene's size, and of the distance
+  const glm::dvec3 min(bounds.min), max(bounds.max), middle = 0.5 * (min + max);
+  const double distance = glm::length(middle), size = std::max(glm::length(max - min), kLeastSize * distance);
+  if (!(distance <= double{kFarthest_m} && distance > kFar * size)) return glm::dvec3(0.0);
+  const double step = std::exp2(std::floor(std::log2(size)));
+  return step * glm::round(middle / step);
 }
 
 std::size_t Scene::triangle_count() const {

@@ -85,6 +85,8 @@ struct Scene {
   std::vector<Camera> cameras;  ///< at least one
   Light light;
   std::vector<Light> other_lights;            ///< see separate_lights()
+  glm::dvec3 origin_ws{0.0};                  ///< where its file has what is (0,0,0) here: see find_way_off()
+  double rounding_m = 0.0;                    ///< of positions, as models' files have them
   std::optional<Floor> floor;                 ///< of the last mesh, where that was put under a bare model
   glm::vec3 background{0.62f, 0.71f, 0.82f};  ///< linear
   std::vector<std::string> warnings;          ///< what was changed or ignored while loading, for the user
@@ -93,6 +95,11 @@ struct Scene {
   Bounds bounds() const;
   std::size_t triangle_count() const;
 };
+
+/// How far a scene lies off: zero, unless its origin is many times its size away, where single precision would be spent
+/// on the distance; then a round place near its middle, which is to be its origin. Of bounds that were rounded that far
+/// off it is not the last word: what is read again from there may lie off by less.
+glm::dvec3 find_way_off(const Bounds& bounds);
 
 /// A copy of a scene for each of its lights, which alone shines there, with the cameras for that light; called
 /// SCENE.LIGHT where there are several.

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtx/component_wise.hpp>
 #include <map>
 #include <set>
 #include <utility>
@@ -131,7 +132,10 @@ glm::dmat4 world_from_object(const TomlTable& object) {
 /// Builds a scene from its tables; materials come before the objects that use them.
 class SceneBuilder {
  public:
-  SceneBuilder(const TomlTable& root, std::filesystem::path file) : root_(root), file_(std::move(file)) {}
+  SceneBuilder(const TomlTable& root, std::filesystem::path file, const glm::dvec3& origin = glm::dvec3(0.0))
+      : root_(root), file_(std::move(file)) {
+    scene_.origin_ws = origin;
+  }
 
   Scene build(const Completion& completion) {
     root_.require_known_keys({"title", "background", "model", "camera", "light", "material", "object"});
@@ -140,9 +144,12 @@ class SceneBuilder {
     scene_.background = glm::vec3(root_.vec3("background", kColor, glm::dvec3(scene_.background)));
     add_lights(root_.tables("light"));
     for (const TomlTable& table : root_.tables("material")) add_material(table);
-    if (root_.has("model")) scene_ = add_mesh_file(std::move(scene_), import_mesh_file(root_.file("model")));
+    if (root_.has("model"))
+      scene_ = add_mesh_file(std::move(scene_), import_mesh_file(root_.file("model"), scene_.origin_ws));
     for (const TomlTable& table : root_.tables("object")) add_object(table);
     for (const TomlTable& table : root_.tables("camera")) add_camera(table);
+    if (const glm::dvec3 way = find_way_off(scene_.bounds()); way != glm::dvec3(0.0))
+      return SceneBuilder(root_, file_, scene_.origin_ws + way).build(completion);
     scene_ = validate_geometry(std::move(scene_), file_.string());
     return complete(std::move(scene_), completion, file_.string());
   }
@@ -154,7 +161,7 @@ class SceneBuilder {
   }
 
   void add_camera(const TomlTable& table) {
-    const Camera camera = read_camera(table);
+    const Camera camera = read_camera(table, scene_.origin_ws);
     take_name(camera.name, "cameras", table);
     const std::set<std::string>& lights = names_["lights"];
     if (!camera.light.empty() && !lights.contains(camera.light))
@@ -166,7 +173,7 @@ class SceneBuilder {
   void add_lights(const std::vector<TomlTable>& tables) {
     if (tables.empty()) throw root_.error("light", "the scene has no [light]");
     for (const TomlTable& table : tables) {
-      scene_.other_lights.push_back(read_light(table));
+      scene_.other_lights.push_back(read_light(table, scene_.origin_ws));
       const std::string& name = scene_.other_lights.back().name;
       if (tables.size() > 1 && name.empty())
         throw table.error("name", table.title() + " has no 'name': of several lights each needs one");
@@ -189,9 +196,17 @@ class SceneBuilder {
 
   void add_object(const TomlTable& table) {
     const bool is_model = table.choice("shape", object_shapes()) == "model";
-    MeshFile model = is_model ? read_model_object(table) : MeshFile{};
-    if (!is_model) model.meshes.push_back(make_counted_shape(table));
-    const glm::dmat4 world = world_from_object(table);
+    glm::dmat4 world = glm::translate(glm::dmat4(1.0), -scene_.origin_ws) * world_from_object(table);
+    MeshFile model;
+    if (!is_model) {
+      model.meshes.push_back(make_counted_shape(table));
+    } else {
+      // What the scene's origin is to the model, which may lie far from its own.
+      const glm::dvec3 origin(scene_.origin_ws != glm::dvec3(0.0) ? glm::inverse(world)[3] : glm::dvec4(0.0));
+      model = read_model_object(table, origin);
+      world = glm::translate(world, origin);
+      model.rounding_m *= glm::compMax(glm::abs(read_scale(table)));
+    }
     for (Mesh& mesh : model.meshes) {
       mesh = transform_mesh(std::move(mesh), world);
       mesh.casts_shadow = table.boolean("casts_shadow", true);
@@ -219,9 +234,9 @@ class SceneBuilder {
                                   table.title(), kMostShapeCorners / 3));
   }
 
-  MeshFile read_model_object(const TomlTable& table) const {
+  static MeshFile read_model_object(const TomlTable& table, const glm::dvec3& origin) {
     require_object_keys(table, {"file"});
-    return import_mesh_file(table.file("file"));
+    return import_mesh_file(table.file("file"), origin);
   }
 
   /// The index of the object's material; objects without one share a grey default.
@@ -253,7 +268,7 @@ class SceneBuilder {
 
 }  // namespace
 
-Camera read_camera(const TomlTable& table) {
+Camera read_camera(const TomlTable& table, const glm::dvec3& origin) {
   table.require_known_keys({"name", "light", "position", "target", "up", "vertical_fov_deg", "orthographic_height"});
   Camera camera;
   camera.name = table.string("name", camera.name);
@@ -261,7 +276,7 @@ Camera read_camera(const TomlTable& table) {
   const glm::dvec3 position = table.vec3("position", kAnyNumber);
   const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;
   if (glm::length(ahead) == 0.0) throw table.error("target", "the camera's target is its position");
-  camera.position_ws = glm::vec3(position);
+  camera.position_ws = glm::vec3(position - origin);
   camera.forward_ws = glm::vec3(is_unit(ahead) ? ahead : glm::normalize(ahead));
   camera.up_ws = glm::vec3(table.vec3("up", kAnyNumber, glm::dvec3(0.0, 1.0, 0.0)));
   if (!table.has("orthographic_height")) {

@@ -25,12 +25,13 @@ double write_angle(float radians) {
   return static_cast<float>(glm::radians(brief)) == radians ? brief : exact;
 }
 
-toml::table write_camera(const Camera& camera) {
+toml::table write_camera(const Camera& camera, const glm::dvec3& origin = glm::dvec3(0.0)) {
   toml::array target;
   for (int axis = 0; axis < 3; ++axis)
-    target.push_back(write_number(camera.position_ws[axis]) + static_cast<double>(camera.forward_ws[axis]));
+    target.push_back(write_number(camera.position_ws[axis]) + origin[axis] +
+                     static_cast<double>(camera.forward_ws[axis]));
   toml::table table{{"name", camera.name},
-                    {"position", write_vec3(camera.position_ws)},
+                    {"position", write_place(camera.position_ws, origin)},
                     {"target", std::move(target)},
                     {"up", write_vec3(camera.up_ws)}};
   if (!camera.light.empty()) table.insert("light", camera.light);
@@ -96,14 +97,14 @@ class MovedDocument {
 
 /// A floor as the plane that make_floor() makes of it. Its place is written to the last digit of a double, since a
 /// plane is moved in double precision.
-toml::table write_floor(const Floor& floor, const std::string& material) {
-  return toml::table{
-      {"shape", "plane"},
-      {"name", "ground"},
-      {"material", material},
-      {"size", write_numbers(std::span(&floor.size_m.x, 2))},
-      {"center", toml::array{double{floor.center_ws.x}, double{floor.center_ws.y}, double{floor.center_ws.z}}},
-      {"cells", kFloorCells}};
+toml::table write_floor(const Floor& floor, const glm::dvec3& origin, const std::string& material) {
+  const glm::dvec3 center = glm::dvec3(floor.center_ws) + origin;
+  return toml::table{{"shape", "plane"},
+                     {"name", "ground"},
+                     {"material", material},
+                     {"size", write_numbers(std::span(&floor.size_m.x, 2))},
+                     {"center", toml::array{center.x, center.y, center.z}},
+                     {"cells", kFloorCells}};
 }
 
 toml::table write_model(const ShownScene& shown, const fs::path& file) {
@@ -114,7 +115,7 @@ toml::table write_model(const ShownScene& shown, const fs::path& file) {
   const Material& material = scene.materials[static_cast<std::size_t>(scene.meshes.back().material)];
   document.insert("material", toml::array{toml::table{{"name", material.name},
                                                       {"color", write_vec3(glm::vec3(material.base_color))}}});
-  document.insert("object", toml::array{write_floor(*scene.floor, material.name)});
+  document.insert("object", toml::array{write_floor(*scene.floor, scene.origin_ws, material.name)});
   return document;
 }
 
@@ -140,9 +141,9 @@ std::string write_scene(const ShownScene& shown, const fs::path& file) {
     document = std::move(moved.document());
   }
   toml::array cameras, lights;
-  for (const Camera& camera : shown.cameras) cameras.push_back(write_camera(camera));
+  for (const Camera& camera : shown.cameras) cameras.push_back(write_camera(camera, shown.scene->origin_ws));
   for (std::size_t i = 0; i < shown.lights.size(); ++i) {
-    toml::table light = write_light(shown.lights[i]);
+    toml::table light = write_light(shown.lights[i], shown.scene->origin_ws);
     if (find_cookie(shown.lights[i]) && i < cookies.size()) light.insert("cookie", cookies[i]);
     lights.push_back(std::move(light));
   }
@@ -153,7 +154,7 @@ std::string write_scene(const ShownScene& shown, const fs::path& file) {
 
 Camera settle(const Camera& camera) {
   return settle_by(
-      camera, "camera '" + camera.name + "'", write_camera,
+      camera, "camera '" + camera.name + "'", [](const Camera& each) { return write_camera(each); },
       [](const TomlTable& table) { return checked_camera(read_camera(table), {}); });
 }
 
@@ -163,7 +164,8 @@ Light settle(const Light& light) {
     if (auto* spot = std::get_if<Spot>(&settled.kind)) spot->cookie = std::get<Spot>(light.kind).cookie;
     return settled;
   };
-  return settle_by(light, "light '" + light.name + "'", write_light, read);
+  return settle_by(
+      light, "light '" + light.name + "'", [](const Light& each) { return write_light(each); }, read);
 }
 
 }  // namespace shadowbench::scene

@@ -12,8 +12,10 @@
 namespace shadowbench::scene {
 namespace {
 
-std::string write(const char* key, const glm::vec3& v) {
-  return fmt::format("{} = [{:.4g}, {:.4g}, {:.4g}]", key, v.x, v.y, v.z);
+/// Some digits of a place, as the scene's file is to have it.
+std::string write(const char* key, const glm::vec3& place_ws, const glm::dvec3& origin) {
+  const auto number = [&](int axis) { return std::stod(fmt::format("{:.4g}", place_ws[axis])) + origin[axis]; };
+  return fmt::format("{} = [{:.10g}, {:.10g}, {:.10g}]", key, number(0), number(1), number(2));
 }
 
 /// A camera that sees edges of the light's shadows, if one of those that are tried does.
@@ -57,11 +59,11 @@ std::string advise_on_unseen_light(const Scene& lit, std::span<const Camera> vie
   if (const auto camera = find_camera(lit, aspect))
     return fmt::format("write into its file a [[camera]] with name = \"{}\"{}, {}, {}, vertical_fov_deg = {:.4g}",
                        name.empty() ? "lit" : name, name.empty() ? "" : fmt::format(", light = \"{}\"", name),
-                       write("position", camera->position_ws),
-                       write("target", camera->position_ws + camera->forward_ws),
+                       write("position", camera->position_ws, lit.origin_ws),
+                       write("target", camera->position_ws + camera->forward_ws, lit.origin_ws),
                        glm::degrees(camera->vertical_fov_rad));
   if (const auto place = find_place(lit, aspect))
-    return fmt::format("it is enclosed; write into its [[light]] {}", write("position", *place));
+    return fmt::format("it is enclosed; write into its [[light]] {}", write("position", *place, lit.origin_ws));
   return "no view that was tried sees it; write another place or direction into its [[light]]";
 }
 

@@ -16,8 +16,6 @@
 namespace shadowbench::scene {
 namespace {
 
-constexpr float kFarthest_m = 1e12f;
-
 bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 std::string text_of(const glm::vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }

@@ -6,6 +6,9 @@
 
 namespace shadowbench::scene {
 
+/// No coordinate may be larger.
+inline constexpr float kFarthest_m = 1e12f;
+
 /// Checks that a scene can be rendered and measured, and repairs what has one sensible repair.
 ///
 /// Throws kInput, at `where`, for: no triangles, an index out of range, a coordinate or normal that is not finite or

@@ -3,8 +3,6 @@
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/gtc/type_ptr.hpp>
 #include <map>
 #include <numeric>
 #include <set>
@@ -12,106 +10,14 @@
 
 #include "base/error.h"
 #include "harness/scene/files/gltf_extras.h"
+#include "harness/scene/files/gltf_material.h"
+#include "harness/scene/files/gltf_nodes.h"
 #include "harness/scene/files/gltf_parse.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
 namespace {
-
-/// A node and the product of the transforms on its way from the root.
-struct PlacedNode {
-  int node;
-  glm::dmat4 world_from_node;
-};
-
-std::string describe(const tinygltf::Model& model, int node) {
-  const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
-  return name.empty() ? fmt::format("node {}", node) : fmt::format("node {} ('{}')", node, name);
-}
-
-/// Throws unless the values are absent or as many as they must be, and finite.
-void check_values(const std::vector<double>& values, std::size_t count, const std::string& what,
-                  const std::string& where) {
-  if (values.empty()) return;
-  if (values.size() != count)
-    fail_input(fmt::format("{} must have {} numbers, but has {}", what, count, values.size()), where);
-  for (const double value : values)
-    if (!std::isfinite(value)) fail_input(what + " is not finite", where);
-}
-
-glm::dmat4 rotation_of(const tinygltf::Node& node, const std::string& owner, const std::string& where) {
-  if (node.rotation.empty()) return glm::dmat4(1.0);
-  const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-  const double length = glm::length(rotation);
-  if (!(length > 0.0)) fail_input(fmt::format("the rotation of {} is zero", owner), where);
-  return glm::mat4_cast(rotation / length);
-}
-
-glm::dmat4 local_transform(const tinygltf::Model& model, int index, const std::string& where) {
-  const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];
-  const std::string owner = describe(model, index);
-  check_values(node.matrix, 16, "the matrix of " + owner, where);
-  check_values(node.translation, 3, "the translation of " + owner, where);
-  check_values(node.rotation, 4, "the rotation of " + owner, where);
-  check_values(node.scale, 3, "the scale of " + owner, where);
-  if (!node.matrix.empty()) return glm::make_mat4(node.matrix.data());
-  glm::dmat4 local(1.0);
-  if (!node.translation.empty()) local = glm::translate(local, glm::make_vec3(node.translation.data()));
-  local = local * rotation_of(node, owner, where);
-  return node.scale.empty() ? local : glm::scale(local, glm::make_vec3(node.scale.data()));
-}
-
-/// Requires a file that has scenes.
-const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
-  const auto wanted = static_cast<std::size_t>(std::max(0, model.defaultScene));
-  return model.scenes[std::min(wanted, model.scenes.size() - 1)];
-}
-
-/// The roots of the default scene, of the first one, or, where a file has no scenes, the nodes that are no child.
-std::vector<int> root_nodes(const tinygltf::Model& model) {
-  if (!model.scenes.empty()) return default_scene(model).nodes;
-  std::vector<bool> is_child(model.nodes.size(), false);
-  for (const tinygltf::Node& node : model.nodes) {
-    for (const int child : node.children)
-      if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
-        is_child[static_cast<std::size_t>(child)] = true;
-  }
-  std::vector<int> roots;
-  for (std::size_t i = 0; i < is_child.size(); ++i)
-    if (!is_child[i]) roots.push_back(static_cast<int>(i));
-  return roots;
-}
-
-/// Lists the nodes of the default scene. Throws kInput where the nodes are no tree (a cycle, two parents, no such
-/// node) or a transform is not finite or has the wrong length.
-std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, const std::string& where) {
-  std::vector<PlacedNode> waiting;
-  // The last node of the list is placed first, so roots and children are put there in reverse.
-  const std::vector<int> roots = root_nodes(model);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) waiting.push_back({*root, glm::dmat4(1.0)});
-  if (waiting.empty() && !model.nodes.empty())
-    fail_input("no node is a root: the scene lists none, or the nodes form a cycle", where);
-  std::vector<bool> seen(model.nodes.size(), false);
-  std::vector<PlacedNode> placed;
-  while (!waiting.empty()) {
-    const PlacedNode parent = waiting.back();
-    waiting.pop_back();
-    const auto index = static_cast<std::size_t>(parent.node);
-    find_element(model.nodes, parent.node, "there is no node", where);
-    if (seen[index]) {
-      fail_input(fmt::format("{} is reached twice: the nodes form a cycle, or it has two parents",
-                             describe(model, parent.node)),
-                 where);
-    }
-    seen[index] = true;
-    placed.push_back({parent.node, parent.world_from_node * local_transform(model, parent.node, where)});
-    const std::vector<int>& children = model.nodes[index].children;
-    for (auto child = children.rbegin(); child != children.rend(); ++child)
-      waiting.push_back({*child, placed.back().world_from_node});
-  }
-  return placed;
-}
 
 constexpr std::size_t kMostCorners = std::size_t{3} << 25;
 
@@ -129,56 +35,27 @@ std::vector<std::uint32_t> to_triangles(const std::vector<std::uint32_t>& corner
   return triangles;
 }
 
-/// Which of a vertex's texture coordinates a material uses, and what makes the texture's own of them.
-struct Texcoords {
-  int set = 0;
-  glm::dmat3 texture_from_mesh{1.0};
-};
-
-/// The two numbers of a member of KHR_texture_transform.
-glm::dvec2 read_pair(const tinygltf::Value& transform, const std::string& key, const glm::dvec2& otherwise,
-                     const std::string& where) {
-  if (!transform.Has(key)) return otherwise;
-  const tinygltf::Value& pair = transform.Get(key);
-  if (pair.ArrayLen() == 2 && pair.Get(0).IsNumber() && pair.Get(1).IsNumber())
-    return {pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble()};
-  fail_input(fmt::format("the {} of a KHR_texture_transform must be two numbers", key), where);
-}
-
-/// The transform moves, turns and scales, the scaling first; an angle turns counter-clockwise as a picture is seen,
-/// whose rows go down.
-Texcoords read_texcoords(const tinygltf::TextureInfo& texture, const std::string& where) {
-  const auto extension = texture.extensions.find("KHR_texture_transform");
-  if (extension == texture.extensions.end()) return {texture.texCoord};
-  const tinygltf::Value& transform = extension->second;
-  const glm::dvec2 offset = read_pair(transform, "offset", {0.0, 0.0}, where);
-  const glm::dvec2 scale = read_pair(transform, "scale", {1.0, 1.0}, where);
-  const bool turns = transform.Has("rotation");
-  if (turns && !transform.Get("rotation").IsNumber())
-    fail_input("the rotation of a KHR_texture_transform must be a number", where);
-  const double angle = turns ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
-  const bool has_set = transform.Has("texCoord") && transform.Get("texCoord").IsInt();
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  return {has_set ? transform.Get("texCoord").GetNumberAsInt() : texture.texCoord,
-          {scale.x * c, -scale.x * s, 0.0, scale.y * s, scale.y * c, 0.0, offset.x, offset.y, 1.0}};
-}
-
 /// Builds a model from a parsed file, part by part.
 class GltfImporter {
  public:
-  GltfImporter(const tinygltf::Model& source, std::string where) : source_(source), where_(std::move(where)) {}
+  GltfImporter(const tinygltf::Model& source, std::string where, const glm::dvec3& origin)
+      : source_(source), where_(std::move(where)), origin_(origin) {}
 
   MeshFile import() {
     warn_of_extensions();
     if (!source_.scenes.empty()) result_.extras = read_scene_extras(default_scene(source_).extras, where_);
-    for (const tinygltf::Material& material : source_.materials) add_material(material);
-    for (const PlacedNode& placed : place_nodes(source_, where_)) {
+    GltfMaterials materials = read_gltf_materials(source_, where_);
+    result_.materials = std::move(materials.materials);
+    result_.textures = std::move(materials.textures);
+    texcoords_ = std::move(materials.texcoords);
+    std::ranges::for_each(materials.warnings, [&](const std::string& message) { warn(message); });
+    nodes_ = place_nodes(source_, glm::translate(glm::dmat4(1.0), -origin_), where_);
+    for (const PlacedNode& placed : nodes_) {
       const tinygltf::Node& node = find_element(source_.nodes, placed.node, "there is no node", where_);
-      if (node.mesh >= 0) add_mesh(node, placed.world_from_node);
       if (node.camera >= 0) add_camera(node, placed.world_from_node);
+      if (!placed.is_visible) continue;
+      if (node.mesh >= 0) add_mesh(node, placed);
       add_light(node, placed.world_from_node);
-      if (node.skin >= 0) warn("skins are not modelled: meshes are drawn as modelled, unposed");
     }
     return std::move(result_);
   }
@@ -192,59 +69,68 @@ class GltfImporter {
 
   void warn_of_extensions() {
     for (const std::string& extension : source_.extensionsUsed)
-      if (!is_known_extension(extension)) warn(fmt::format("the extension {} is ignored", extension));
+      if (!is_harmless_extension(extension)) warn(fmt::format("the extension {} is ignored", extension));
   }
 
-  void add_material(const tinygltf::Material& source) {
-    Material material;
-    material.name = source.name.empty() ? fmt::format("material {}", result_.materials.size()) : source.name;
-    const std::vector<double>& factor = source.pbrMetallicRoughness.baseColorFactor;
-    if (factor.size() != 4) fail(fmt::format("the base colour of '{}' must have 4 numbers", material.name));
-    for (int i = 0; i < 4; ++i) material.base_color[i] = static_cast<float>(factor[static_cast<std::size_t>(i)]);
-    const tinygltf::TextureInfo& texture = source.pbrMetallicRoughness.baseColorTexture;
-    if (texture.index >= 0) material.base_color_texture = add_texture(texture.index);
-    material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-    if (source.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;
-    if (source.alphaMode == "BLEND") {
-      material.alpha_mode = AlphaMode::kBlend;
-      warn(fmt::format("material '{}' blends; cameras see it opaque", material.name));
-    } else if (source.alphaMode != "OPAQUE" && source.alphaMode != "MASK") {
-      fail(fmt::format("material '{}' has alphaMode '{}'; glTF knows OPAQUE, MASK and BLEND", material.name,
-                       source.alphaMode));
-    }
-    result_.materials.push_back(material);
-    texcoords_.push_back(read_texcoords(texture, where_));
-  }
-
-  int add_texture(int index) {
-    const int image = find_element(source_.textures, index, "there is no texture", where_).source;
-    if (image < 0 || static_cast<std::size_t>(image) >= source_.images.size())
-      fail(fmt::format("texture {} has no image that can be read", index));
-    if (const auto known = texture_of_image_.find(image); known != texture_of_image_.end()) return known->second;
-    result_.textures.push_back(read_image(image));
-    return texture_of_image_[image] = static_cast<int>(result_.textures.size()) - 1;
-  }
-
-  Texture read_image(int index) const {
-    const tinygltf::Image& image = find_element(source_.images, index, "there is no image", where_);
-    const std::string fallback_name = image.uri.empty() ? fmt::format("image {}", index) : image.uri;
-    const std::string name = image.name.empty() ? fallback_name : image.name;
-    if (image.bufferView >= 0)
-      return decode_texture(read_buffer_view(source_, image.bufferView, "image", where_), name, where_,
-                            result_.textures);
-    if (image.image.empty()) fail(fmt::format("the image '{}' is missing or empty", fallback_name));
-    return decode_texture(image.image, name, where_, result_.textures);
-  }
-
-  void add_mesh(const tinygltf::Node& node, const glm::dmat4& world_from_node) {
-    for (const Mesh& local : local_meshes(node.mesh)) {
-      count_corners(local.indices.size());
-      Mesh mesh = transform_mesh(local, world_from_node);
+  void add_mesh(const tinygltf::Node& node, const PlacedNode& placed) {
+    for (Mesh& mesh : node.skin >= 0 ? pose_meshes(node, placed) : place_meshes(node, placed)) {
       if (!node.name.empty()) mesh.name = node.name;
       mesh.casts_shadow = read_extra_flag(node.extras, "casts_shadow");
       mesh.may_cull_front = read_extra_flag(node.extras, "may_cull_front");
       result_.meshes.push_back(std::move(mesh));
     }
+  }
+
+  /// The primitives of a node's mesh, the instances of each as one.
+  std::vector<Mesh> place_meshes(const tinygltf::Node& node, const PlacedNode& placed) {
+    std::vector<Mesh> meshes;
+    const std::vector<glm::dmat4> places = place_instances(source_, placed, where_);
+    for (const Mesh& local : local_meshes(node.mesh)) {
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        count_corners(local.indices.size());
+        note_rounding(local, places[i]);
+        Mesh mesh = transform_mesh(local, places[i]);
+        if (i == 0)
+          meshes.push_back(std::move(mesh));
+        else
+          meshes.back() = join_meshes(std::move(meshes.back()), mesh);
+      }
+    }
+    return meshes;
+  }
+
+  /// The file's own positions are in single precision, however far from their node's origin they are.
+  void note_rounding(const Mesh& local, const glm::dmat4& world_from_node) {
+    double farthest = 0.0, scale = 0.0;
+    for (const Vertex& vertex : local.vertices)
+      for (int axis = 0; axis < 3; ++axis)
+        farthest = std::max(farthest, std::abs(static_cast<double>(vertex.position_ws[axis])));
+    for (int axis = 0; axis < 3; ++axis) scale = std::max(scale, glm::length(glm::dvec3(world_from_node[axis])));
+    result_.rounding_m = std::max(result_.rounding_m, 0x1p-24 * farthest * scale);
+  }
+
+  /// The primitives of a node's mesh at rest: as the joints stand that the nodes describe.
+  std::vector<Mesh> pose_meshes(const tinygltf::Node& node, const PlacedNode& placed) {
+    const std::vector<glm::dmat4> joints = pose_joints(source_, node.skin, nodes_, where_);
+    if (joints.empty()) {
+      warn(fmt::format("a joint of skin {} is not in the scene; its meshes are drawn unposed", node.skin));
+      return place_meshes(node, placed);
+    }
+    const tinygltf::Mesh& source = find_element(source_.meshes, node.mesh, "there is no mesh", where_);
+    const std::string name = name_mesh(source, node.mesh);
+    std::vector<Mesh> meshes;
+    for (const tinygltf::Primitive& primitive : source.primitives) {
+      if (!is_drawn(primitive, name)) continue;
+      Mesh mesh = read_primitive(primitive, name);
+      if (primitive.attributes.contains("JOINTS_0")) {
+        mesh = pose_mesh(std::move(mesh), source_, primitive, joints, where_);
+      } else {
+        warn(fmt::format("a part of '{}' has a skin, but no joints; it is drawn unposed", name));
+        mesh = transform_mesh(std::move(mesh), placed.world_from_node);
+      }
+      meshes.push_back(with_normals(std::move(mesh), primitive));
+    }
+    return meshes;
   }
 
   /// Counts what is read and what is placed, since a small file can name the same numbers many times.
@@ -258,11 +144,19 @@ class GltfImporter {
   const std::vector<Mesh>& local_meshes(int index) {
     if (const auto known = local_meshes_.find(index); known != local_meshes_.end()) return known->second;
     const tinygltf::Mesh& source = find_element(source_.meshes, index, "there is no mesh", where_);
-    const std::string name = source.name.empty() ? fmt::format("mesh {}", index) : source.name;
+    const std::string name = name_mesh(source, index);
     std::vector<Mesh> meshes;
     for (const tinygltf::Primitive& primitive : source.primitives)
-      if (is_drawn(primitive, name)) meshes.push_back(read_primitive(primitive, name));
+      if (is_drawn(primitive, name)) meshes.push_back(with_normals(read_primitive(primitive, name), primitive));
     return local_meshes_[index] = std::move(meshes);
+  }
+
+  static std::string name_mesh(const tinygltf::Mesh& mesh, int index) {
+    return mesh.name.empty() ? fmt::format("mesh {}", index) : mesh.name;
+  }
+
+  static Mesh with_normals(Mesh mesh, const tinygltf::Primitive& primitive) {
+    return primitive.attributes.contains("NORMAL") ? mesh : with_flat_normals(mesh);
   }
 
   bool is_drawn(const tinygltf::Primitive& primitive, const std::string& name) {
@@ -286,7 +180,7 @@ class GltfImporter {
     count_corners(mesh.indices.size());
     if (mesh.indices.size() % 3 != 0)
       fail(fmt::format("'{}' has {} corners, which is no multiple of 3", name, mesh.indices.size()));
-    return primitive.attributes.contains("NORMAL") ? mesh : with_flat_normals(mesh);
+    return mesh;
   }
 
   int material_of(const tinygltf::Primitive& primitive) {
@@ -363,12 +257,21 @@ class GltfImporter {
     if (extension == node.extensions.end() || !extension->second.Has("light")) return;
     const int index = extension->second.Get("light").GetNumberAsInt();
     const tinygltf::Light& source = find_element(source_.lights, index, "there is no light", where_);
+    const std::string name =
+        source.name.empty() ? fmt::format("light {}", index) : fmt::format("light '{}'", source.name);
+    if (source.intensity == 0.0) {
+      warn(fmt::format("{} has an intensity of 0; it is left out", name));
+      return;
+    }
     const std::optional<LightKind> kind =
         make_gltf_light(source.type, world_from_node, source.spot.innerConeAngle, source.spot.outerConeAngle);
     if (!kind) {
       warn(fmt::format("{} lights are not modelled yet; they are left out", source.type));
       return;
     }
+    const double cone_deg = 2.0 * glm::degrees(source.spot.outerConeAngle);
+    if (std::holds_alternative<Spot>(*kind) && cone_deg > double{kWidestCone_deg})
+      warn(fmt::format("{} has a cone of {:.4g} degrees; it is measured with {}", name, cone_deg, kWidestCone_deg));
     Light light;
     light.name = source.name;
     light.kind = *kind;
@@ -376,14 +279,15 @@ class GltfImporter {
       for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>(source.color[static_cast<std::size_t>(i)]);
     const toml::table extras = read_light_extras(source.extras);
     result_.aimed.push_back(!extras.empty());
-    result_.lights.push_back(extras.empty() ? std::move(light) : with_gltf_extras(light, extras, where_));
+    result_.lights.push_back(extras.empty() ? std::move(light) : with_gltf_extras(light, extras, where_, origin_));
   }
 
   const tinygltf::Model& source_;
   std::string where_;
+  glm::dvec3 origin_;
   MeshFile result_;
   std::set<std::string> warned_;
-  std::map<int, int> texture_of_image_;
+  std::vector<PlacedNode> nodes_;
   std::map<int, std::vector<Mesh>> local_meshes_;
   std::vector<Texcoords> texcoords_;  ///< per material
   std::size_t corner_count_ = 0;
@@ -391,9 +295,9 @@ class GltfImporter {
 
 }  // namespace
 
-MeshFile import_gltf(const std::filesystem::path& file) {
+MeshFile import_gltf(const std::filesystem::path& file, const glm::dvec3& origin) {
   const tinygltf::Model source = parse_gltf(file);
-  return GltfImporter(source, file.string()).import();
+  return GltfImporter(source, file.string(), origin).import();
 }
 
 }  // namespace shadowbench::scene

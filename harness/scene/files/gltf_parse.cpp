@@ -9,6 +9,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <type_traits>
 
@@ -127,17 +128,26 @@ void drop_packed_indices(nlohmann::json& mesh) {
     if (primitive.contains(packed)) primitive.erase("indices");
 }
 
-/// The JSON with what the parser refuses of compressed files taken out; as it is where it is none.
-std::string without_gaps(std::string_view json, bool glb) {
-  nlohmann::json document = nlohmann::json::parse(json, nullptr, false);
-  if (!document.is_object()) return std::string(json);
-  if (document.contains("buffers")) fill_fallbacks(document["buffers"], glb);
-  if (document.contains("meshes")) std::ranges::for_each(document["meshes"], drop_packed_indices);
-  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+/// The parser asks for matrices that glTF lets a skin leave out.
+void fill_inverse_binds(nlohmann::json& skin) {
+  if (skin.is_object() && !skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
 }
 
-bool may_be_compressed(std::string_view json) {
-  return json.find("EXT_meshopt_compression") != json.npos || json.find("KHR_draco_mesh_compression") != json.npos;
+/// Whether the parser would refuse something that is valid, or is never used.
+bool needs_mending(std::string_view json) {
+  constexpr std::array kWords{"EXT_meshopt_compression", "KHR_draco_mesh_compression", "\"animations\"", "\"skins\""};
+  return std::ranges::any_of(kWords, [&](const char* word) { return json.find(word) != json.npos; });
+}
+
+/// The JSON without animations, which nothing uses, and with what the parser misses; as it is where it is none.
+std::string mend_json(std::string_view json, bool glb) {
+  nlohmann::json document = nlohmann::json::parse(json, nullptr, false);
+  if (!document.is_object()) return std::string(json);
+  document.erase("animations");
+  if (document.contains("buffers")) fill_fallbacks(document["buffers"], glb);
+  if (document.contains("meshes")) std::ranges::for_each(document["meshes"], drop_packed_indices);
+  if (document.contains("skins")) std::ranges::for_each(document["skins"], fill_inverse_binds);
+  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 /// A file's bytes with the JSON replaced.
@@ -178,9 +188,14 @@ std::string one_line(std::string text) {
   return text.empty() ? "the parser gives no reason" : text;
 }
 
+/// Surfaces that let light through in ways that are not read: the rest of the file is as it should be.
+bool is_partly_known(std::string_view extension) {
+  return extension == "KHR_materials_volume" || extension == "KHR_materials_diffuse_transmission";
+}
+
 void require_readable_extensions(const tinygltf::Model& model, const std::string& where) {
   for (const std::string& extension : model.extensionsRequired) {
-    if (is_known_extension(extension)) continue;
+    if (is_harmless_extension(extension) || is_partly_known(extension)) continue;
     fail_input(fmt::format("the file requires the extension {}, which {}; save it without", extension,
                            extension == "EXT_meshopt_compression" || extension == "KHR_draco_mesh_compression"
                                ? "this build leaves out"
@@ -225,17 +240,22 @@ bool parse_bytes(tinygltf::TinyGLTF& parser, tinygltf::Model* model, std::string
 
 }  // namespace
 
-bool is_known_extension(std::string_view extension) {
-  constexpr std::array kRead{
+bool is_harmless_extension(std::string_view extension) {
+  static const std::set<std::string_view> harmless = {
 #ifdef SHADOWBENCH_HAS_MESHOPT
-      std::string_view("EXT_meshopt_compression"),
+      "EXT_meshopt_compression",
 #endif
 #ifdef SHADOWBENCH_HAS_DRACO
-      std::string_view("KHR_draco_mesh_compression"),
+      "KHR_draco_mesh_compression",
 #endif
-      std::string_view("KHR_lights_punctual"), std::string_view("KHR_mesh_quantization"),
-      std::string_view("KHR_texture_transform")};
-  return extension.starts_with("KHR_materials_") || std::ranges::find(kRead, extension) != kRead.end();
+      // Read.
+      "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_pbrSpecularGlossiness",
+      "KHR_materials_transmission", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_transform",
+      // How an opaque surface looks beside its colour, what moves, and what describes the file.
+      "KHR_animation_pointer", "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_dispersion",
+      "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_iridescence", "KHR_materials_sheen",
+      "KHR_materials_specular", "KHR_materials_unlit", "KHR_materials_variants", "KHR_xmp_json_ld"};
+  return harmless.contains(extension);
 }
 
 std::size_t read_whole_number(const tinygltf::Value& object, const std::string& key, const std::string& owner,
@@ -253,7 +273,7 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) fail_input("the file is larger than 4 GiB", where);
   if (nesting_depth(json_of(bytes)) > kDeepestJson)
     fail_input(fmt::format("its JSON is nested more than {} deep", kDeepestJson), where);
-  if (may_be_compressed(json_of(bytes))) bytes = with_json(bytes, without_gaps(json_of(bytes), is_glb(bytes)));
+  if (needs_mending(json_of(bytes))) bytes = with_json(bytes, mend_json(json_of(bytes), is_glb(bytes)));
   FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(&keep_encoded, nullptr);

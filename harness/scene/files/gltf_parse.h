@@ -14,8 +14,9 @@
 
 namespace shadowbench::scene {
 
-/// Whether a file may require the extension: it is read, or says only how surfaces look beside their base colour.
-bool is_known_extension(std::string_view extension);
+/// Whether an extension is read, or changes nothing of what casts shadows; a file may require it, and no more need be
+/// said. Of any other the user is warned.
+bool is_harmless_extension(std::string_view extension);
 
 /// Parses a .gltf or .glb file and its buffers, and unpacks those that are compressed; images stay encoded, in
 /// `image`, or in their buffer view.

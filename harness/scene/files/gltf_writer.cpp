@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
 
@@ -24,6 +25,12 @@ tinygltf::Value to_value(const toml::node& node) {
   tinygltf::Value::Array list;
   for (const toml::node& each : *node.as_array()) list.push_back(to_value(each));
   return tinygltf::Value(std::move(list));
+}
+
+/// The text as JSON can hold it: names of other files may be in any encoding.
+std::string to_utf8(const std::string& text) {
+  using Json = nlohmann::json;
+  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
 void take_bytes(void* to, void* bytes, int size) {
@@ -56,8 +63,9 @@ class GlbBuilder {
     model_.buffers.emplace_back();
     model_.scenes.emplace_back();
     model_.defaultScene = 0;
-    model_.scenes[0].name = scene.name;
-    model_.scenes[0].extras = own({{"title", tinygltf::Value(scene.title)}, {"background", list(scene.background)}});
+    model_.scenes[0].name = to_utf8(scene.name);
+    model_.scenes[0].extras =
+        own({{"title", tinygltf::Value(to_utf8(scene.title))}, {"background", list(scene.background)}});
   }
 
   std::string build() {
@@ -129,7 +137,7 @@ class GlbBuilder {
                                 4 * texture.width))
       throw Error(ErrorKind::kOutput, fmt::format("the texture '{}' cannot be packed", texture.name));
     tinygltf::Image image;
-    image.name = texture.name;
+    image.name = to_utf8(texture.name);
     image.mimeType = "image/png";
     image.bufferView = add_view(std::span<const unsigned char>(png), 0);
     model_.images.push_back(std::move(image));
@@ -140,7 +148,7 @@ class GlbBuilder {
 
   void add_material(const Material& material) {
     tinygltf::Material made;
-    made.name = material.name;
+    made.name = to_utf8(material.name);
     made.doubleSided = true;
     made.pbrMetallicRoughness.metallicFactor = 0.0;
     made.pbrMetallicRoughness.baseColorFactor = {material.base_color.r, material.base_color.g, material.base_color.b,
@@ -167,11 +175,11 @@ class GlbBuilder {
     primitive.indices =
         add_accessor(view, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, mesh.indices.size());
     tinygltf::Mesh made;
-    made.name = mesh.name;
+    made.name = to_utf8(mesh.name);
     made.primitives.push_back(std::move(primitive));
     model_.meshes.push_back(std::move(made));
     tinygltf::Node node;
-    node.name = mesh.name;
+    node.name = to_utf8(mesh.name);
     node.mesh = static_cast<int>(model_.meshes.size()) - 1;
     if (!mesh.casts_shadow || !mesh.may_cull_front)
       node.extras = own({{"casts_shadow", tinygltf::Value(mesh.casts_shadow)},
@@ -196,7 +204,7 @@ class GlbBuilder {
     constexpr double kFarOverNear = 1e4;
     const double far_m = 1.01 * farthest, near_m = far_m / kFarOverNear;
     tinygltf::Camera made;
-    made.name = camera.name;
+    made.name = to_utf8(camera.name);
     if (camera.orthographic_height_m > 0.0f) {
       const double half = 0.5 * static_cast<double>(camera.orthographic_height_m);
       made.type = "orthographic";
@@ -213,7 +221,7 @@ class GlbBuilder {
     }
     model_.cameras.push_back(std::move(made));
     tinygltf::Node node;
-    node.name = camera.name;
+    node.name = to_utf8(camera.name);
     node.camera = static_cast<int>(model_.cameras.size()) - 1;
     node.matrix = place_node(camera.position_ws, camera.forward_ws, camera.up_ws);
     add_node(std::move(node));
@@ -222,7 +230,8 @@ class GlbBuilder {
   void add_light() {
     const GltfLight light = describe_gltf_light(scene_.light);
     tinygltf::Light made;
-    made.name = scene_.light.name;
+    const std::string name = to_utf8(scene_.light.name);
+    made.name = name;
     made.type = light.type;
     made.intensity = static_cast<double>(scene_.light.intensity);
     made.color = {scene_.light.color.r, scene_.light.color.g, scene_.light.color.b};
@@ -234,7 +243,7 @@ class GlbBuilder {
     model_.lights.push_back(std::move(made));
     model_.extensionsUsed.emplace_back("KHR_lights_punctual");
     tinygltf::Node node;
-    node.name = scene_.light.name.empty() ? "light" : scene_.light.name;
+    node.name = name.empty() ? "light" : name;
     const glm::dvec3 up = std::abs(light.direction_ws.y) > 0.99 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);
     node.matrix = place_node(light.position_ws, light.direction_ws, up);
     set_light(node, static_cast<int>(model_.lights.size()) - 1);

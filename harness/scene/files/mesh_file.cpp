@@ -136,10 +136,10 @@ bool is_mesh_file(const std::filesystem::path& file) {
   return is_gltf(extension) || extension == ".obj";
 }
 
-MeshFile import_mesh_file(const std::filesystem::path& file) {
+MeshFile import_mesh_file(const std::filesystem::path& file, const glm::dvec3& origin) {
   const std::string extension = extension_of(file);
-  if (is_gltf(extension)) return import_gltf(file);
-  if (extension == ".obj") return import_obj(file);
+  if (is_gltf(extension)) return import_gltf(file, origin);
+  if (extension == ".obj") return import_obj(file, origin);
   fail_input(fmt::format("'{}' is no kind of model: use .gltf, .glb or .obj", extension), file.string());
 }
 
@@ -154,6 +154,7 @@ Scene add_mesh_file(Scene scene, MeshFile file) {
     mesh.material += first_material;
     scene.meshes.push_back(std::move(mesh));
   }
+  scene.rounding_m = std::max(scene.rounding_m, file.rounding_m);
   std::ranges::move(file.textures, std::back_inserter(scene.textures));
   std::ranges::move(file.warnings, std::back_inserter(scene.warnings));
   return scene;

@@ -28,6 +28,7 @@ struct MeshFile {
   std::vector<Camera> cameras;
   std::vector<Light> lights;  ///< named where there are several
   std::vector<bool> aimed;    ///< of each light, whether the file says where it is as strong as a sun
+  double rounding_m = 0.0;    ///< of positions, as the file has them
   SceneExtras extras;
   std::vector<std::string> warnings;
 };
@@ -35,25 +36,28 @@ struct MeshFile {
 /// Whether the extension is .gltf, .glb or .obj, in upper or lower case.
 bool is_mesh_file(const std::filesystem::path& file);
 
-/// Reads a file by its extension. Throws kInput where it is missing, malformed or of another kind.
-MeshFile import_mesh_file(const std::filesystem::path& file);
+/// Reads a file by its extension; places become relative to `origin`, before they are rounded. Throws kInput where it
+/// is missing, malformed or of another kind.
+MeshFile import_mesh_file(const std::filesystem::path& file, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// Reads a glTF 2.0 file (.gltf or .glb): its default scene, node transforms applied.
 ///
 /// Reads triangles, strips and fans with indices of any type, quantised and compressed ones (EXT_meshopt_compression,
-/// KHR_draco_mesh_compression) too, base colour factor and texture, transformed by KHR_texture_transform, alpha masks,
-/// perspective and orthographic cameras, and the lights of KHR_lights_punctual (their colour; all have intensity 1,
-/// because every picture has the same exposure). Missing normals become flat ones.
-/// Warns about what it leaves out: blending, other lights, skins, morph targets, lines and points.
-/// Throws kInput for a file that is malformed, refers outside its folder, or requires an extension that is not read.
-MeshFile import_gltf(const std::filesystem::path& file);
+/// KHR_draco_mesh_compression) too, as often as EXT_mesh_gpu_instancing says, unless KHR_node_visibility hides them,
+/// and skins as their joints stand at rest; materials as read_gltf_materials() does; perspective and orthographic
+/// cameras, and the lights of KHR_lights_punctual (their colour; all have intensity 1, because every picture has the
+/// same exposure). Missing normals become flat ones. Warns about what it leaves out: lights of other kinds or of
+/// intensity 0, morph targets, lines and points. Throws kInput for a file that is malformed, refers outside its folder,
+/// or requires an extension that is not read.
+MeshFile import_gltf(const std::filesystem::path& file, const glm::dvec3& origin = glm::dvec3(0.0));
 
-/// Reads a Wavefront .obj file and the diffuse colours and textures of its material library.
+/// Reads a Wavefront .obj file, and the diffuse colours, opacity (d, Tr, map_d) and textures of its material library.
 ///
 /// Polygons become triangles. Corners without a normal get the mean of the faces around them that turn by less than
-/// 45 degrees. A missing material library is a warning; a reference outside the file's folder an error.
-/// Throws kInput, with the line, for a coordinate that is not a finite number or an index out of range.
-MeshFile import_obj(const std::filesystem::path& file);
+/// 45 degrees. A picture of opacity that has few half-tones is a mask of holes, any other one blends. A missing
+/// material library or colour picture is a warning; a reference outside the file's folder an error. Throws kInput for
+/// text that is UTF-16, and, with the line, for a coordinate that is not a finite number or an index out of range.
+MeshFile import_obj(const std::filesystem::path& file, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// Adds geometry, materials, textures and warnings to a scene, but neither cameras nor lights.
 Scene add_mesh_file(Scene scene, MeshFile file);

@@ -24,6 +24,63 @@ namespace {
 constexpr double kCreaseDeg = 45.0;
 constexpr std::size_t kMostCornersOfAFace = 2048;
 
+/// The bytes of a text file, without a byte order mark. Throws kInput for UTF-16, of which the parser would read
+/// nothing.
+std::string read_text(const std::filesystem::path& file) {
+  const std::vector<unsigned char> bytes = read_file_bytes(file);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const bool is_wide = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  if (is_wide || text.substr(0, 4).find('\0') != text.npos)
+    fail_input("this text is UTF-16: save it as UTF-8", file.string());
+  return std::string(text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0));
+}
+
+/// A reference as written on any system: Windows' programs write \ for /.
+std::string with_slashes(std::string reference) {
+  std::ranges::replace(reference, '\\', '/');
+  return reference;
+}
+
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+/// The opacity that each texel of a map_d has: its alpha, or, where that is the same everywhere, its brightness.
+std::vector<std::uint8_t> list_opacities(const Texture& picture) {
+  std::vector<std::uint8_t> alpha, brightness;
+  for (std::size_t i = 0; i + 3 < picture.rgba.size(); i += 4) {
+    const std::uint8_t* texel = &picture.rgba[i];
+    alpha.push_back(texel[3]);
+    brightness.push_back(static_cast<std::uint8_t>((texel[0] + texel[1] + texel[2]) / 3));
+  }
+  const bool has_alpha = std::ranges::any_of(alpha, [](std::uint8_t each) { return each < 255; });
+  return has_alpha ? alpha : brightness;
+}
+
+/// Whether opacities are those of holes, whose edges alone are neither clear nor solid.
+bool are_holes(const std::vector<std::uint8_t>& opacities) {
+  constexpr int kClear = 26, kSolid = 229;  // a tenth from either end
+  const auto between = std::ranges::count_if(opacities, [](int each) { return each > kClear && each < kSolid; });
+  return between <= static_cast<std::ptrdiff_t>(opacities.size() / 4);
+}
+
+/// A texture with this colour, or white, and these opacities; it has the size of the opacities' picture.
+Texture with_opacities(Texture picture, const std::vector<std::uint8_t>& opacities, const Texture* colour) {
+  const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
+  for (std::size_t i = 0; i < opacities.size(); ++i) {
+    std::uint8_t* texel = &picture.rgba[4 * i];
+    std::fill_n(texel, 3, std::uint8_t{255});
+    if (colour) {
+      const std::size_t x = i % width * static_cast<std::size_t>(colour->width) / width;
+      const std::size_t y = i / width * static_cast<std::size_t>(colour->height) / height;
+      std::copy_n(&colour->rgba[4 * (y * static_cast<std::size_t>(colour->width) + x)], 3, texel);
+    }
+    texel[3] = opacities[i];
+  }
+  return picture;
+}
+
 /// Reads material libraries from the model's own folder only.
 class LibraryReader : public tinyobj::MaterialReader {
  public:
@@ -34,13 +91,11 @@ class LibraryReader : public tinyobj::MaterialReader {
                   std::map<std::string, int>* index_of, std::string* warning, std::string* failure) override {
     const std::optional<std::filesystem::path> file = resolve_inside(folder_, name);
     if (!file) fail_input(fmt::format("mtllib '{}' lies outside its folder; such files are not read", name), where_);
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(*file, ignored)) {
+    if (!is_file(*file)) {
       *warning += fmt::format("the material library '{}' is missing\n", name);
       return true;
     }
-    const std::vector<unsigned char> bytes = read_file_bytes(*file);
-    std::istringstream text(std::string(bytes.begin(), bytes.end()));
+    std::istringstream text(read_text(*file));
     tinyobj::LoadMtl(index_of, materials, &text, warning, failure);
     return true;
   }
@@ -140,6 +195,9 @@ class ObjText {
     }
   }
 
+  /// The vertices as they are written, before the parser rounds them.
+  const std::vector<glm::dvec3>& vertices() const { return vertices_; }
+
   std::string with_triangles() const {
     std::string text;
     std::size_t done = 0;
@@ -177,6 +235,7 @@ class ObjText {
     if (kind == "f" || kind == "l" || kind == "p")
       for (std::size_t i = 1; i < words.size(); ++i) require_indices(line, words[i]);
     if (kind == "f") note_polygon(line, words.size() - 1);
+    if (kind == "mtllib") replace_backslashes(line);
     if (kind == "v" || kind == "vn" || kind == "vt") read_numbers(line, words);
   }
 
@@ -187,6 +246,12 @@ class ObjText {
       if (!part.empty() && !parse<int>(part))
         fail(line,
              fmt::format("'{}' is not an index: whole numbers are, up to {}", part, std::numeric_limits<int>::max()));
+  }
+
+  /// The parser takes a backslash for an escape, which only one before a space is meant to be.
+  void replace_backslashes(const Line& line) {
+    for (std::size_t i = line.begin; i + 1 < line.end; ++i)
+      if (text_[i] == '\\' && text_[i + 1] != ' ') text_[i] = '/';
   }
 
   void note_polygon(const Line& line, std::size_t corners) {
@@ -233,14 +298,18 @@ class ObjText {
 /// Builds a model from a file, part by part.
 class ObjImporter {
  public:
-  explicit ObjImporter(std::filesystem::path file) : file_(std::move(file)), where_(file_.string()) {
-    const std::vector<unsigned char> bytes = read_file_bytes(file_);
-    std::istringstream text(ObjText({bytes.begin(), bytes.end()}, where_).with_triangles());
+  ObjImporter(std::filesystem::path file, const glm::dvec3& origin)
+      : file_(std::move(file)), where_(file_.string()), origin_(origin) {
+    const ObjText source(read_text(file_), where_);
+    vertices_ = source.vertices();
+    std::istringstream text(source.with_triangles());
     LibraryReader libraries(file_.parent_path(), where_);
     std::string failure;
     const bool parsed =
         tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning_, &failure, &text, &libraries, true);
     if (!parsed || !failure.empty()) fail("not a valid .obj file: " + failure.substr(0, failure.find('\n')));
+    if (vertices_.size() != attributes_.vertices.size() / 3)
+      fail("a line has something before its 'v': its vertices cannot be counted");
   }
 
   MeshFile import() {
@@ -259,21 +328,60 @@ class ObjImporter {
   void add_material(const tinyobj::material_t& source) {
     Material material;
     material.name = source.name;
-    material.base_color = {source.diffuse[0], source.diffuse[1], source.diffuse[2], 1.0f};
-    if (!source.diffuse_texname.empty()) {
-      const auto file = resolve_inside(file_.parent_path(), source.diffuse_texname);
-      if (!file)
-        fail(fmt::format("map_Kd '{}' lies outside its folder; such files are not read", source.diffuse_texname));
-      material.base_color_texture = add_texture(*file, source.diffuse_texname);
-    }
+    material.base_color = {source.diffuse[0], source.diffuse[1], source.diffuse[2], source.dissolve};
+    const Picture picture = add_texture(source.diffuse_texname, source.alpha_texname);
+    material.base_color_texture = picture.texture;
+    material.alpha_mode = source.dissolve < 1.0f ? AlphaMode::kBlend : picture.alpha_mode;
+    if (material.alpha_mode == AlphaMode::kBlend)
+      result_.warnings.push_back(fmt::format("material '{}' blends; cameras see it opaque", material.name));
     result_.materials.push_back(material);
   }
 
-  /// A picture that several materials show is there once.
-  int add_texture(const std::filesystem::path& file, const std::string& name) {
-    const auto [known, is_new] = texture_of_name_.try_emplace(name, static_cast<int>(result_.textures.size()));
-    if (is_new) result_.textures.push_back(decode_texture(read_file_bytes(file), name, where_, result_.textures));
+  /// A texture's index, -1 for none, and what its alpha means.
+  struct Picture {
+    int texture = -1;
+    AlphaMode alpha_mode = AlphaMode::kOpaque;
+  };
+
+  /// The texture of two pictures, by their names, which may be empty: map_Kd, whose own alpha does not count, and
+  /// map_d. One that several materials show is there once.
+  Picture add_texture(const std::string& colour_name, const std::string& opacity_name) {
+    const auto [known, is_new] = pictures_.try_emplace({colour_name, opacity_name});
+    if (!is_new) return known->second;
+    std::optional<Texture> texture = read_colour(colour_name);
+    if (!opacity_name.empty()) {
+      Texture opacity = read_picture(find_picture("map_d", opacity_name), opacity_name);
+      const std::vector<std::uint8_t> opacities = list_opacities(opacity);
+      known->second.alpha_mode = are_holes(opacities) ? AlphaMode::kMask : AlphaMode::kBlend;
+      texture = with_opacities(std::move(opacity), opacities, texture ? &*texture : nullptr);
+    }
+    if (!texture) return known->second;
+    result_.textures.push_back(std::move(*texture));
+    known->second.texture = static_cast<int>(result_.textures.size()) - 1;
     return known->second;
+  }
+
+  std::optional<Texture> read_colour(const std::string& name) {
+    if (name.empty()) return std::nullopt;
+    const std::filesystem::path file = find_picture("map_Kd", name);
+    if (!is_file(file)) {
+      result_.warnings.push_back(
+          fmt::format("the picture '{}' is missing; its materials have their plain colour", name));
+      return std::nullopt;
+    }
+    Texture colour = read_picture(file, name);
+    for (std::size_t i = 3; i < colour.rgba.size(); i += 4) colour.rgba[i] = 255;
+    return colour;
+  }
+
+  std::filesystem::path find_picture(const char* key, const std::string& name) const {
+    const auto file = resolve_inside(file_.parent_path(), with_slashes(name));
+    if (!file) fail(fmt::format("{} '{}' lies outside its folder; such files are not read", key, name));
+    return *file;
+  }
+
+  Texture read_picture(const std::filesystem::path& file, const std::string& name) const {
+    return decode_texture(read_file_bytes(file), name, where_, result_.textures);
   }
 
   /// Adds one mesh per material of the shape.
@@ -304,8 +412,7 @@ class ObjImporter {
       fail(fmt::format("a face of '{}' uses {} {}, but there are {}", name, what, index + 1, count));
     };
     Vertex vertex;
-    const std::size_t p = 3 * check(corner.vertex_index, all.vertices.size() / 3, "vertex");
-    vertex.position_ws = {all.vertices[p], all.vertices[p + 1], all.vertices[p + 2]};
+    vertex.position_ws = glm::vec3(vertices_[check(corner.vertex_index, vertices_.size(), "vertex")] - origin_);
     if (corner.normal_index >= 0) {
       const std::size_t n = 3 * check(corner.normal_index, all.normals.size() / 3, "normal");
       vertex.normal_ws = {all.normals[n], all.normals[n + 1], all.normals[n + 2]};
@@ -319,16 +426,20 @@ class ObjImporter {
 
   std::filesystem::path file_;
   std::string where_;
+  glm::dvec3 origin_;
+  std::vector<glm::dvec3> vertices_;  ///< as written; the parser's are rounded
   tinyobj::attrib_t attributes_;
   std::vector<tinyobj::shape_t> shapes_;
   std::vector<tinyobj::material_t> materials_;
   std::string warning_;
   MeshFile result_;
-  std::map<std::string, int> texture_of_name_;
+  std::map<std::pair<std::string, std::string>, Picture> pictures_;
 };
 
 }  // namespace
 
-MeshFile import_obj(const std::filesystem::path& file) { return ObjImporter(file).import(); }
+MeshFile import_obj(const std::filesystem::path& file, const glm::dvec3& origin) {
+  return ObjImporter(file, origin).import();
+}
 
 }  // namespace shadowbench::scene

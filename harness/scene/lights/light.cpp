@@ -51,6 +51,12 @@ std::vector<LightNumber> list_numbers(Light& light) {
 
 }  // namespace
 
+toml::array write_place(const glm::vec3& place_ws, const glm::dvec3& origin) {
+  toml::array written;
+  for (int axis = 0; axis < 3; ++axis) written.push_back(write_number(place_ws[axis]) + origin[axis]);
+  return written;
+}
+
 std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
 void require_light_keys(const TomlTable& table, const std::vector<std::string>& own) {
@@ -129,17 +135,23 @@ std::vector<Light> make_light_ring(const Light& first, int count) {
   return lights;
 }
 
-Light read_light(const TomlTable& table) {
+Light read_light(const TomlTable& table, const glm::dvec3& origin) {
   Light light;
   light.kind = table.choose("type", list_readers(), "directional")(table);
+  for (const LightNumber& number : list_numbers(light)) {
+    if (number.role != NumberRole::kPlace) continue;
+    const glm::vec3 place(table.vec3(number.key, kAnyNumber) - origin);
+    std::copy_n(&place.x, 3, number.values.begin());
+  }
   light.name = table.string("name", light.name);
   light.color = glm::vec3(table.vec3("color", kColor, glm::dvec3(1.0)));
   light.intensity = table.number_f("intensity", {0.0, 1000.0}, 1.0);
   light.map_window = read_map_window(table);
+  if (light.map_window) light.map_window->center_ws -= origin;
   return light;
 }
 
-toml::table write_light(Light light) {
+toml::table write_light(Light light, const glm::dvec3& origin) {
   if (auto* spot = std::get_if<Spot>(&light.kind))
     spot->inner_cone_deg = std::min(spot->inner_cone_deg, spot->cone_deg);
   toml::table table{{"type", list_readers()[light.kind.index()].first},
@@ -147,7 +159,9 @@ toml::table write_light(Light light) {
                     {"intensity", write_number(light.intensity)}};
   for (const LightNumber& number : list_numbers(light)) {
     if (!number.is_used) continue;
-    if (number.values.size() > 1)
+    if (number.role == NumberRole::kPlace)
+      table.insert(number.key, write_place(glm::vec3(number.values[0], number.values[1], number.values[2]), origin));
+    else if (number.values.size() > 1)
       table.insert(number.key, write_numbers(number.values));
     else
       table.insert(number.key, write_number(number.values.front()));
@@ -155,7 +169,8 @@ toml::table write_light(Light light) {
   if (!light.name.empty()) table.insert("name", light.name);
   if (!light.map_window) return table;
   const MapWindow& window = *light.map_window;
-  table.insert("map_center", toml::array{window.center_ws.x, window.center_ws.y, window.center_ws.z});
+  const glm::dvec3 center = window.center_ws + origin;
+  table.insert("map_center", toml::array{center.x, center.y, center.z});
   table.insert("map_width", window.width_m);
   if (!window.planes) return table;
   table.insert("map_near", window.planes->near_m);
@@ -198,11 +213,12 @@ toml::table list_gltf_extras(const Light& light) {
   return extras;
 }
 
-Light with_gltf_extras(const Light& light, const toml::table& extras, const std::string& where) {
-  toml::table table = write_light(light);
+Light with_gltf_extras(const Light& light, const toml::table& extras, const std::string& where,
+                       const glm::dvec3& origin) {
+  toml::table table = write_light(light, origin);
   if (extras.contains("size")) table.erase("radius");
   for (const auto& [key, value] : extras) table.insert_or_assign(key.str(), value);
-  return read_light(TomlTable(std::move(table), "the extras of a light", {.file = where}));
+  return read_light(TomlTable(std::move(table), "the extras of a light", {.file = where}), origin);
 }
 
 Light aim_light(Light light, const glm::vec3& center_ws) {

@@ -74,8 +74,8 @@ Light place_in_sky(Light light, const SkyAngles& place);
 /// straight overhead stays where it is. Requires `count` of 1 or more.
 std::vector<Light> make_light_ring(const Light& first, int count);
 
-/// Reads the [light] of a scene file. Throws kInput.
-Light read_light(const TomlTable& table);
+/// Reads the [light] of a scene file, relative to the scene's origin. Throws kInput.
+Light read_light(const TomlTable& table, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// A number of a light that may be changed by hand.
 struct LightSlider {
@@ -88,8 +88,9 @@ struct LightSlider {
 /// The numbers of a light beside its direction: its size first.
 std::vector<LightSlider> list_sliders(Light& light);
 
-/// What the [light] of a scene file says of it, but for its cookie, whose file it does not know.
-toml::table write_light(Light light);
+/// What the [light] of a scene file says of it, but for its cookie, whose file it does not know. Reads back with the
+/// same origin.
+toml::table write_light(Light light, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// Returns the light of a glTF node, or nothing for a type that is not modelled. A spot's cones are given as half
 /// angles, radians; glTF knows no size of lamps, so that it gets that of one without `radius` in a scene file.
@@ -109,7 +110,8 @@ GltfLight describe_gltf_light(const Light& light);
 /// What glTF has no word for of a light, by the keys of a scene file; and a light of a glTF file with it.
 /// Throws kInput, with `where`, for a key or value that a scene file does not take.
 toml::table list_gltf_extras(const Light& light);
-Light with_gltf_extras(const Light& light, const toml::table& extras, const std::string& where);
+Light with_gltf_extras(const Light& light, const toml::table& extras, const std::string& where,
+                       const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// A light in the scene whose light is as strong as a sun's where `center_ws` is, or as far ahead; others stay as they
 /// are. A glTF file says where a spot looks, and not how far.

@@ -62,6 +62,9 @@ struct LightNumber {
 /// Refuses the keys of a [light] that neither all lights have nor one of this kind.
 void require_light_keys(const TomlTable& table, const std::vector<std::string>& own);
 
+/// A place of a scene as its file has it, relative to the scene's origin.
+toml::array write_place(const glm::vec3& place_ws, const glm::dvec3& origin);
+
 /// "1 2 3", for texts that name a light.
 std::string write_vector(const glm::vec3& v);
 

@@ -219,8 +219,8 @@ void SettingsPanel::show_camera() {
     bench_.change({.camera = true}, [&](ViewSettings& settings) {
       settings.cameras[settings.camera].vertical_fov_rad = static_cast<float>(glm::radians(fov));
     });
-  ImGui::TextDisabled("at %.3g %.3g %.3g", static_cast<double>(camera.position_ws.x),
-                      static_cast<double>(camera.position_ws.y), static_cast<double>(camera.position_ws.z));
+  const glm::dvec3 place = glm::dvec3(camera.position_ws) + state.scene.origin_ws;
+  ImGui::TextDisabled("at %.3g %.3g %.3g", place.x, place.y, place.z);
 }
 
 }  // namespace shadowbench::view

@@ -217,17 +217,6 @@ TEST_F(Command, ACacheThatCannotBeWritten_IsWarnedOf_AndTheRunGoesOn) {
   EXPECT_EQ(results(folder())["warnings"].size(), 1u);
 }
 
-TEST_F(Command, ASceneFarFromTheOrigin_IsWarnedOf) {
-  write("far.toml",
-        "title = \"far\"\n[camera]\nposition = [1000000, 5, 5]\ntarget = [1000000, 0, 0]\n[light]\nazimuth_deg = "
-        "40\nelevation_deg = 50\n"
-        "[[object]]\nshape = \"plane\"\nsize = [8, 8]\ncenter = [1000000, 0, 0]\n"
-        "[[object]]\nshape = \"box\"\nsize = [1, 1, 1]\ncenter = [1000000, 0.5, 0]\n");
-  const Outcome outcome = run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene far.toml --filters none");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("move the scene to the origin"), std::string::npos) << outcome.err;
-}
-
 TEST_F(Command, FrontCull_NamesTheOpenMeshes) {
   const Outcome outcome =
       run("run --out out --size 64x36 --map-size 64 --rounds 1 --scene cubes --filters none --bias front-cull");

@@ -76,6 +76,14 @@ TEST(GltfWriter, TexturesAndHolesStay) {
   EXPECT_EQ(read.materials[0].base_color_texture, 0);
 }
 
+TEST(GltfWriter, NamesInOtherEncodings_AreReplaced) {
+  Scene scene = load("cubes", {kOwnScenes});
+  scene.name = scene.title = scene.materials[0].name = scene.meshes[0].name = scene.light.name = "Gr\xfcn";
+  const Scene read = write_and_read(scene);
+  for (const std::string& name : {read.title, read.materials[0].name, read.meshes[0].name, read.light.name})
+    EXPECT_EQ(name, "Gr\ufffdn");
+}
+
 TEST(GltfWriter, WhatBlends_Stays) {
   Scene scene = load("panes", {kOwnScenes});
   const Scene read = write_and_read(scene);
