@@ -26,6 +26,7 @@ PendingFile::PendingFile(std::filesystem::path path) : path_(std::move(path)), t
   std::error_code error;
   if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), error);
   if (error) fail(path_.parent_path(), "the folder cannot be created", error.value());
+  std::filesystem::remove(temporary_, error);  // a link of that name would be written through
 }
 
 PendingFile::~PendingFile() {
@@ -49,7 +50,7 @@ void PendingFile::commit() {
 }
 
 AtomicFile::AtomicFile(std::filesystem::path path)
-    : pending_(std::move(path)), file_(std::fopen(pending_.temporary_path().c_str(), "wb")) {
+    : pending_(std::move(path)), file_(std::fopen(pending_.temporary_path().c_str(), "wbx")) {
   if (!file_) fail(pending_.path(), "the file cannot be created", errno);
 }
 
@@ -73,7 +74,7 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
 void copy_whole_file(const std::filesystem::path& from, const std::filesystem::path& to) {
   PendingFile pending(to);
   std::error_code error;
-  std::filesystem::copy_file(from, pending.temporary_path(), std::filesystem::copy_options::overwrite_existing, error);
+  std::filesystem::copy_file(from, pending.temporary_path(), error);
   if (error)
     throw Error(
         ErrorKind::kOutput,

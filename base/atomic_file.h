@@ -17,7 +17,8 @@ class PendingFile {
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
 
-  /// Returns the path to write to: beside the final one, with the same extension.
+  /// Returns the path to write to: beside the final one, with the same extension. It is free, and to be made anew
+  /// (O_EXCL): what somebody puts there meanwhile, a link say, is not written through.
   const std::filesystem::path& temporary_path() const { return temporary_; }
   const std::filesystem::path& path() const { return path_; }
 

@@ -326,7 +326,7 @@ void run_bias_sweep(const options::RunOptions& options, options::Progress& progr
   measure::Renderer renderer = measure::make_renderer(options.backend, options.resources);
   truth::TruthCache cache(options.cache,
                           [&progress](const std::string& message) { progress.note("warning: " + message); });
-  const files::FolderLock lock(options.out);  // a folder that cannot be written is better found now
+  const files::FolderLock lock(options.out, options.force);  // a folder that cannot be written is better found now
   const int steps_of_light = static_cast<int>(render::swept_modes().size() * options.filters.size());
   progress.begin(static_cast<int>(lit.size()) * steps_of_light, 0);
   Steps steps{progress};

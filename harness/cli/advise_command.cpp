@@ -13,6 +13,7 @@
 #include "filters/kernel_width.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/options/options.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
@@ -110,7 +111,7 @@ int advise(const AdviseArguments& arguments) {
     const auto json = pages::make_advice_json(results.run, advice);
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else {
-    fmt::print("{}", pages::make_advice_text(results.run, advice));
+    print("{}", pages::make_advice_text(results.run, advice));
   }
   if (advice.keeping.empty()) throw Error(ErrorKind::kLimit, analysis::describe_failure(advice));
   return 0;

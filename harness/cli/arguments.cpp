@@ -6,12 +6,17 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "harness/cli/print.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::cli {
 void add_backend_option(Command& command, std::string& backend) {
   command.add("--gl", &backend, "OpenGL context: auto, software, osmesa, egl or glfw")
       .such_as({"auto", "software", "osmesa", "egl", "glfw"});
+}
+
+void add_force_option(Command& command, bool& force) {
+  command.add("--force", &force, "write into the folder even where it holds files that shadowbench did not write");
 }
 
 void add_drawing_options(Command& command, DrawingArguments& arguments, const std::string& cache_default) {
@@ -22,6 +27,7 @@ void add_drawing_options(Command& command, DrawingArguments& arguments, const st
       .names(ValueKind::kFolder);
   command.add("--no-cache", &arguments.no_cache, "trace everything, keep nothing");
   command.add("--out", &arguments.out, "folder of the report").names(ValueKind::kFolder);
+  add_force_option(command, arguments.force);
 }
 
 void add_builtin_filters_option(Command& command, std::string& filters) {
@@ -94,7 +100,7 @@ std::vector<std::string> describe_presets(const std::vector<filters::FilterReque
 }
 
 void print_presets(const std::vector<filters::FilterRequest>& requests) {
-  for (const std::string& note : describe_presets(requests)) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : describe_presets(requests)) print_message("note: {}\n", note);
 }
 
 std::vector<filters::FilterRequest> parse_builtin_filters(const std::string& text,

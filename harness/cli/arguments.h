@@ -25,6 +25,7 @@ struct DrawingArguments {
   std::string cache;
   bool no_cache = false;
   std::string out;
+  bool force = false;
 };
 
 /// The options of commands that draw pictures of one size with one map.
@@ -34,7 +35,10 @@ struct PictureArguments : DrawingArguments {
   std::string size;
 };
 
-/// Adds --gl, --cache, --no-cache and --out.
+/// Adds --force.
+void add_force_option(Command& command, bool& force);
+
+/// Adds --gl, --cache, --no-cache, --out and --force.
 void add_drawing_options(Command& command, DrawingArguments& arguments, const std::string& cache_default = "as 'run'");
 
 /// Adds --gl.
@@ -58,13 +62,14 @@ void add_json_option(Command& command, bool& json);
 /// The folder for traced images; empty: nothing is kept.
 std::filesystem::path choose_cache(const DrawingArguments& arguments);
 
-/// Takes over what --gl, --cache, --no-cache and --out say, and finds the program's folders.
+/// Takes over what these options say, and finds the program's folders.
 template <class Options>
 void take_drawing_options(const DrawingArguments& arguments, Options& options) {
   options.resources = options::find_resources();
   options.backend = gl::parse_backend(arguments.backend);
   options.cache = choose_cache(arguments);
   options.out = arguments.out;
+  options.force = arguments.force;
 }
 
 /// Takes over what the options of DrawingArguments, --map-size and --size say, but for the filters.

@@ -5,6 +5,7 @@
 #include "harness/bias/bias_sweep.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
 
 namespace shadowbench::cli {
@@ -32,7 +33,7 @@ int sweep_bias(const BiasArguments& arguments) {
   print_presets(options.filters);
   options.attribution = false;
   work_with_progress(options.out, [&](options::Progress& progress) { bias::run_bias_sweep(options, progress); });
-  fmt::print("report: {}\n", (options.out / "bias.html").string());
+  print("report: {}\n", (options.out / "bias.html").string());
   return 0;
 }
 

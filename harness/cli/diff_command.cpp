@@ -12,9 +12,11 @@
 #include "base/nearest_name.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/run/compare_pictures.h"
 #include "reference/metrics/flip.h"
 #include "report/analysis/repeat.h"
+#include "report/files/folder_lock.h"
 #include "report/images/heat_figures.h"
 #include "report/pages/comparison_page.h"
 #include "report/records/format.h"
@@ -54,19 +56,19 @@ std::string describe_apart(const ErrorApart& apart) {
 }
 
 void print_some(const auto& all) {
-  for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i) fmt::print("  {}\n", describe_apart(all[i]));
-  if (all.size() > kMostNamed) fmt::print("  and {} more\n", all.size() - kMostNamed);
+  for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i) print("  {}\n", describe_apart(all[i]));
+  if (all.size() > kMostNamed) print("  and {} more\n", all.size() - kMostNamed);
 }
 
 void print_runs(const analysis::RepeatComparison& found) {
-  fmt::print("cells        {} in both\n", *found.record.cells);
-  fmt::print("overlapping  {} of {} 95 % intervals of ratios to none\n", *found.record.overlapping, *found.record.of);
-  if (!found.apart.empty()) fmt::print("apart, the widest gap first:\n");
+  print("cells        {} in both\n", *found.record.cells);
+  print("overlapping  {} of {} 95 % intervals of ratios to none\n", *found.record.overlapping, *found.record.of);
+  if (!found.apart.empty()) print("apart, the widest gap first:\n");
   print_some(found.apart);
   if (found.errors == 0) return;
-  fmt::print("errors       {} of {} RMSEs are not told apart\n",
-             found.errors - static_cast<int>(found.errors_apart.size()), found.errors);
-  if (!found.errors_apart.empty()) fmt::print("apart, the largest difference first:\n");
+  print("errors       {} of {} RMSEs are not told apart\n", found.errors - static_cast<int>(found.errors_apart.size()),
+        found.errors);
+  if (!found.errors_apart.empty()) print("apart, the largest difference first:\n");
   print_some(found.errors_apart);
 }
 
@@ -102,7 +104,7 @@ void print_runs_json(const analysis::RepeatComparison& found) {
 /// Warns where more than chance may have changed the times.
 void warn_of_differences(const records::RunRecord& a, const records::RunRecord& b) {
   const auto warn = [](const char* what, const std::string& x, const std::string& y) {
-    if (x != y) fmt::print(stderr, "warning: the runs differ in {}: {}, and {}\n", what, x, y);
+    if (x != y) print_message("warning: the runs differ in {}: {}, and {}\n", what, x, y);
   };
   const auto machine = [](const records::RunRecord& run) {
     return fmt::format("{} with {} cores", run.machine.cpu, run.machine.cores);
@@ -159,6 +161,7 @@ struct DiffArguments {
   std::string metric = kAllMetrics;
   std::optional<std::string> out;   ///< a PNG file
   std::optional<std::string> html;  ///< a folder
+  bool force = false;
   bool json = false;
 };
 
@@ -250,9 +253,10 @@ void write_images(const DiffArguments& arguments, const run::ComparisonOptions& 
     images::write_figure(*arguments.out, {fmt::format("{} less {}", options.image, options.truth), note,
                                           images::show_difference(made.difference, made.flip), 2});
   }
-  if (arguments.html)
-    pages::write_comparison_page(*arguments.html, {options.image, options.truth, made.image, made.truth,
-                                                   made.image_grey, made.truth_grey, made.mask, made.flip, numbers});
+  if (!arguments.html) return;
+  const files::FolderLock lock(*arguments.html, arguments.force);
+  pages::write_comparison_page(*arguments.html, {options.image, options.truth, made.image, made.truth, made.image_grey,
+                                                 made.truth_grey, made.mask, made.flip, numbers});
 }
 
 /// Refuses what would be written over a picture that is read.
@@ -281,7 +285,7 @@ int diff(const CommandLine& line, const DiffArguments& arguments) {
                                        arguments.pixels_per_degree,
                                        arguments.out || arguments.html};
   const run::Comparison result = run::compare_pictures(options);
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : result.warnings) print_message("warning: {}\n", warning);
   if (arguments.json) print_json(options, result);
   if (result.values.empty()) {
     throw Error(ErrorKind::kInput, fmt::format("nothing can be compared: {}", result.absent.begin()->second),
@@ -289,7 +293,7 @@ int diff(const CommandLine& line, const DiffArguments& arguments) {
   }
   if (result.images) write_images(arguments, options, result);
   if (arguments.json) return 0;
-  for (const auto& [name, value] : list_numbers(options, result)) fmt::print("{:<11} {}\n", name, value);
+  for (const auto& [name, value] : list_numbers(options, result)) print("{:<11} {}\n", name, value);
   return 0;
 }
 
@@ -317,6 +321,7 @@ Command make_diff_command() {
       .names(ValueKind::kFile);
   command.add("--html", &a->html, "write a page into this folder on which the two can be looked at")
       .names(ValueKind::kFolder);
+  add_force_option(command, a->force);
   add_json_option(command, a->json);
   command.action = [a](const CommandLine& line) { return diff(line, *a); };
   return command;

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/engines/exported_scene.h"
@@ -15,7 +16,7 @@ int export_scenes(RunArguments& arguments, const std::vector<std::string>& words
   const options::RunOptions options = make_run_options(arguments, words);
   const engines::ExportedScenes exported = work_with_progress(
       options.out, [&](options::Progress& progress) { return engines::export_scenes(options, progress); });
-  for (const std::filesystem::path& folder : exported.folders) fmt::print("{}\n", (folder / "scene.json").string());
+  for (const std::filesystem::path& folder : exported.folders) print("{}\n", (folder / "scene.json").string());
   if (arguments.strict) require_no_warnings(exported.warnings, "scene");
   return 0;
 }

@@ -4,6 +4,7 @@
 
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/flicker/run_flicker.h"
 
@@ -31,7 +32,7 @@ int measure_flicker(const FlickerArguments& arguments, const std::vector<std::st
   options.run.filters = parse_builtin_filters(arguments.filters, options.run.resources);
   options.run.command = words;
   work_with_progress(options.run.out, [&](options::Progress& progress) { flicker::run_flicker(options, progress); });
-  fmt::print("report: {}\n", (options.run.out / "flicker.html").string());
+  print("report: {}\n", (options.run.out / "flicker.html").string());
   return 0;
 }
 

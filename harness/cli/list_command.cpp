@@ -9,6 +9,7 @@
 #include "filters/model.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/gl/survey/survey.h"
 #include "harness/gl/timer/timer.h"
 #include "harness/gpu/gpu.h"
@@ -54,16 +55,15 @@ records::KernelRecord find_kernel(const FilterSpec& spec) {
 }
 
 void print_filter(const FilterSpec& spec) {
-  fmt::print("{}  {}\n  kind {}{}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title,
-             filters::to_string(spec.kind), spec.bound_at_zero.empty() ? "" : ", with " + spec.bound_at_zero + "=0",
-             spec.teaching ? ", for teaching" : "", filters::make_model(spec) ? "" : ", without a model",
-             records::describe_kernel(find_kernel(spec)), spec.source);
-  if (const std::string stored = describe_stored(spec); !stored.empty()) fmt::print("  its map holds: {}\n", stored);
+  print("{}  {}\n  kind {}{}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
+        spec.bound_at_zero.empty() ? "" : ", with " + spec.bound_at_zero + "=0", spec.teaching ? ", for teaching" : "",
+        filters::make_model(spec) ? "" : ", without a model", records::describe_kernel(find_kernel(spec)), spec.source);
+  if (const std::string stored = describe_stored(spec); !stored.empty()) print("  its map holds: {}\n", stored);
   for (const ParamSpec& param : spec.params) {
-    fmt::print("  {:<16} {} [{}]{}\n  {:<16} {}\n", param.name, describe_range(param),
-               filters::to_string(param.default_value), param.unit.empty() ? "" : " " + param.unit, "", param.text);
+    print("  {:<16} {} [{}]{}\n  {:<16} {}\n", param.name, describe_range(param),
+          filters::to_string(param.default_value), param.unit.empty() ? "" : " " + param.unit, "", param.text);
   }
-  fmt::print("\n");
+  print("\n");
 }
 
 nlohmann::json to_json(const filters::ParamValue& value) {
@@ -122,22 +122,23 @@ int list_filters(const ListArguments& arguments) {
   if (arguments.json)
     fmt::print("{}\n", json.dump(2));
   else
-    fmt::print("A kernel is as wide as its standard deviation along an axis, here at the defaults. Classes: {}.\n",
-               filters::describe_classes());
+    print("A kernel is as wide as its standard deviation along an axis, here at the defaults. Classes: {}.\n",
+          filters::describe_classes());
   return 0;
 }
 
 void print_preset(const filters::Preset& preset) {
   const std::string options = filters::write_bias_options(preset);
-  fmt::print("@{}  {}\n", preset.name, preset.title);
-  const auto print = [](const char* key, const std::string& text) { fmt::print("  {:<8} {}\n", key, text); };
-  print("filter", preset.filter);
-  print("differs", preset.differs);
-  print("bias", preset.bias);
-  print("", options.empty() ? "no --bias is the same" : options);
-  print("version", preset.version);
-  for (const std::string& source : preset.sources) print(&source == &preset.sources.front() ? "source" : "", source);
-  fmt::print("\n");
+  print("@{}  {}\n", preset.name, preset.title);
+  const auto print_line = [](const char* key, const std::string& text) { print("  {:<8} {}\n", key, text); };
+  print_line("filter", preset.filter);
+  print_line("differs", preset.differs);
+  print_line("bias", preset.bias);
+  print_line("", options.empty() ? "no --bias is the same" : options);
+  print_line("version", preset.version);
+  for (const std::string& source : preset.sources)
+    print_line(&source == &preset.sources.front() ? "source" : "", source);
+  print("\n");
 }
 
 nlohmann::json to_json(const filters::Preset& preset) {
@@ -166,10 +167,10 @@ int list_scenes(const ListArguments& arguments) {
       if (arguments.json)
         json.push_back({{"name", info.name}, {"title", info.title}, {"teaching", teaching}});
       else
-        fmt::print("{:<8} {}\n", info.name, info.title);
+        print("{:<8} {}\n", info.name, info.title);
   };
   show(scene::list_scenes(folder), false);
-  if (!arguments.json) fmt::print("\nFor teaching, run only where --scene names them:\n");
+  if (!arguments.json) print("\nFor teaching, run only where --scene names them:\n");
   show(scene::list_teaching_scenes(folder), true);
   if (arguments.json) fmt::print("{}\n", json.dump(2));
   return 0;
@@ -187,32 +188,32 @@ int list_gpus(const ListArguments& arguments) {
     const auto family = arguments.check ? run::find_family(gpu) : std::nullopt;
     if (arguments.check) each["driver"] = family ? nlohmann::json(*family) : nlohmann::json();
     if (!arguments.json)
-      fmt::print("{}  {}{}\n", gpu.name, gpu.title,
-                 !arguments.check ? ""
-                 : family         ? ": compiled for by this machine's Vulkan driver"
-                                  : ": left out, since no Vulkan driver of this machine compiles for it");
+      print("{}  {}{}\n", gpu.name, gpu.title,
+            !arguments.check ? ""
+            : family         ? ": compiled for by this machine's Vulkan driver"
+                             : ": left out, since no Vulkan driver of this machine compiles for it");
     gpu::visit_constants(gpu, [&](const char* key, const gpu::Constant& constant) {
       each[key] = {{"value", constant.value}, {"source", constant.source}};
-      if (!arguments.json) fmt::print("  {:<14} {:<6} {}\n", key, constant.value, constant.source);
+      if (!arguments.json) print("  {:<14} {:<6} {}\n", key, constant.value, constant.source);
     });
   }
   if (arguments.json)
     fmt::print("{}\n", json.dump(2));
   else
-    fmt::print("Not listed: {}.\n", gpu::kOtherGpus);
+    print("Not listed: {}.\n", gpu::kOtherGpus);
   return 0;
 }
 
 int list_gl(const ListArguments& arguments) {
   const gl::ContextChoice choice = gl::create_context(gl::parse_backend(arguments.backend));
-  for (const std::string& reason : choice.refused) fmt::print("not used: {}\n", reason);
+  for (const std::string& reason : choice.refused) print("not used: {}\n", reason);
   const gl::GlInfo& info = choice.context->info();
   if (arguments.measure) {
-    fmt::print("{}", gl::describe_survey(info, gl::survey_gl(*choice.context)));
+    print("{}", gl::describe_survey(info, gl::survey_gl(*choice.context)));
     return 0;
   }
-  fmt::print("{}: {}, OpenGL {}, maps up to {} x {}\n", info.backend, info.renderer, info.version,
-             info.max_texture_size, info.max_texture_size);
+  print("{}: {}, OpenGL {}, maps up to {} x {}\n", info.backend, info.renderer, info.version, info.max_texture_size,
+        info.max_texture_size);
   return 0;
 }
 

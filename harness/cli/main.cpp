@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -23,19 +24,8 @@ constexpr int kInputError = static_cast<int>(ErrorKind::kInput);
 constexpr int kOutputError = static_cast<int>(ErrorKind::kOutput);
 constexpr int kBug = 70;
 
-/// Writes control characters of names and files as "\x1b", because they would steer the terminal. Newlines stay, for
-/// the logs of shaders.
-std::string make_visible(const std::string& message) {
-  std::string visible;
-  for (const char c : message) {
-    const auto code = static_cast<unsigned char>(c);
-    visible += (code < 0x20 && c != '\n') || code == 0x7f ? fmt::format("\\x{:02x}", code) : std::string(1, c);
-  }
-  return visible;
-}
-
 /// Prints one message for one failure; nothing else in the program prints errors.
-void print_error(const std::string& message) { fmt::print(stderr, "shadowbench: {}\n", make_visible(message)); }
+void print_error(const std::string& message) { print_message("shadowbench: {}\n", message); }
 
 int fail_memory() {
   print_error(

@@ -5,6 +5,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/interruption.h"
+#include "harness/cli/print.h"
 #include "harness/run/merge.h"
 #include "harness/submit/sweep_folder.h"
 #include "harness/submit/sweep_jobs.h"
@@ -15,6 +16,7 @@ Command make_merge_command() {
   struct Arguments {
     std::vector<std::string> folders, times;
     std::string out;
+    bool force = false;
   };
   Command command{"merge",
                   "Write one report of the shards of 'run', of the tasks of 'submit', or of times from other machines"};
@@ -29,6 +31,7 @@ Command make_merge_command() {
       .names(ValueKind::kFolder)
       .require();
   command.add("--out", &a->out, "folder of the whole report of shards; new or empty").names(ValueKind::kFolder);
+  add_force_option(command, a->force);
   command.add("--times", &a->times, "a gpu-times.json that a report's page saved, of the run in DIR; may be repeated")
       .names(ValueKind::kFile);
   command.action = [a](const CommandLine&) {
@@ -48,9 +51,9 @@ Command make_merge_command() {
       else if (is_sweep)
         submit::merge_sweep(out);
       else
-        run::merge_runs({a->folders.begin(), a->folders.end()}, out);
+        run::merge_runs({a->folders.begin(), a->folders.end()}, out, a->force);
     }
-    fmt::print("report: {}\n", (out / "index.html").string());
+    print("report: {}\n", (out / "index.html").string());
     return 0;
   };
   return command;

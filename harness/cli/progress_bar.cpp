@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "harness/cli/print.h"
+
 namespace shadowbench::cli {
 namespace {
 
@@ -75,11 +77,11 @@ class TerminalBar final : public options::Progress {
     const std::string bar = std::string(filled, '#') + std::string(kBarCells - filled, '.');
     const std::string head = position_.count(done, ahead);
     fmt::print(stderr, "\r\033[K[{}] {}{}", bar, head,
-               cut(position_.describe_left(done, ahead) + " " + what, room(head)));
+               cut(make_visible(position_.describe_left(done, ahead) + " " + what), room(head)));
     std::fflush(stderr);
   }
 
-  void note(const std::string& message) override { fmt::print(stderr, "\r\033[K{}\n", message); }
+  void note(const std::string& message) override { fmt::print(stderr, "\r\033[K{}\n", make_readable(message)); }
 
  private:
   Position position_;
@@ -111,7 +113,7 @@ class LogLines final : public options::Progress {
 
   void note(const std::string& message) override {
     ++lines_;
-    fmt::print(stderr, "{}\n", message);
+    print_message("{}\n", message);
   }
 
  private:
@@ -132,10 +134,10 @@ class StepLines final : public options::Progress {
     if (ahead && what == what_ && now - shown_ < kPause) return;
     what_ = what;
     shown_ = now;
-    fmt::print(stderr, "{} {}{}\n", position_.count(done, ahead), what, position_.describe_left(done, ahead));
+    print_message("{} {}{}\n", position_.count(done, ahead), what, position_.describe_left(done, ahead));
   }
 
-  void note(const std::string& message) override { fmt::print(stderr, "{}\n", message); }
+  void note(const std::string& message) override { print_message("{}\n", message); }
 
  private:
   static constexpr std::chrono::seconds kPause{2};

@@ -19,6 +19,7 @@ struct RegressArguments {
   std::string filters;
   std::vector<std::string> scenes;
   std::string out;
+  bool force = false;
   std::string junit;
   bool accept = false;
   bool remove_missing = false;
@@ -39,6 +40,7 @@ regress::RegressOptions make_regress_options(const RegressArguments& a, const st
   options.run = find_results(a.run).parent_path();
   options.baseline = a.baseline;
   options.out = a.out.empty() ? options.run / "regress" : std::filesystem::path(a.out);
+  options.force = a.force;
   options.selection = {split_names(a.filters), a.scenes};
   options.accept = a.accept;
   options.remove_missing = a.remove_missing;
@@ -56,7 +58,10 @@ int regress(const RegressArguments& arguments, const std::vector<std::string>& w
     const Interruption interruption(options.accept ? options.baseline : options.out, kStoppedAdvice);
     outcome = regress::run_regress(options);
   }
-  fmt::print("{}", arguments.json ? outcome.json : outcome.text);
+  if (arguments.json)
+    fmt::print("{}", outcome.json);
+  else
+    print("{}", outcome.text);
   if (outcome.failure.empty()) return 0;
   throw Error(outcome.kind, outcome.failure);
 }
@@ -85,6 +90,7 @@ Command make_regress_command() {
   command.add("--json", &a->json, "print JSON; it also goes to OUT/regress.json");
   command.add("--out", &a->out, "folder for regress.html, .md, .json and the pictures (default: 'regress' in RUN)")
       .names(ValueKind::kFolder);
+  add_force_option(command, a->force);
   command.action = [a](const CommandLine& line) { return regress(*a, line.words()); };
   return command;
 }

@@ -72,6 +72,9 @@ void add_run_options(Command& command, RunArguments& a) {
            fmt::format("A,B: two of the filters; phases are doubled until their RMSEs are told apart, or {} are done",
                        options::kMostAveraged))
       .never_empty("two of the run's filters, such as tent5x5,castano5");
+  command.add("--allow-commands", &a.allow_commands,
+              "run the commands of the experiment's [[engine]] tables, which are printed first; without it they are "
+              "asked for on a terminal, and refused elsewhere");
   add_strict(command, a,
              "exit code 1 where the finished run has a warning, or a cell that failed; the report is written");
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");

@@ -19,6 +19,7 @@ struct RunArguments : DrawingArguments {
   std::string experiment = kDefaultExperiment;
   std::vector<options::RunOption> told = options::list_run_options();
   bool strict = false;
+  bool allow_commands = false;
   std::vector<options::Engine> engines;  ///< of the experiment
   std::string until_different;           ///< two filters; empty: phases are as they are told
   bool worker = false;

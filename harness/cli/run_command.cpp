@@ -1,11 +1,14 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <iostream>
 #include <memory>
 
 #include "base/error.h"
 #include "filters/filter_errors.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/engines/engine_command.h"
@@ -13,6 +16,7 @@
 #include "harness/run/run_experiment.h"
 #include "harness/run/until_different.h"
 #include "harness/submit/sweep_jobs.h"
+#include "report/files/folder_lock.h"
 #include "report/records/filter_mistakes.h"
 #include "report/records/json_io.h"
 
@@ -25,6 +29,25 @@ void run_with_notes(const options::RunOptions& options, options::Progress& progr
     run::run_experiment(options, progress);
   else
     progress.note(run::run_until_different(options, progress));
+}
+
+/// Says what the experiment's commands are, and whether they may run: a file of an experiment looks like data, and may
+/// be somebody else's. Throws Error(kUsage) where nobody allows them.
+void require_allowed(const std::vector<options::Engine>& engines, bool is_allowed) {
+  for (const options::Engine& engine : engines) {
+    std::string shown = make_visible(engine.command);  // whole, and on one line, so that nothing of it is hidden
+    for (std::size_t at = 0; (at = shown.find('\n', at)) != shown.npos;) shown.replace(at, 1, "\\x0a");
+    fmt::print(stderr, "command of {}: {}\n", make_readable(engine.name), shown);
+  }
+  if (engines.empty() || is_allowed) return;
+  if (isatty(STDIN_FILENO) && isatty(STDERR_FILENO)) {
+    fmt::print(stderr, "Run {} of the experiment? [y/N] ", engines.size() == 1 ? "this command" : "these commands");
+    std::string answer;
+    if (std::getline(std::cin, answer) && (answer == "y" || answer == "yes")) return;
+  }
+  fail(
+      "the experiment has [[engine]] tables, whose commands would run as you: read them above, and if you trust them, "
+      "give --allow-commands");
 }
 
 /// Adds the rows of the experiment's other renderers to the finished report.
@@ -45,7 +68,8 @@ void require_sound_report(const std::filesystem::path& out) {
 }
 
 /// Leaves in the run's folder which filters cannot be used, for `regress`, where that is what ended the run.
-void note_filter_mistakes(const std::filesystem::path& out, const std::exception& caught) {
+void note_filter_mistakes(const RunArguments& arguments, const std::exception& caught) {
+  const std::filesystem::path out = arguments.out;
   const auto* error = dynamic_cast<const Error*>(&caught);
   if (!error || error->kind() != ErrorKind::kFilter || std::filesystem::exists(out / run::kSweepFile)) return;
   std::vector<filters::FilterMistake> mistakes;
@@ -56,6 +80,7 @@ void note_filter_mistakes(const std::filesystem::path& out, const std::exception
     mistakes = {{std::filesystem::path(file).stem().string(), file, error->what()}};
   }
   try {
+    const files::FolderLock lock(out, arguments.force);
     records::write_filter_mistakes(out, mistakes);
   } catch (const Error&) {
     // What is wrong with the filters is to be told first; the folder is complained of once they are right.
@@ -83,6 +108,7 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
     fail(
         "--shard: the experiment's [[engine]] tables would be drawn by each shard; leave them out, and score the "
         "whole");
+  require_allowed(arguments.engines, arguments.allow_commands);
   if (!arguments.task.empty()) return run_as_task(options, arguments.task);
   if (options.part.is_worker()) {
     run_with_notes(options, *make_progress());
@@ -95,7 +121,7 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
         run_engines(options, arguments, progress);
       },
       "what was finished stays, and the same command goes on from there", arguments.every_step);
-  fmt::print("report: {}\n", (options.out / "index.html").string());
+  print("report: {}\n", (options.out / "index.html").string());
   if (arguments.strict) require_sound_report(options.out);
   return 0;
 }
@@ -107,7 +133,7 @@ int run(const CommandLine& line, RunArguments& arguments) {
     if (!arguments.task.empty())
       submit::note_failed_task(arguments.task, error);
     else if (!arguments.worker && !arguments.check)
-      note_filter_mistakes(arguments.out, error);
+      note_filter_mistakes(arguments, error);
     throw;
   }
 }

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/engines/engine_command.h"
@@ -42,18 +43,18 @@ void print_peers(const records::CellRecord& cell) {
   for (const auto& [label, rmse] : cell.external->peers) rows.emplace_back(rmse, label);
   if (cell.error.rmse) rows.emplace_back(*cell.error.rmse, cell.filter + "  <-");
   std::ranges::sort(rows);
-  for (const auto& [rmse, label] : rows) fmt::print("  {:<8} {}\n", records::format_number(rmse), label);
+  for (const auto& [rmse, label] : rows) print("  {:<8} {}\n", records::format_number(rmse), label);
 }
 
 void print_row(const Row& row) {
   const auto& [cell, findings] = row;
   const records::ExternalRecord& external = *cell.external;
   const auto number = [&](const char* name, const std::optional<double>& value, const std::string& field) {
-    fmt::print("{:<20} {}\n", name,
-               value ? records::format_number(value) : "absent: " + records::explain_absence(cell, field));
+    print("{:<20} {}\n", name,
+          value ? records::format_number(value) : "absent: " + records::explain_absence(cell, field));
   };
-  fmt::print("{} on {}, view {}\n", cell.filter, cell.scene, cell.view);
-  fmt::print("{:<20} {}\n", "shift, pixels", describe_shift(external));
+  print("{} on {}, view {}\n", cell.filter, cell.scene, cell.view);
+  print("{:<20} {}\n", "shift, pixels", describe_shift(external));
   number("RMSE", cell.error.rmse, "error.rmse");
   number("without silhouettes", external.inside_rmse, "error.rmse");
   number("mean", cell.error.mean, "error.mean");
@@ -61,10 +62,9 @@ void print_row(const Row& row) {
   number("acne", cell.artefact.acne, "artefact.acne");
   number("leak", cell.artefact.leak, "artefact.leak");
   number("contact gap", cell.artefact.contact_gap, "artefact.contact_gap");
-  fmt::print("{:<20} {} of {} receivers\n", "undefined", external.undefined, cell.receivers.value_or(0));
+  print("{:<20} {} of {} receivers\n", "undefined", external.undefined, cell.receivers.value_or(0));
   if (external.nearest)
-    fmt::print("{:<20} {}, {} apart\n", "nearest filter", *external.nearest,
-               records::format_number(external.nearest_rmse));
+    print("{:<20} {}, {} apart\n", "nearest filter", *external.nearest, records::format_number(external.nearest_rmse));
   print_peers(cell);
 }
 
@@ -154,14 +154,14 @@ int score(const ScoreArguments& arguments) {
   nlohmann::json all = nlohmann::json::array();
   for (const Row& row : rows) {
     for (const engines::Finding& finding : row.second)
-      fmt::print(stderr, "warning: {}: {}\n", row.first.scene, finding.text);
+      print_message("warning: {}: {}\n", row.first.scene, finding.text);
     all.push_back(records::to_json(row.first));
     if (!arguments.json) print_row(row);
   }
   if (arguments.json)
     fmt::print("{}\n", all.dump(2));
   else
-    fmt::print("report: {}\n", (folder / "index.html").string());
+    print("report: {}\n", (folder / "index.html").string());
   return 0;
 }
 

@@ -36,7 +36,10 @@ Command make_status_command() {
     if (!(a->silent_after_s > 0.0))
       fail(fmt::format("--silent-after: {} is out of range: choose more than 0 seconds", a->silent_after_s));
     const submit::SweepStatus status = submit::read_status(a->folder, a->silent_after_s);
-    fmt::print("{}", a->json ? submit::make_status_json(status) : submit::describe_status(status));
+    if (a->json)
+      fmt::print("{}", submit::make_status_json(status));
+    else
+      print("{}", submit::describe_status(status));
     return std::ranges::any_of(status.truths, is_trouble) || std::ranges::any_of(status.tasks, is_trouble) ? 1 : 0;
   };
   return command;

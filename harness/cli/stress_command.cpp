@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/stress/run_stress.h"
 
@@ -40,12 +41,12 @@ stress::StressOptions make_stress_options(const StressArguments& arguments, cons
 int stress_filters(const StressArguments& arguments, const std::vector<std::string>& words) {
   const stress::StressOptions options = make_stress_options(arguments, words);
   if (arguments.list) {
-    fmt::print("{}", stress::describe_axes(options.filters));
+    print("{}", stress::describe_axes(options.filters));
     return 0;
   }
   const stress::StressOutcome outcome = work_with_progress(
       options.out, [&](options::Progress& progress) { return stress::run_stress(options, progress); });
-  fmt::print("{}report: {}\n", outcome.text, (options.out / "stress.html").string());
+  print("{}report: {}\n", outcome.text, (options.out / "stress.html").string());
   return outcome.disagreements > 0 ? static_cast<int>(ErrorKind::kLimit) : 0;
 }
 

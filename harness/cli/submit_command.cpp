@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/cli/run_arguments.h"
 #include "harness/submit/submit_sweep.h"
@@ -107,8 +108,8 @@ int submit(const CommandLine& line, SubmitArguments& a) {
                                       .jobs = make_job_plan(options, a, line.words()),
                                       .dry_run = a.dry_run};
   const Interruption interruption(options.out, "the same command goes on");
-  for (const std::string& each : submit::submit_sweep(options, request, *progress)) fmt::print("{}\n", each);
-  fmt::print("'shadowbench status {}' says how far it is\n", a.out);
+  for (const std::string& each : submit::submit_sweep(options, request, *progress)) print("{}\n", each);
+  print("'shadowbench status {}' says how far it is\n", a.out);
   return 0;
 }
 

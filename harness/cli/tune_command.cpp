@@ -5,6 +5,7 @@
 
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
+#include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
 #include "harness/scene/load.h"
 #include "harness/tune/tune_filters.h"
@@ -71,7 +72,7 @@ int tune(const TuneArguments& arguments) {
   const tune::TuneOptions options = make_tune_options(arguments);
   const std::string found = work_with_progress(
       options.run.out, [&](options::Progress& progress) { return tune::tune_filters(options, progress); });
-  fmt::print("{}parameters: {}\n", found, (options.run.out / "tuned.json").string());
+  print("{}parameters: {}\n", found, (options.run.out / "tuned.json").string());
   return 0;
 }
 

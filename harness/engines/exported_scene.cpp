@@ -15,6 +15,7 @@
 #include "harness/scene/files/gltf_writer.h"
 #include "reference/truth/truth_cache.h"
 #include "report/files/file_name.h"
+#include "report/files/folder_lock.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::engines {
@@ -131,6 +132,7 @@ void write_exported_scene(const std::filesystem::path& folder, const run::Planne
 
 ExportedScenes export_scenes(const options::RunOptions& options, options::Progress& progress) {
   measure::Renderer renderer = measure::make_renderer(options.backend, options.resources);
+  const files::FolderLock lock(options.out, options.force);
   truth::TruthCache cache(options.cache, [&](const std::string& message) { progress.note("warning: " + message); });
   const run::RunPlan plan = run::make_plan(options, renderer.context->info().renderer);
   ExportedScenes exported;

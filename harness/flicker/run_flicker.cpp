@@ -62,7 +62,8 @@ class FlickerRun {
         bench_(renderer_, options.run, scene_, cache_) {}
 
   void run() {
-    const files::FolderLock lock(options_.run.out);  // a folder that cannot be written is better found now
+    const files::FolderLock lock(options_.run.out,
+                                 options_.run.force);  // a folder that cannot be written is better found now
     const auto start = Clock::now();
     describe();
     progress_.begin(count_frames(), 0);

@@ -31,6 +31,8 @@ std::filesystem::path cached_file(const FactsRequest& request, const std::string
 
 /// What cannot be read was damaged, and is made again.
 std::optional<records::ShaderFacts> read_cached(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
   std::ifstream stream(file);
   const json written = json::parse(stream, nullptr, false);
   try {

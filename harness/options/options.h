@@ -134,6 +134,7 @@ struct RunOptions {
   std::filesystem::path cache;   ///< keeps traced images between runs; empty: nothing is kept
   double cell_timeout_s = 60.0;  ///< how long one filter of the user may take on one scene
   std::filesystem::path out;
+  bool force = false;                   ///< write into `out` even where it holds what this program did not write
   std::vector<std::string> command;     ///< the command line, for the record
   std::vector<std::string> bias_texts;  ///< as given
   std::vector<std::string> notes;       ///< what the user should know about the options

@@ -389,6 +389,11 @@ void check_run_options(const RunOptions& options) {
   render::require_drawable(options.bias, options.map);
   for (const filters::FilterRequest& request : options.filters) render::require_usable(options.bias, request.spec);
   require_light_maps_fit(options);
+  if (options.border_page && !options.grids)
+    fail(
+        fmt::format("--border-page shows all filters side by side, which --no-grids leaves out, as do more than {} "
+                    "filters: name fewer, give --grids, or leave it out",
+                    kFiltersOfAGrid));
   if (options.grids && options.part.shards() > 1)
     fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");
 }

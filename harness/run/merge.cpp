@@ -145,12 +145,13 @@ records::RunRecord join_runs(const std::vector<records::RunRecord>& runs) {
   return whole;
 }
 
-void merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
+void merge_runs(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out, bool force) {
   if (folders.empty()) throw Error(ErrorKind::kUsage, "merge: name the report folders of all shards");
   const std::vector<ShardRun> shards = read_shards(folders);
   for (const ShardRun& shard : shards) require_same(shards.front(), shard);
   require_complete(shards);
-  const files::FolderLock lock(out);
+  for (const ShardRun& shard : shards) files::require_no_links(shard.folder, ErrorKind::kInput);
+  const files::FolderLock lock(out, force);
   require_free(out, shards);
   std::vector<std::string> keys;
   std::set<std::string> copied;  // cells of one view share its truth's pictures

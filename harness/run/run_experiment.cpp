@@ -74,7 +74,7 @@ class Experiment {
     require_no_sweep();
     const RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
     announce(plan);
-    if (!options_.part.is_task()) lock_.emplace(options_.out);
+    if (!options_.part.is_task()) lock_.emplace(options_.out, options_.force || options_.part.is_worker());
     require_writable(options_.out);
     const bool is_done = plan.finished == plan.own_cells && (options_.part.is_task() || has_report(plan));
     if (is_done) progress_.note("nothing is left to do");

@@ -37,7 +37,7 @@ class StressRun {
   }
 
   StressOutcome run() {
-    const files::FolderLock lock(options_.out);  // a folder that cannot be written is better found now
+    const files::FolderLock lock(options_.out, options_.force);  // a folder that cannot be written is better found now
     const auto start = Clock::now();
     describe_run();
     make_all_cases();

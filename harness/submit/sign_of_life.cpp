@@ -70,7 +70,7 @@ void remove_sign_of_life(const fs::path& folder) {
 std::optional<LastSign> read_last_sign(const fs::path& folder, fs::file_time_type now) {
   std::error_code error;
   const fs::file_time_type last = fs::last_write_time(folder / kSignOfLife, error);
-  if (error) return std::nullopt;
+  if (error || !fs::is_regular_file(folder / kSignOfLife)) return std::nullopt;
   Writer writer;
   std::ifstream(folder / kSignOfLife) >> writer.process >> writer.host;
   return LastSign{std::chrono::duration<double>(now - last).count(), writer.process > 0 && is_gone(writer)};
@@ -79,6 +79,7 @@ std::optional<LastSign> read_last_sign(const fs::path& folder, fs::file_time_typ
 fs::file_time_type file_system_now(const fs::path& folder) {
   const fs::path probe = make_temporary_path(folder / "now");
   std::error_code error;
+  fs::remove(probe, error);  // a link of that name would be written through
   std::ofstream(probe) << "now";
   const fs::file_time_type now = fs::last_write_time(probe, error);
   std::error_code ignored;

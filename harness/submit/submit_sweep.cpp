@@ -12,6 +12,7 @@
 #include "harness/submit/sign_of_life.h"
 #include "harness/submit/sweep_plan.h"
 #include "harness/submit/sweep_status.h"
+#include "report/files/folder_lock.h"
 
 namespace shadowbench::submit {
 namespace {
@@ -39,6 +40,7 @@ bool was_submitted(const fs::path& out) { return is_sweep(out) && (!read_sweep(o
 
 void plan_folder(const options::RunOptions& options, int tasks) {
   require_free(options.out);
+  const files::FolderLock lock(options.out, options.force);
   const SweepPlan plan = plan_sweep(options, tasks);
   if (was_submitted(options.out))
     throw Error(ErrorKind::kUsage,

@@ -45,6 +45,7 @@ void write_json(const fs::path& file, json content) {
 /// Reads a file with `read`, and says of any mistake in it where it is.
 template <class Read>
 auto read_json(const fs::path& file, const Read& read) {
+  require_plain_file(file, 1024 * kMebibyte);
   std::ifstream stream(file);
   if (!stream)
     throw Error(ErrorKind::kInput, "this file is missing or cannot be read: no sweep was submitted into this folder",

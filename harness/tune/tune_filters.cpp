@@ -74,7 +74,8 @@ class Tuner {
   }
 
   std::string run() {
-    const files::FolderLock lock(options_.run.out);  // a folder that cannot be written is better found now
+    const files::FolderLock lock(options_.run.out,
+                                 options_.run.force);  // a folder that cannot be written is better found now
     progress_.begin(static_cast<int>(filters_.size()) * options_.budget, 0);
     search_all();
     score_unseen();

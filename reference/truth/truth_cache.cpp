@@ -18,11 +18,36 @@ namespace {
 
 constexpr std::uintmax_t kMostHeaderBytes = 65536;
 
+constexpr std::string_view kMark = "shadowbench truth ";
+constexpr const char* kTag = "CACHEDIR.TAG";
+/// Source: Cache Directory Tagging Specification 0.6; backups leave out a folder that has it.
+constexpr std::string_view kTagText = "Signature: 8a477f597d28d172789f06886806bc55\n# Made by shadowbench\n";
+
+/// Whether it is a file, and no link to one, that begins so.
+bool begins_with(const std::filesystem::path& path, std::string_view text) {
+  std::error_code error;
+  if (std::filesystem::symlink_status(path, error).type() != std::filesystem::file_type::regular) return false;
+  std::string head(text.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == text;
+}
+
+bool is_truth(const std::filesystem::path& path) { return path.extension() == ".truth" && begins_with(path, kMark); }
+
+/// Whether this program made the folder: it has our tag, or nothing but what is ours, as versions of before left it.
+bool is_ours(const std::filesystem::path& folder) {
+  if (begins_with(folder / kTag, kTagText)) return true;
+  std::error_code error;
+  for (std::filesystem::directory_iterator file(folder, error), end; !error && file != end; file.increment(error))
+    if (!is_truth(*file) && !is_temporary(*file) && file->path().filename() != "gpu") return false;
+  return true;
+}
+
 /// A file is this line, then all layers as floats, compressed with zlib.
 std::string make_header(const std::string& name, const std::vector<float>& values, std::size_t layers) {
   ContentHash checksum;
   checksum.add_values(std::span<const float>(values));
-  return fmt::format("shadowbench truth 1 {} {}x{} {}\n", name, layers, values.size(), checksum.name());
+  return fmt::format("{}1 {} {}x{} {}\n", kMark, name, layers, values.size(), checksum.name());
 }
 
 /// Gives nothing for what is no file, or one of more bytes than that.
@@ -67,8 +92,8 @@ void write_layers(const std::filesystem::path& path, const std::string& name, co
 }  // namespace
 
 TruthCache::TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note)
-    : folder_(std::move(folder)), note_(std::move(note)) {
-  if (!folder_.empty()) remove_temporary_files(folder_, is_gone);
+    : folder_(std::move(folder)), is_ours_(!folder_.empty() && truth::is_ours(folder_)), note_(std::move(note)) {
+  if (is_ours_) remove_temporary_files(folder_, is_gone);
 }
 
 std::optional<Layers> TruthCache::load(const std::string& name, std::size_t layers, std::size_t values) {
@@ -92,6 +117,7 @@ std::optional<Layers> TruthCache::load(const std::string& name, std::size_t laye
 void TruthCache::store(const std::string& name, const Layers& layers) {
   if (folder_.empty() || !note_) return;
   try {
+    if (is_ours_ && !std::filesystem::exists(folder_ / kTag)) write_text_file(folder_ / kTag, kTagText);
     write_layers(path_of(name), name, layers);
   } catch (const Error& error) {
     note_(fmt::format("traced images are not kept for the next run: {}; choose another folder with --cache",
@@ -101,6 +127,7 @@ void TruthCache::store(const std::string& name, const Layers& layers) {
 }
 
 void TruthCache::prune(std::uintmax_t max_bytes) const {
+  if (!is_ours_) return;
   struct Entry {
     std::filesystem::path path;
     std::filesystem::file_time_type used;
@@ -111,7 +138,7 @@ void TruthCache::prune(std::uintmax_t max_bytes) const {
   std::error_code error;
   std::filesystem::directory_iterator file(folder_, error);
   for (; !error && file != std::filesystem::directory_iterator(); file.increment(error)) {
-    if (file->path().extension() != ".truth" && file->path().extension() != ".exr") continue;
+    if (!is_truth(*file)) continue;
     std::error_code gone;
     const Entry entry{file->path(), file->last_write_time(gone), file->file_size(gone)};
     if (gone) continue;

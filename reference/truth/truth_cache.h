@@ -19,8 +19,8 @@ inline constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
 /// light, settings and the code that traces. The files can be deleted at any time.
 class TruthCache {
  public:
-  /// With an empty folder name nothing is kept. Files that killed processes left half-written are removed. `note` is
-  /// called once if the folder cannot be written.
+  /// With an empty folder name nothing is kept. In a folder that holds other files, nothing is ever deleted; in one of
+  /// our own, what killed processes left half-written is. `note` is called once if the folder cannot be written.
   TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note);
 
   /// Returns what was kept under a name, or nothing if there is no file, or one that is damaged, of another name, or of
@@ -29,8 +29,8 @@ class TruthCache {
 
   void store(const std::string& name, const Layers& layers);
 
-  /// Deletes the files that were used longest ago until the folder holds at most `max_bytes`. Files of earlier versions
-  /// (.exr) count too.
+  /// Deletes the files that were used longest ago until the folder holds at most `max_bytes`: no others than this class
+  /// wrote, and in a folder of our own.
   void prune(std::uintmax_t max_bytes) const;
 
   int loaded() const { return loaded_; }  ///< how often load() found what it was asked for
@@ -38,6 +38,7 @@ class TruthCache {
 
  private:
   std::filesystem::path folder_;
+  bool is_ours_;
   std::function<void(const std::string&)> note_;
   int loaded_ = 0;
   int traced_ = 0;

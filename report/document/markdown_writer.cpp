@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "base/visible_text.h"
 #include "report/document/blocks.h"
 #include "report/document/markdown.h"
 #include "report/files/file_name.h"
@@ -151,7 +152,7 @@ std::string write_markdown(const Page& page) {
     if (!section.heading.empty()) text += fmt::format("## {}\n\n", escape_markdown(section.heading));
     text += write_blocks(section.blocks);
   }
-  return text;
+  return make_visible(text);
 }
 
 }  // namespace shadowbench::document

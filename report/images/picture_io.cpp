@@ -27,7 +27,7 @@ namespace {
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
  public:
   explicit CheckedFile(const std::string& name)
-      : IOProxy(name, Write), descriptor_(::open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+      : IOProxy(name, Write), descriptor_(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) error_ = errno;
   }
   ~CheckedFile() override { finish(); }

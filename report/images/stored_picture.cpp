@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -153,34 +154,48 @@ StoredPicture choose_channels(const StoredPicture& whole, const OIIO::ImageSpec&
   return chosen;
 }
 
+/// Readers of some formats (GIF) make room for a whole picture before they can be asked for its size.
+template <class Read>
+auto read_any_size(const std::string& where, const Read& read) {
+  try {
+    return read();
+  } catch (const std::length_error&) {
+    fail(where, "the picture is damaged: it says that it is larger than memory can be");
+  }
+}
+
 }  // namespace
 
 StoredPicture read_stored_picture(const std::string& name) {
   const PictureName parsed = parse_name(name);
-  const auto input = open_file(parsed.file);
-  const auto [part, channels] = find_part(*input, parsed);
-  StoredPicture whole = read_part(*input, part, name);
-  return channels.empty() ? whole : choose_channels(whole, input->spec(part), channels);
+  return read_any_size(name, [&] {
+    const auto input = open_file(parsed.file);
+    const auto [part, channels] = find_part(*input, parsed);
+    StoredPicture whole = read_part(*input, part, name);
+    return channels.empty() ? whole : choose_channels(whole, input->spec(part), channels);
+  });
 }
 
 std::map<std::string, StoredPicture> read_layers(const std::string& file) {
   if (!exists(file)) fail(file, "there is no such file: check the path");
-  const auto input = open_file(file);
-  std::map<std::string, StoredPicture> layers;
-  const std::vector<std::string> parts = list_parts(*input);
-  for (std::size_t part = 0; part < parts.size(); ++part) {
-    const OIIO::ImageSpec spec = input->spec(static_cast<int>(part));
-    const StoredPicture whole = read_part(*input, static_cast<int>(part), file);
-    std::map<std::string, std::vector<int>> channels;  // by layer
-    for (int c = 0; c < spec.nchannels; ++c) {
-      const std::string name = spec.channel_name(c);
-      const std::size_t dot = name.rfind('.');
-      channels[dot != name.npos ? name.substr(0, dot) : std::string(spec.get_string_attribute("oiio:subimagename"))]
-          .push_back(c);
+  return read_any_size(file, [&] {
+    const auto input = open_file(file);
+    std::map<std::string, StoredPicture> layers;
+    const std::vector<std::string> parts = list_parts(*input);
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const OIIO::ImageSpec spec = input->spec(static_cast<int>(part));
+      const StoredPicture whole = read_part(*input, static_cast<int>(part), file);
+      std::map<std::string, std::vector<int>> channels;  // by layer
+      for (int c = 0; c < spec.nchannels; ++c) {
+        const std::string name = spec.channel_name(c);
+        const std::size_t dot = name.rfind('.');
+        channels[dot != name.npos ? name.substr(0, dot) : std::string(spec.get_string_attribute("oiio:subimagename"))]
+            .push_back(c);
+      }
+      for (const auto& [name, own] : channels) layers.insert_or_assign(name, choose_channels(whole, spec, own));
     }
-    for (const auto& [name, own] : channels) layers.insert_or_assign(name, choose_channels(whole, spec, own));
-  }
-  return layers;
+    return layers;
+  });
 }
 
 }  // namespace shadowbench::images

@@ -30,8 +30,9 @@ std::string make_bias_json(const std::vector<BiasToShip>& ships) {
 
 std::vector<BiasToShip> list_bias_to_ship(const std::filesystem::path& report, std::vector<std::string>& warnings) {
   const std::filesystem::path file = report / "bias" / "bias.json";
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return {};
+  std::ifstream stream;
+  if (std::error_code ignored; std::filesystem::is_regular_file(file, ignored)) stream.open(file, std::ios::binary);
+  if (!stream.is_open()) return {};
   try {
     const nlohmann::json written = parse_json(stream);
     require(written.at("schema") == kBiasSchema, fmt::format("the schema \"{}\"", kBiasSchema));

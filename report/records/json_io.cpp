@@ -9,6 +9,8 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -275,6 +277,11 @@ Results read_results(const std::filesystem::path& file) {
     throw Error(ErrorKind::kInput, "the list 'cells' is missing; delete this file and run again", where);
   taker.throw_problem();
   for (const json& cell : root["cells"]) cell_from_json(cell, where);  // what is no object is no cell
+  std::set<std::string_view> keys;
+  for (const CellRecord& cell : results.cells)
+    if (!keys.insert(cell.key).second)
+      throw Error(ErrorKind::kInput, fmt::format("the cell {} stands in it twice; delete it and run again", cell.key),
+                  where);
   return results;
 }
 

@@ -6,12 +6,35 @@ namespace shadowbench::records {
 
 using nlohmann::json;
 
+namespace {
+
+constexpr int kDeepest = 100;
+
+void require_shallow(int depth) {
+  if (depth > kDeepest) throw std::invalid_argument("nested more than 100 deep");
+}
+
+void check_depth(const json& value, int depth = 0) {
+  if (!value.is_structured()) return;
+  require_shallow(depth);
+  for (const json& each : value) check_depth(each, depth + 1);
+}
+
+}  // namespace
+
 json parse_json(std::istream& stream, const json::parser_callback_t& keep) {
-  constexpr int kDeepest = 100;
-  return json::parse(stream, [&](int depth, json::parse_event_t event, json& value) {
-    if (depth > kDeepest) throw std::invalid_argument("nested more than 100 deep");
-    return !keep || keep(depth, event, value);
-  });
+  if (keep) {
+    return json::parse(
+        stream,
+        [&](int depth, json::parse_event_t event, json& value) {
+          require_shallow(depth);
+          return keep(depth, event, value);
+        });
+  }
+  // With a callback, the parser goes through all that an object holds whenever one of its members ends.
+  json value = json::parse(stream);
+  check_depth(value);
+  return value;
 }
 
 json number_json(double value) {

@@ -22,8 +22,9 @@ constexpr std::size_t kDigits = 64;
 /// Gives nothing for what cannot be read as a file.
 std::string hash_file(const fs::path& file) {
   std::error_code error;
+  if (!fs::is_regular_file(file, error)) return "";  // a pipe would never open
   std::ifstream stream(file, std::ios::binary);
-  if (!fs::is_regular_file(file, error) || !stream) return "";
+  if (!stream) return "";
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
   EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
   std::array<char, 65536> piece;

@@ -104,7 +104,7 @@ class Regression {
         run_(options.run, options.selection),
         accepter_(baseline_, tolerances_) {
     const bool known = baseline_.exists();
-    if (options.accept) lock_.emplace(options.baseline);
+    if (options.accept) lock_.emplace(options.baseline, true);
     report_.damaged = baseline_.check();
     if (!options.accept) require_sound(known);
     if (known) tolerances_ = read_tolerances(baseline_.tolerance_file());
@@ -351,6 +351,7 @@ int RegressReport::count(Outcome outcome) const {
 int RegressReport::failed() const { return static_cast<int>(std::ranges::count_if(comparisons, &Comparison::failed)); }
 
 RegressOutcome run_regress(const RegressOptions& options) {
+  const files::FolderLock lock(options.out, options.force);
   remove_old_pictures(options.out);
   const std::vector<filters::FilterMistake> mistakes = records::read_filter_mistakes(options.run);
   const RegressReport found = mistakes.empty() ? Regression(options).compare() : report_mistakes(options, mistakes);

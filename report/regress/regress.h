@@ -16,6 +16,7 @@ struct RegressOptions {
   std::filesystem::path run;  ///< a run's report folder
   std::filesystem::path baseline;
   std::filesystem::path out;  ///< gets regress.html, .md, .json and the pictures
+  bool force = false;         ///< write there even where it holds what this program did not write
   Selection selection;
   bool accept = false;          ///< what differs becomes the baseline
   bool remove_missing = false;  ///< with `accept`: cells that the run lacks leave the baseline

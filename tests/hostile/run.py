@@ -6,7 +6,9 @@
 A case is a command line, the files that it reads and the environment that it runs in. Kinds of cases take turns:
 `option` (values that an option cannot have), `words` (commands put together at random), `mutant` (a real file of a
 format that is read, with bytes flipped, cut, doubled or replaced), `filter` (GLSL that misbehaves), `environment`
-(limits, closed files, folders that cannot be written) and `kill` (a run that is killed, and run again).
+(limits, closed files, folders that cannot be written), `kill` (a run that is killed, and run again), `foreign` (a
+folder to write into that somebody else filled), and `planted` (a link to a file or folder outside, a pipe or a folder,
+in the place of something that is read or written).
 
 Each case knows the exit codes that are right for it. What counts against the program:
 
@@ -14,6 +16,7 @@ Each case knows the exit codes that are right for it. What counts against the pr
 - hang: it took longer than --timeout
 - code: another exit code than those that are right, or a failure without a message
 - leftover: files besides those that it was asked to write
+- outside: a file of somebody else was changed, removed, or copied to where a link led from
 
 A case that went wrong is printed with the command that repeats it alone (--only N). Nothing but Python's standard
 library is used; runs are small, and several go on at once.
@@ -38,6 +41,28 @@ SMALL = ["--size", "16x9", "--map-size", "16", "--rounds", "1", "--no-truth", "-
          "--gpu", "none"]
 RUN = ["run", "--out", "out", "--scene", "cubes", "--filters", "none", *SMALL]
 DONE = {0}
+SECRET = "of somebody else"
+CHEAP = ["--scene", "cubes", "--map-size", "16", "--size", "16x9", "--gl", "software"]
+# Every command that writes a folder; `whole` is a run's folder, `base` its baseline.
+WRITERS = [RUN, ["merge", "whole", "--out", "out"], ["export", "cubes", "--out", "out", "--gl", "software"],
+           ["stress", "--axes", "taps", "--filters", "poisson:taps=8", "--out", "out", "--gl", "software"],
+           ["bias", *CHEAP, "--filters", "none", "--out", "out"],
+           ["flicker", *CHEAP, "--filters", "none", "--frames", "2", "--out", "out"],
+           ["tune", *CHEAP, "--filters", "vsm", "--budget", "3", "--out", "out"],
+           ["regress", "whole", "--baseline", "base", "--out", "out"],
+           ["diff", "whole/cubes.exr#none.visibility", "whole/cubes.exr#none.visibility", "--html", "out"]]
+# Every command that reads a folder, or writes into one that it reads.
+READERS = [["advise", "whole", "--max-rmse", "1"], ["diff", "whole", "whole"], ["merge", "whole", "--out", "new"],
+           ["regress", "whole", "--baseline", "base", "--out", "new"],
+           ["regress", "whole", "--baseline", "base", "--out", "new", "--accept"],
+           ["score", "whole", "--name", "x", "--visibility", "whole/cubes.exr#none.visibility", "--gl", "software"],
+           ["status", "whole"], [*RUN[:1], "--out", "whole", *RUN[3:]],
+           [*RUN[:1], "--out", "whole", "--fresh", *RUN[3:]]]
+# What a folder to write into may hold that is not ours, or has one of our names.
+NAMES = [".shadowbench-lock", ".shadowbench-folder", "index.html", "results.json", "stress.json", "tuned.json", "images",
+         "cells", "live", "cubes", "regress.json", "bias", "bias/bias.json", "gpu-times", "sweep.json", "filters.json",
+         "cells/0123456789abcdef.json", "images/a.png", ".worker-99999999/a", "b.shadowbench-tmp-99999999.png",
+         "deep/er/a.txt"]
 ANY_ANSWER = {0, 1, 2, 3, 5, 6}  # whatever it is, it is an answer
 
 # What an option cannot be: the exit code is 2 for every one of them.
@@ -83,7 +108,8 @@ GLSL = ["float visibility(Receiver r) { return 0.0 / 0.0; }", "float visibility(
 class Case:
     """A command in a folder of its own."""
 
-    def __init__(self, number, kind, words, right, before=None, environment=None, kill=False):
+    def __init__(self, number, kind, words, right, before=None, environment=None, kill=False, after=None):
+        self.after = after  # what is wrong with the folder afterwards
         self.number, self.kind, self.words, self.right = number, kind, words, right
         self.before, self.environment, self.kill = before, environment or {}, kill
 
@@ -138,8 +164,8 @@ class Maker:
 
     def make(self, number, seed):
         rng = random.Random(f"{seed} {number}")
-        kinds = [self.option, self.option, self.words, self.mutant, self.mutant, self.mutant, self.filter,
-                 self.environment, self.mutant, self.kill if number % 40 == 9 else self.words]
+        kinds = [self.option, self.foreign, self.words, self.mutant, self.mutant, self.planted, self.filter,
+                 self.environment, self.planted, self.kill if number % 40 == 9 else self.words]
         return kinds[number % len(kinds)](number, rng)
 
     def option(self, number, rng):
@@ -213,6 +239,71 @@ class Maker:
             ("no shaders", {"SHADOWBENCH_RESOURCES": "/nonexistent"}, {0, 3}),
         ])
         return Case(number, f"environment: {name}", RUN, right, spoil, change)
+
+    def copy_reports(self, folder):
+        shutil.copytree(self.samples / "run", folder / "whole")
+        shutil.copytree(self.samples / "base", folder / "base")
+
+    def foreign(self, number, rng):
+        name = rng.choice([name for name in NAMES if not name.startswith((".shadowbench", "cells/0"))])
+
+        def fill(folder):
+            self.copy_reports(folder)
+            path = folder / "out" / name
+            path.parent.mkdir(parents=True)
+            path.write_text(SECRET)
+
+        def look(folder):
+            found = [path for path in (folder / "out").rglob("*") if not path.is_dir()]
+            return None if [path.read_text(errors="replace") for path in found] == [SECRET] else f"now {found[:5]}"
+
+        return Case(number, f"foreign {name}", rng.choice(WRITERS), {6}, fill, after=look)
+
+    def planted(self, number, rng):
+        reads = rng.random() < 0.5
+        words = rng.choice(READERS if reads else WRITERS)
+        planting, draw = rng.choice(["link", "link", "hard link", "pipe", "folder", "nowhere"]), rng.random()
+
+        def plant(folder):
+            self.copy_reports(folder)
+            (folder / "outside" / "inner").mkdir(parents=True)
+            for name in ("file", "inner/file"):
+                (folder / "outside" / name).write_text(SECRET)
+            if reads:
+                every = sorted(path for name in ("whole", "base") for path in (folder / name).rglob("*"))
+                place = every[int(draw * len(every))]
+            else:
+                (folder / "out").mkdir()
+                (folder / "out" / ".shadowbench-folder").touch()
+                place = folder / "out" / NAMES[int(draw * len(NAMES))]
+            is_folder = place.is_dir() or not place.suffix and place.name in ("images", "cells", "live", "cubes", "bias")
+            if place.is_dir():
+                shutil.rmtree(place)
+            place.unlink(missing_ok=True)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            outside = folder / "outside" / ("inner" if is_folder else "file")
+            if planting == "hard link" and not is_folder:
+                place.hardlink_to(outside)
+            elif planting == "pipe":
+                os.mkfifo(place)
+            elif planting == "folder":
+                place.mkdir()
+            else:
+                place.symlink_to("nowhere" if planting == "nowhere" else outside)
+
+        def look(folder):
+            outside = sorted(path for path in (folder / "outside").rglob("*") if path.is_file())
+            if [path.relative_to(folder / "outside").as_posix() for path in outside] != ["file", "inner/file"]:
+                return f"now there are {outside[:5]}"
+            if any(path.read_text(errors="replace") != SECRET for path in outside):
+                return "a file outside was written"
+            new = folder / ("new" if reads else "out")
+            if planting != "hard link" and any(path.is_file() and not path.is_symlink() and SECRET.encode() in path.read_bytes()
+                                               for path in new.rglob("*")):
+                return "what a link leads to was copied"
+            return None
+
+        return Case(number, f"planted {planting}", words, ANY_ANSWER, plant, after=look)
 
     def kill(self, number, rng):
         longer = {"--filters": "none,tent3x3,vsm,pcss", "--rounds": "3"}
@@ -290,6 +381,10 @@ def try_case(program, case, timeout):
             return "code", f"{code} without a message: {said[-300:]}"
         if case.kill and not (folder / "out" / "results.json").exists():
             return "leftover", "the second run wrote no report"
+        if case.after and (found := case.after(folder)):
+            return "outside", found
+        if case.after:
+            return None
         # Words at random may name any folder as one to write to.
         leftovers = [] if case.kind == "words" else list_leftovers(folder, known)
         return ("leftover", ", ".join(leftovers[:5])) if leftovers else None
@@ -300,6 +395,8 @@ def make_samples(program, folder):
     shutil.copy(ROOT / "data" / "scenes" / "cubes.toml", folder / "cubes.toml")
     subprocess.run([program, "run", "--out", str(folder / "run"), "--scene", "cubes", "--filters", "none", "--size", "64x36",
                     "--map-size", "32", "--rounds", "1"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run([program, "regress", str(folder / "run"), "--baseline", str(folder / "base"), "--accept"],
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     (folder / "small.obj").write_text("mtllib small.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0.5 1 0.5\nvt 0 0\nvn 0 1 0\n"
                                       "usemtl a\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf 1 2 5\nf -1 -2 -3\n")
     (folder / "small.mtl").write_text("newmtl a\nKd 0.5 0.5 0.5\nmap_Kd none.png\n")
@@ -339,7 +436,7 @@ def main():
                 words = shlex.join(w if isinstance(w, str) else w.decode("utf-8", "backslashreplace") for w in case.words)
                 print(f"{found[0]}: case {case.number} ({case.kind}): {found[1]}\n  shadowbench {words[:400]}\n"
                       f"  again: --seed {arguments.seed} --only {case.number}", flush=True)
-        counts = ", ".join(f"{len(wrong.get(kind, []))} {kind}" for kind in ("crash", "hang", "code", "leftover"))
+        counts = ", ".join(f"{len(wrong.get(kind, []))} {kind}" for kind in ("crash", "hang", "code", "leftover", "outside"))
         print(f"{len(cases)} cases in {time.monotonic() - started:.0f} s: {counts}")
     return 1 if wrong else 0
 

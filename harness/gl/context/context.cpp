@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/statvfs.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -97,6 +100,30 @@ std::vector<Attempt> list_attempts(Backend backend) {
   return attempts;
 }
 
+/// Mesa crashes where $GALLIUM_DRIVER names a driver that it was built without: such a context is made in a process of
+/// its own first.
+void require_driver(const Attempt& attempt) {
+  const char* driver = std::getenv("GALLIUM_DRIVER");
+  if (driver == nullptr || driver == std::string_view("llvmpipe") || *driver == '\0') return;
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      attempt.create();
+    } catch (const std::exception&) {
+      // Why there is none is found again, where it can be told.
+    }
+    _exit(0);
+  }
+  int status = 0;
+  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (status != 0)
+    throw Error(ErrorKind::kContext,
+                fmt::format("Mesa crashes with GALLIUM_DRIVER={}: unset it, or name a driver that Mesa has, such as "
+                            "llvmpipe",
+                            driver));
+}
+
 }  // namespace
 
 Backend parse_backend(std::string_view text) {
@@ -124,6 +151,7 @@ ContextChoice create_context(Backend backend) {
   if (std::string full = disable_shader_cache_on_full_disk(); !full.empty()) choice.refused.push_back(std::move(full));
   for (const Attempt& attempt : list_attempts(backend)) {
     try {
+      require_driver(attempt);
       choice.context = attempt.create();
       return choice;
     } catch (const Error& error) {

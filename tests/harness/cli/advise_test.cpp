@@ -88,6 +88,16 @@ TEST_F(Advise, WhereNoGpuDrew_TheEstimateIsTheCost_AndMillisecondsLimitIt) {
   EXPECT_EQ(run("advise cpu --max-rmse 0.05 --max-ms 2.1 --cheapest time").exit_code, 1);
 }
 
+/// A report may be somebody else's, and its names would steer the terminal.
+TEST_F(Advise, NamesOfAReport_AreShownWithoutEscapes) {
+  std::vector<records::CellRecord> cells = records::read_results(folder() / "run" / "results.json").cells;
+  for (records::CellRecord& cell : cells) cell.scene += "\x1b[31m";
+  records::write_results(folder() / "foreign", records::make_run(), cells);
+  const Outcome outcome = run("advise foreign --max-rmse 0.03");
+  EXPECT_THAT(outcome.out, HasSubstr("\\x1b[31m"));
+  EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos);
+}
+
 TEST_F(Advise, EveryLimitOfTheTable_IsAnOption) {
   for (const char* option : {"rmse", "leak", "acne", "contact-gap", "flip", "ms", "bytes", "fetches"}) {
     const Outcome outcome = run("advise run --json --max-" + std::string(option) + " 1e9");

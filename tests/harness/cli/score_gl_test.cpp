@@ -153,10 +153,12 @@ phases = 1
 name = "all lit"
 command = "sh copy.sh"
 )");
-  const Outcome outcome = run("run engines.toml --out out");
+  expect_refusal("run engines.toml --out out", 2, {"--allow-commands"});
+  EXPECT_THAT(read_text(folder() / "stderr.txt"), HasSubstr("sh copy.sh")) << "what would be run";
+  const Outcome outcome = run("run engines.toml --allow-commands --out out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_GT(find_row("all lit")["error"]["mean"].get<double>(), 0.0);
-  EXPECT_THAT(run("run engines.toml --out out").err, HasSubstr("all lit"));
+  EXPECT_THAT(run("run engines.toml --allow-commands --out out").err, HasSubstr("all lit"));
   write("typo.toml", "[[engine]]\nname = 'x'\ncomand = 'y'\n");
   EXPECT_THAT(run("run typo.toml --out typo").err, HasSubstr("comand"));
 }

@@ -125,6 +125,14 @@ TEST_F(RunOptionsTest, Defaults_AreThoseOfTheOptions_AndNeedNotBeWritten) {
     EXPECT_THAT(written, ::testing::Not(HasSubstr(left_out)));
 }
 
+TEST(CheckRunOptions, ABorderPageWithoutGrids_IsRefused) {
+  RunOptions options;
+  options.border_page = true;
+  EXPECT_NO_THROW(check_run_options(options));
+  options.grids = false;
+  EXPECT_THROW(check_run_options(options), Error);
+}
+
 TEST_F(RunOptionsTest, AShard_IsEveryNthCell) {
   std::vector<RunOption> all = list_run_options();
   find_told<std::string>(all, "--shard") = "2/3";

@@ -135,17 +135,38 @@ TEST_F(Cache, Prune_RemovesWhatWasUsedLongestAgo) {
   EXPECT_TRUE(std::filesystem::exists(file("c")));
 }
 
-TEST_F(Cache, Prune_CountsFilesOfEarlierVersions) {
+/// Neither a name nor an ending makes a file ours.
+TEST_F(Cache, Prune_LeavesFilesThatAreNotOurs) {
   TruthCache cache = open();
   cache.store("a", make_layers(0.5f));
   std::ofstream(folder_ / "old.exr") << std::string(1000, 'x');
-  std::ofstream(folder_ / "kept.txt") << std::string(1000, 'x');
-  const auto now = std::filesystem::file_time_type::clock::now();
-  std::filesystem::last_write_time(folder_ / "old.exr", now - std::chrono::hours(1));
-  cache.prune(std::filesystem::file_size(file("a")));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "old.exr"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "kept.txt"));
+  std::ofstream(folder_ / "own.truth") << std::string(1000, 'x');
+  std::filesystem::create_symlink("a.truth", folder_ / "link.truth");
+  cache.prune(0);
+  EXPECT_FALSE(std::filesystem::exists(file("a")));
+  for (const char* name : {"old.exr", "own.truth", "link.truth"})
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / name) || std::filesystem::exists(folder_ / name)) << name;
+}
+
+TEST_F(Cache, InAFolderOfTheUser_NothingIsDeleted) {
+  std::filesystem::create_directories(folder_);
+  const auto own = folder_ / "own.exr", half = folder_ / "a.shadowbench-tmp-999999999.truth";
+  for (const auto& each : {own, half}) std::ofstream(each) << "kept";
+  TruthCache cache = open();
+  cache.store("a", make_layers(0.5f));
+  cache.prune(0);
+  for (const auto& each : {own, half, file("a")}) EXPECT_TRUE(std::filesystem::exists(each)) << each;
   EXPECT_TRUE(load(cache, "a"));
+}
+
+/// What versions of before made has no tag.
+TEST_F(Cache, AFolderOfTruthsAlone_IsOurs) {
+  open().store("a", make_layers(0.5f));
+  std::filesystem::remove(folder_ / "CACHEDIR.TAG");
+  std::filesystem::create_directories(folder_ / "gpu");
+  TruthCache cache = open();
+  cache.prune(0);
+  EXPECT_FALSE(std::filesystem::exists(file("a")));
 }
 
 /// A process number that is free belongs to a process that is gone.

@@ -132,6 +132,7 @@ TEST(Chart, ShowsTheCurvesThatSayMost_AndSaysHowToSeeTheOthers) {
 TEST(Markdown, EscapesWhatMeansSomething) {
   EXPECT_EQ(escape_markdown("a|b\n<c> `d` *e* [f]_g"), "a\\|b \\<c\\> \\`d\\` \\*e\\* \\[f\\]\\_g");
   EXPECT_EQ(escape_markdown("kernel_rmse _x"), "kernel_rmse \\_x");
+  EXPECT_EQ(write_markdown({"a\x1b[31mb", {}, {}}), "# a\\x1b\\[31mb\n\n");
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <csignal>
 
 #include "base/error.h"
+#include "base/temporary_files.h"
+#include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::files {
@@ -60,6 +62,21 @@ TEST(AtomicFile, TemporaryName_KeepsFolderAndExtension) {
   EXPECT_EQ(file.temporary_path().parent_path(), folder.path());
   EXPECT_EQ(file.temporary_path().extension(), ".png");
   EXPECT_NE(file.temporary_path(), file.path());
+}
+
+/// Whoever made the folder may know the name that is written to first.
+TEST(AtomicFile, LinkOfTheTemporaryName_IsNotWrittenThrough) {
+  const TemporaryFolder folder("atomic_link");
+  const std::filesystem::path own = folder.path() / "own.txt", out = folder.path() / "a.png";
+  const std::function<void()> writers[] = {[&] { write_text_file(out, "x"); }, [&] { copy_whole_file(__FILE__, out); },
+                                           [&] { images::write_grey_png(out, images::Image(2, 2, 1)); }};
+  write_text_file(own, "kept");
+  for (const auto& write : writers) {
+    std::filesystem::create_symlink(own, make_temporary_path(out));
+    write();
+    EXPECT_EQ(read_text(own), "kept");
+    EXPECT_FALSE(std::filesystem::is_symlink(out));
+  }
 }
 
 TEST(AtomicFile, FolderThatIsAFile_IsAnOutputErrorWithPathAndReason) {

@@ -1,9 +1,11 @@
 #include "report/files/folder_lock.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <optional>
+#include <functional>
+#include <set>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -27,7 +29,14 @@ std::string refusal_of(const std::filesystem::path& folder) {
   return "";
 }
 
-TEST(FolderLock, IsOfOneAtATime_AndLeavesNothing) {
+std::set<std::string> list_names(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    names.insert(entry.path().lexically_relative(folder).string());
+  return names;
+}
+
+TEST(FolderLock, IsOfOneAtATime_AndLeavesItsMark) {
   const TemporaryFolder folder("lock_one");
   const std::filesystem::path out = folder.path() / "a" / "out";
   {
@@ -37,7 +46,7 @@ TEST(FolderLock, IsOfOneAtATime_AndLeavesNothing) {
     EXPECT_THAT(refusal, HasSubstr(out.string()));
     EXPECT_THAT(refusal, HasSubstr("process " + std::to_string(getpid())));
   }
-  EXPECT_TRUE(std::filesystem::is_empty(out));
+  EXPECT_EQ(list_names(out), std::set<std::string>{".shadowbench-folder"});
   EXPECT_EQ(refusal_of(out), "");
 }
 
@@ -56,6 +65,62 @@ TEST(FolderLock, FolderThatIsGoneOrAnother_IsNoticed) {
   const FolderLock other(out);
   EXPECT_THROW(lock.require_in_place(), Error);
   EXPECT_NO_THROW(other.require_in_place());
+}
+
+/// It would empty the file that the link leads to.
+TEST(FolderLock, LockThatIsALinkOrAPipe_IsRefused) {
+  const TemporaryFolder folder("lock_link");
+  const std::filesystem::path own = folder.path() / "own.txt", lock = folder.path() / "out" / ".shadowbench-lock";
+  write_text_file(own, "kept");
+  std::filesystem::create_directories(lock.parent_path());
+  const std::function<void()> makers[] = {
+      [&] { std::filesystem::create_symlink(own, lock); }, [&] { std::filesystem::create_symlink("nowhere", lock); },
+      [&] { std::filesystem::create_hard_link(own, lock); }, [&] { ASSERT_EQ(mkfifo(lock.c_str(), 0600), 0); }};
+  for (const auto& make : makers) {
+    make();
+    EXPECT_NE(refusal_of(lock.parent_path()), "");
+    EXPECT_THROW(FolderLock(lock.parent_path(), true), Error);
+    EXPECT_EQ(read_text(own), "kept");
+    std::filesystem::remove(lock);
+  }
+}
+
+TEST(FolderLock, LinkAtAnyLevel_IsRefused) {
+  const TemporaryFolder folder("lock_deep_link");
+  const std::filesystem::path out = folder.path() / "out", link = out / "a" / "b" / "link";
+  { const FolderLock marks(out); }
+  std::filesystem::create_directories(link.parent_path());
+  for (const auto& target : {folder.path(), std::filesystem::path("nowhere")}) {
+    std::filesystem::create_directory_symlink(target, link);
+    EXPECT_THAT(refusal_of(out), HasSubstr(link.string()));
+    std::filesystem::remove(link);
+  }
+  EXPECT_EQ(refusal_of(out), "");
+}
+
+TEST(FolderLock, FolderOfSomebodyElse_IsLeftAsItIs_UnlessItIsTold) {
+  for (const char* name : {"results.json", "index.html", "a.shadowbench-tmp-99999999.png", ".worker-99999999/a",
+                           "cells/notes.json", "stress/notes.txt", "deep/er/a.txt"}) {
+    const TemporaryFolder folder("lock_foreign");
+    write_text_file(folder.path() / name, R"({"schema_version": 1})");
+    const std::set<std::string> before = list_names(folder.path());
+    EXPECT_THAT(refusal_of(folder.path()), HasSubstr("--force")) << name;
+    EXPECT_EQ(list_names(folder.path()), before) << name;
+    EXPECT_NO_THROW(FolderLock(folder.path(), true)) << name;
+  }
+}
+
+/// Versions of before left no mark.
+TEST(FolderLock, FolderOfThisProgram_IsTakenAgain) {
+  for (const char* name : {"results.json", "stress.json", "cells/0123456789abcdef.json", ".shadowbench-folder"}) {
+    const TemporaryFolder folder("lock_own");
+    write_text_file(folder.path() / name, R"({"command": ["shadowbench"], "schema_version": 1})");
+    write_text_file(folder.path() / "notes.txt", "of the user");
+    EXPECT_EQ(refusal_of(folder.path()), "") << name;
+  }
+  const TemporaryFolder folder("lock_parent");
+  { const FolderLock inner(folder.path() / "out" / "stress"); }
+  EXPECT_EQ(refusal_of(folder.path() / "out"), "");
 }
 
 /// Only names of ours are removed, however alike others are.

@@ -146,6 +146,15 @@ TEST_F(StoredPictureTest, FileCutOff_IsDamaged) {
   expect_refusal("long.exr", {"long.exr: ", "damaged"});
 }
 
+/// A GIF of 800 bytes: 65535 x 65535 pixels, a palette, and one pixel.
+TEST_F(StoredPictureTest, PictureLargerThanMemory_IsRefused) {
+  std::string gif = "GIF89a\xff\xff\xff\xff\xf7";
+  gif.append(2 + 768, '\0');
+  gif.append("\x2c\0\0\0\0\1\0\1\0\0\x02\x02\x44\x01\0\x3b", 16);
+  write_text_file(path("bomb.gif"), gif);
+  expect_refusal("bomb.gif", {"bomb.gif: ", "larger than memory"});
+}
+
 TEST_F(StoredPictureTest, DeepPicture_IsRefused) {
   const auto output = OIIO::ImageOutput::create(path("layers.exr"));
   OIIO::ImageSpec spec(2, 1, 1, OIIO::TypeDesc::FLOAT);

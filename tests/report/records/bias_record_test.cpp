@@ -3,6 +3,7 @@
 #include "report/records/bias_record.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -39,6 +40,9 @@ TEST(BiasToShip, IsReadFromTheReportsFolder_AsItWasWritten) {
     EXPECT_TRUE(list_bias_to_ship(report.path(), warnings).empty());
     EXPECT_EQ(warnings.size(), 1u) << text;
   }
+  std::filesystem::remove(report.path() / "bias" / "bias.json");
+  ASSERT_EQ(mkfifo((report.path() / "bias" / "bias.json").c_str(), 0600), 0);
+  EXPECT_TRUE(list_bias_to_ship(report.path(), warnings).empty()) << "and does not wait for a writer";
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "report/records/json_io.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "reference/metrics/metric_table.h"
+#include "report/records/json_values.h"
 #include "synthetic.h"
 
 namespace shadowbench::records {
@@ -474,6 +477,23 @@ TEST(JsonIo, CellsThatAreNone_AreRefused_OnceTheFileIsKnownToBeWhole) {
   EXPECT_THAT(refuse(bad.dump()), HasSubstr("the list 'cells' is missing"));
 }
 
+TEST(JsonIo, CellThatStandsTwice_IsRefused) {
+  const TemporaryFolder folder("json_twice");
+  const CellRecord cell = make_cell("cubes", "vsm", 4.5);
+  write_results(folder.path(), make_run(), {cell, make_cell("cubes", "esm", 4.5), cell});
+  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr(cell.key));
+}
+
+/// Twice as many members took four times as long: these, half a minute.
+TEST(JsonIo, ManyMembers_TakeTimeInProportion) {
+  std::string text = "{";
+  for (int i = 0; i < 60000; ++i) text += fmt::format("\"{}\": {{\"a\": {{}}}},", i);
+  std::istringstream stream(text + "\"last\": 0}");
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(parse_json(stream).size(), 60001u);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+}
+
 TEST(JsonIo, MissingFile_IsAnInputError) {
   EXPECT_THAT(message_of([] { read_results("/nowhere/results.json"); }), HasSubstr("/nowhere/results.json"));
 }
@@ -496,6 +516,8 @@ TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
   write_text_file(folder.path() / "results.json", R"({"schema_version": 3, "commit": )" + deep + "}");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
               HasSubstr("nested more than 100 deep"));
+  std::istringstream stream(deep);
+  EXPECT_THROW(parse_json(stream), std::invalid_argument);
 }
 
 TEST(JsonIo, PathsAndKeysThatLeaveTheFolder_AreRefused) {

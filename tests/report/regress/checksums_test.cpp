@@ -1,6 +1,7 @@
 #include "report/regress/checksums.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <random>
@@ -104,6 +105,13 @@ TEST_F(ChecksumsOfABaseline, FilesThatAreMissingOrFoldersOrTooMany_AreNamed) {
     EXPECT_THAT(find_damage(folder_), Contains(Pair(name, HasSubstr("is missing")))) << name;
     fs::create_directory(file);
     EXPECT_THAT(find_damage(folder_), Contains(Key(name))) << name;
+    fs::remove(file);
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+    try {
+      EXPECT_THAT(find_damage(folder_), Contains(Key(name))) << name << ": a pipe, which nobody writes";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    }
     fs::remove(file);
     write_text_file(file, whole);
   }

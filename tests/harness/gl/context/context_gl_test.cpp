@@ -175,5 +175,14 @@ TEST(Context, GlfwWithoutADisplay_IsRefusedWithTheReason) {
   if (display) setenv("DISPLAY", kept.c_str(), 1);
 }
 
+/// Mesa would end this process.
+TEST(Context, DriverThatMesaLacks_IsRefusedByName) {
+  setenv("GALLIUM_DRIVER", "nosuch", 1);
+  const Error error = catch_error([] { create_context(Backend::kSoftware); });
+  unsetenv("GALLIUM_DRIVER");
+  EXPECT_EQ(error.kind(), ErrorKind::kContext);
+  EXPECT_THAT(error.message(), HasSubstr("GALLIUM_DRIVER=nosuch"));
+}
+
 }  // namespace
 }  // namespace shadowbench::gl
