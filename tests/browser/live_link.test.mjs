@@ -91,7 +91,7 @@ test("TheCommand_MeasuresWhatIsSeen", (context) => withBrowser(kMesa, async (bro
     assert.doesNotMatch(await page.locator(".live").textContent(), /camera that was turned/);
     const words = splitWords(await commandOf(page));
     assert.equal(words.shift(), "shadowbench");
-    const out = join(folder, run), said = runProgram([...words, "--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd: pageOf(run, "..") });
+    const out = join(folder, run), said = runProgram([...words, "--rounds", "1", "--phases", "2", "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd: pageOf(run, "..") });
     assert.equal(said.status, 0, said.stderr);
     const { cells } = JSON.parse(readFileSync(join(out, "results.json"), "utf8")), [cell] = cells;
     assert.equal(cells.length, 1);
@@ -110,7 +110,7 @@ test("TheCommand_MeasuresWhatIsSeen", (context) => withBrowser(kMesa, async (bro
     await page.locator(".live").getByRole("button", { name: "As it was" }).click();
     await page.waitForFunction(() => !document.querySelector(".live code").textContent.includes("--light"));
     const plain = splitWords(await commandOf(page)).slice(1), same = join(folder, run + " same");
-    const again = runProgram([...plain, "--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids", "--out", same], { cwd: pageOf(run, "..") });
+    const again = runProgram([...plain, "--rounds", "1", "--phases", "2", "--no-attribution", "--gpu", "none", "--no-grids", "--out", same], { cwd: pageOf(run, "..") });
     assert.equal(again.status, 0, again.stderr);
     const key = JSON.parse(readFileSync(join(same, "results.json"), "utf8")).cells[0].key, place = await page.locator(".live select").first().inputValue();
     assert.equal(data.cells.find((each) => each.key === key)?.place, Number(place));
@@ -140,7 +140,7 @@ test("MapAndBias_AreThoseThatTheProgramDraws_AndALinkHoldsThem", (context) => wi
     await setParameter(page, "plane bias", kernels);
     const shot = await settled(page), shown = await canvasOf(page).evaluate((canvas) => canvas.toDataURL().split(",")[1]);
     const words = splitWords(await commandOf(page)).slice(1), out = join(folder, filter);
-    const said = runProgram([...words, "--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd: pageOf("several", "..") });
+    const said = runProgram([...words, "--rounds", "1", "--phases", "2", "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd: pageOf("several", "..") });
     assert.equal(said.status, 0, said.stderr);
     const [cell] = JSON.parse(readFileSync(join(out, "results.json"), "utf8")).cells, own = data.cells.find(({ configuration, place }) => place === 0 && data.configurations[configuration].label === label);
     assert.deepEqual([cell.filter, cell.map_size, cell.map_format], [filter, size, format]);
