@@ -22,7 +22,10 @@ test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts
 
   // What was timed is a cost of the answer and the table, can be saved, and is there when the page is opened again.
   await chooseCost(page, "static light, this GPU");
-  const { order } = await page.evaluate(() => shadowbench.answer.judge() && { order: shadowbench.answer.judge().keeping.map(({ index }) => index) });
+  const order = await page.evaluate(() => {
+    const { keeping, beaten, noGain } = shadowbench.answer.judge();
+    return [...keeping, ...beaten, ...noGain].sort((a, b) => a.rank - b.rank).map(({ index }) => index);
+  });
   const labels = (await readData(page)).configurations.map(({ label }) => label);
   assert.deepEqual(order.map((index) => labels[index]), ["none", "nine_compares"]);
   assert.match(await page.locator(".answer code").first().textContent(), / --light-motion static/);
