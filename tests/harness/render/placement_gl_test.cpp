@@ -7,12 +7,14 @@
 #include <map>
 
 #include "harness/measure/view_receivers.h"
+#include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/primitives.h"
 #include "harness/scene/scene.h"
 #include "harness/scene/validate.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/contract_fixture.h"
+#include "tests/harness/scene/test_files.h"
 
 namespace shadowbench::test {
 namespace {
@@ -126,6 +128,34 @@ TEST(Placement, SceneFarFromTheOrigin_LooksTheSame_AsFarAsTheBiasToleratesItsCoo
     expect_same(draw_placed(move_away(scene, nearly * farthest)), expected);
     const Pictures farther = draw_placed(move_away(scene, 8.0 * farthest));
     EXPECT_GT(find_share_off(farther.at("none"), expected.at("none")), kShareOff) << "theory ends too early";
+  }
+}
+
+/// A fence on a floor, whose file has it so far along x and z.
+scene::Scene load_fence_at(double distance) {
+  const auto at = [&](double x, double y, double z) {
+    return fmt::format("[{:.12g}, {}, {:.12g}]\n", distance + x, y, distance + z);
+  };
+  const scene::TestFolder folder;
+  const std::string text =
+      "title = \"fence\"\n[camera]\nvertical_fov_deg = 35\nposition = " + at(3.0, 2.5, 4.0) +
+      "target = " + at(0.0, 0.5, 0.0) + "[light]\nazimuth_deg = 72\nelevation_deg = 38\n" +
+      "[[object]]\nshape = \"plane\"\nsize = [8, 8]\ncenter = " + at(0.0, 0.0, 0.0) +
+      "[[object]]\nshape = \"box\"\nsize = [1, 1, 1]\nrotation_deg = [0, 30, 0]\ncenter = " + at(0.0, 0.5, 0.0) +
+      "[[object]]\nshape = \"bars\"\ncount = 7\nbar_width = 0.08\n" +
+      "spacing = 0.2\nlength = 1\ncenter = " + at(1.2, 0.5, 0.6);
+  return scene::load(folder.write("fence.toml", text).string(), {});
+}
+
+/// The last pixels that differ are those where a silhouette or an edge of a shadow runs through a sample within some
+/// roundings of a coordinate.
+TEST(Placement, SceneOfAFileFarFromTheOrigin_LooksTheSame) {
+  constexpr double kShareOfEdges = 2e-4;
+  const Pictures expected = draw_placed(load_fence_at(0.0));
+  for (const double distance : {20.0, 100.0, 200.0, 500.0, 10e3, 1e6}) {
+    SCOPED_TRACE(distance);
+    const Pictures seen = draw_placed(load_fence_at(distance));
+    for (const auto& [id, picture] : expected) EXPECT_LE(find_share_off(seen.at(id), picture), kShareOfEdges) << id;
   }
 }
 
