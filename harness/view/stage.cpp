@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "filters/format/front_matter.h"
+#include "harness/measure/phases.h"
 #include "harness/render/shade_pass.h"
 
 namespace shadowbench::view {
