@@ -113,7 +113,8 @@ class Background : public ::testing::Test {
 
   long count_kept() const {
     std::error_code none;
-    return std::distance(std::filesystem::directory_iterator(folder_, none), std::filesystem::directory_iterator());
+    const auto is_truth = [](const auto& entry) { return entry.path().extension() == ".truth"; };
+    return std::ranges::count_if(std::filesystem::directory_iterator(folder_, none), is_truth);
   }
 
   std::filesystem::path folder_ =
