@@ -317,7 +317,8 @@ TEST_F(Command, Stability_IsCountedDrawnAndLinked) {
   write("changed.glsl", vsm_text + "const float unused = 0.0;\n");
   const Outcome outcome =
       run("run --stability --out out --size 96x54 --map-size 64 --rounds 1 --scene cubes --no-truth --filters "
-          "none,vsm:bleed_reduction=0,esm:c=20,store=r16f,changed:bleed_reduction=0 --filter-file changed.glsl");
+          "none,vsm:bleed_reduction=0,esm:c=20,store=r16f,changed:bleed_reduction=0 --filter-file changed.glsl "
+          "--width own");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json cells = results(folder())["cells"];
   ASSERT_EQ(cells.size(), 4u);
