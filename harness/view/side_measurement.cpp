@@ -27,10 +27,9 @@ constexpr const char *kExperimentName = "measured.toml", *kReportName = "report"
 /// The folder for the files of all windows of this user.
 fs::path find_place() { return fs::temp_directory_path() / fmt::format("shadowbench-view-{}", getuid()); }
 
-/// The options of a run that takes no longer than it must: one phase, as few timed rounds as there may be, since times
-/// beside a window say nothing.
+/// The options of a run that takes no longer than it must: as few timed rounds as there may be, since times beside a
+/// window say nothing. Its phases stay, because the first of them is what the window shows.
 options::RunOptions make_quick(options::RunOptions options) {
-  options.phases = 1;
   options.rounds = {.precision = 1.0, .budget_ms = 1.0};
   options.stability = true;
   return options;

@@ -293,7 +293,7 @@ TEST_F(Regress, UnreadableFile_KeepsTheCellsThatWereNotCompared_Unreadable) {
 
 TEST_F(Regress, AcceptBesideAnother_IsRefused) {
   make_baseline();
-  const files::FolderLock other(folder() / "base");
+  const files::FolderLock other(folder() / "base", true);
   const Outcome refused = compare("a", "--accept");
   EXPECT_EQ(refused.exit_code, 6);
   EXPECT_THAT(refused.err, HasSubstr("base"));
@@ -374,6 +374,7 @@ TEST_F(Regress, BadInput_IsRefused) {
   expect_refusal("regress a --baseline base --out file/sub", 6, {"file/sub"});
   const std::string old = (folder() / "old").string();
   std::filesystem::create_directory(old);
+  write("old/.shadowbench-folder", "");
   ASSERT_EQ(mkfifo((old + "/regress.json").c_str(), 0600), 0);
   expect_refusal("regress a --baseline base --out old", 3, {"old/regress.json", "a device, a pipe"});
   expect_refusal("run --pad-texels -1 --out out", 2, {"--pad-texels", "-1"});

@@ -118,7 +118,7 @@ TEST_F(TuneCommand, Run_TakesTheParameters_AndTheCommandLineGoesFirst) {
   const nlohmann::json params = read_tuned()["filters"][0]["params"];
   const Outcome outcome =
       run("run --out report --scene cubes --map-size 64 --size 96x54 --rounds 1 --no-truth --tuned out/tuned.json "
-          "--filters vsm,vsm:radius=9,esm");
+          "--filters vsm,vsm:radius=9,esm --width own");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("no parameters for esm"));
   EXPECT_THAT(outcome.err, HasSubstr("128 texels, this run draws 64"));

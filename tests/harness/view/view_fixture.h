@@ -56,9 +56,7 @@ class ViewTest : public ProgramTest {
   }
 
   static images::Image draw(const view::ViewState& state, std::size_t side) {
-    options::RunOptions options = state.options;
-    options.phases = 1;  // the window does not move the map's grid
-    return draw(options, state.scene, state.active_camera(), state.sides[side].filter);
+    return draw(state.options, state.scene, state.active_camera(), state.sides[side].filter);
   }
 
   /// Changes a state as the window does.
