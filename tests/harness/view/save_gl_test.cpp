@@ -50,7 +50,7 @@ class SaveTest : public ViewTest {
   /// Saves the experiment and runs it: its cells are the sides, with the very images that these draw.
   void expect_same_run(const view::ViewState& state) const {
     view::save_experiment(state, folder() / "e" / "shown.toml");
-    const Outcome outcome = run("run e/shown.toml --grids --out out --no-truth --rounds 1 --phases 1");
+    const Outcome outcome = run("run e/shown.toml --grids --out out --no-truth --rounds 1 --phases 2");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err << read_text(folder() / "e" / "shown.toml");
     const records::Results results = records::read_results(folder() / "out" / "results.json");
     EXPECT_THAT(results.run.experiment.title, HasSubstr(state.scene.title));
@@ -182,7 +182,7 @@ TEST_F(SaveTest, TruthIsNoCell_AndTwoTruthsMakeARunAllTheSame) {
   expect_same_run(state);
   change(state, [&](view::ViewSettings& settings) { settings.sides[0].truth = true; });
   view::save_experiment(state, folder() / "truths.toml");
-  ASSERT_EQ(run("run truths.toml --grids --out out --no-truth --rounds 1 --phases 1").exit_code, 0);
+  ASSERT_EQ(run("run truths.toml --grids --out out --no-truth --rounds 1 --phases 2").exit_code, 0);
   EXPECT_EQ(records::read_results(folder() / "out" / "results.json").cells.size(), 1u);
 }
 
