@@ -52,8 +52,13 @@ class Configuration:
             sum((error["rmse"] * half) ** 2 for error, half in zip(errors, halves))) / (count * self.rmse)
 
     def keeps(self, limits):
-        values = [(cell[LIMITS[option][0]][LIMITS[option][1]], most) for cell in self.cells for option, most in limits.items()]
-        return all(value <= most for value, most in values)
+        """A scene with nothing to see of a fault breaks no limit on it; where no scene has a value, nobody can say."""
+        for option, most in limits.items():
+            values = [cell[LIMITS[option][0]][LIMITS[option][1]] for cell in self.cells]
+            known = [value for value in values if value is not None]
+            if not known or max(known) > most:
+                return False
+        return True
 
     def is_clearly_better(self, other):
         reach = max(self.reach, other.reach)

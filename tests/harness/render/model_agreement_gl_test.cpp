@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
         "poisson:bail=agree,pattern=blue-noise", "poisson:taps=5,rotation=interleaved-gradient", "pcss:bail=agree",
         "pcss:bail=agree on ball", "smrt:rays=1", "smrt:rotation=none,steps=16,thickness=1",
         "smrt:rotation=interleaved-gradient,rays=4,steps=4", "smrt:max_radius=4,thickness=8",
-        "msm_packed64:lookup=bilinear", "msm_packed64:radius=0", "msm_packed32:lookup=bilinear",
+        "msm_packed64:lookup=bilinear", "msm_packed64:radius=1", "msm_packed32:lookup=bilinear",
         "msm_packed32:radius=1", "msm_soft:max_radius=0", "msm_soft:max_radius=4,moment_bias=0.001"),
     [](const auto& each) {
       std::string name = each.param;

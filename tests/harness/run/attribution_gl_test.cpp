@@ -46,6 +46,7 @@ class Attributed : public ::testing::Test {
   /// A square over a floor that lies parallel to it, under a sun of this diameter that stands overhead.
   std::string write_parallel_planes(double sun_deg) const {
     std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / ".shadowbench-folder");  // the scene lies beside what the run writes
     const std::filesystem::path file = folder_ / fmt::format("planes{}.toml", sun_deg);
     std::ofstream(file) << fmt::format(
         "title = 'planes'\n[camera]\nposition = [0, 5, 5]\ntarget = [0, 0, 0]\nvertical_fov_deg = 40\n[light]\n"
