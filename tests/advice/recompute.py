@@ -150,7 +150,7 @@ def make_up_cells(template, draws):
 
 
 def ask(program, folder, words):
-    done = subprocess.run([program, "advise", str(folder), "--json", *words], capture_output=True, text=True)
+    done = subprocess.run([program, "advise", str(folder), "--json", "--cheapest", "time", *words], capture_output=True, text=True)
     if done.returncode not in (0, 1):
         sys.exit(f"{folder} {words}: {done.stderr}")
     return {each["name"]: identify(each["settings"]) for each in json.loads(done.stdout)["picks"]}
