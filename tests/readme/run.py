@@ -65,7 +65,7 @@ OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix", "--exclus
 # Paths that appear only when something is built or run.
 GENERATED = ("build/", "report/out")
 
-MOST_LINES_OF_FIRST_README = 120
+MOST_LINES_OF_FIRST_README = 100
 MOST_COLUMNS = 120
 SECONDS_PER_COMMAND = 300
 
