@@ -1,14 +1,14 @@
 #include "base/content_hash.h"
 
-#include <OpenImageIO/hash.h>
 #include <fmt/format.h>
+#include <xxhash.h>
 
 namespace shadowbench {
 
 void ContentHash::add(std::span<const std::byte> bytes) {
   // The length goes in too, so that pieces cannot slide into each other.
-  low_ = OIIO::xxhash::XXH64(bytes.data(), bytes.size(), low_ + bytes.size());
-  high_ = OIIO::xxhash::XXH64(bytes.data(), bytes.size(), ~high_ - bytes.size());
+  low_ = XXH64(bytes.data(), bytes.size(), low_ + bytes.size());
+  high_ = XXH64(bytes.data(), bytes.size(), ~high_ - bytes.size());
 }
 
 void ContentHash::add(std::string_view text) { add(std::as_bytes(std::span(text))); }

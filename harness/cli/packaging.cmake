@@ -33,6 +33,7 @@ add_custom_target(shadowbench_manual ALL DEPENDS ${_manual}/written)
 
 set(_share ${CMAKE_INSTALL_DATADIR}/shadowbench)
 install(TARGETS shadowbench RUNTIME COMPONENT program)
+install(TARGETS shadowbench_openimageio LIBRARY DESTINATION lib/shadowbench COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters COMPONENT program FILES_MATCHING PATTERN "*.glsl"
         PATTERN presets.toml)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/ DESTINATION ${_share}/shaders COMPONENT program PATTERN "*.md" EXCLUDE)
@@ -70,8 +71,11 @@ set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${SHADOWBENCH_MAINTAINER}")
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# What the program opens only at run time: the font of its pictures, and the drivers behind EGL and GLFW.
+# What the program opens only at run time: the font of its pictures, the drivers behind EGL and GLFW, and OSMesa.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core, libgl1, libgl1-mesa-dri")
+if(SHADOWBENCH_HAS_OSMESA)
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", libosmesa6")
+endif()
 # Costs on GPUs are left out where there is no compiler for them.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libvulkan1, mesa-vulkan-drivers")
 # A package lacks a part only where somebody has said so.

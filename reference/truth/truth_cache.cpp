@@ -1,7 +1,6 @@
 #include "reference/truth/truth_cache.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <fstream>
@@ -9,6 +8,7 @@
 #include <system_error>
 
 #include "base/atomic_file.h"
+#include "base/compression.h"
 #include "base/content_hash.h"
 #include "base/error.h"
 #include "base/temporary_files.h"
@@ -17,6 +17,7 @@ namespace shadowbench::truth {
 namespace {
 
 constexpr std::uintmax_t kMostHeaderBytes = 65536;
+constexpr int kCompression = 1;  // of floats, whose low bits nothing makes small
 
 constexpr std::string_view kMark = "shadowbench truth ";
 constexpr const char* kTag = "CACHEDIR.TAG";
@@ -63,29 +64,23 @@ std::optional<std::string> read_whole_file(const std::filesystem::path& path, st
 /// Returns all layers one after the other; nothing if the file is damaged or holds something else.
 std::optional<std::vector<float>> read_values(const std::filesystem::path& path, const std::string& name,
                                               std::size_t layers, std::size_t values) {
-  const std::uintmax_t packed_bytes = compressBound(layers * values * sizeof(float));
+  const std::uintmax_t packed_bytes = bound_compressed(layers * values * sizeof(float));
   const std::optional<std::string> file = read_whole_file(path, packed_bytes + kMostHeaderBytes);
   if (!file) return std::nullopt;
   const std::size_t begin = std::min(file->find('\n'), file->size() - 1) + 1;
   std::vector<float> all(layers * values);
-  const uLong wanted = all.size() * sizeof(float);
-  uLong bytes = wanted;
-  const int status = uncompress(reinterpret_cast<Bytef*>(all.data()), &bytes,
-                                reinterpret_cast<const Bytef*>(file->data() + begin), file->size() - begin);
-  const bool is_whole = status == Z_OK && bytes == wanted && file->starts_with(make_header(name, all, layers));
+  const auto packed = std::as_bytes(std::span(*file)).subspan(begin);
+  const bool is_whole = decompress_bytes(packed, std::as_writable_bytes(std::span(all))) &&
+                        file->starts_with(make_header(name, all, layers));
   return is_whole ? std::optional(std::move(all)) : std::nullopt;
 }
 
 void write_layers(const std::filesystem::path& path, const std::string& name, const Layers& layers) {
   std::vector<float> all;
   for (const std::vector<float>& layer : layers) all.insert(all.end(), layer.begin(), layer.end());
-  uLong bytes = compressBound(all.size() * sizeof(float));
-  std::string packed(bytes, '\0');
-  compress2(reinterpret_cast<Bytef*>(packed.data()), &bytes, reinterpret_cast<const Bytef*>(all.data()),
-            all.size() * sizeof(float), Z_BEST_SPEED);
   AtomicFile file(path);
   file.write(make_header(name, all, layers.size()));
-  file.write(std::string_view(packed).substr(0, bytes));
+  file.write(compress_bytes(std::as_bytes(std::span(all)), kCompression));
   file.commit();
 }
 

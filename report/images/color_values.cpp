@@ -1,12 +1,10 @@
 #include "report/images/color_values.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "report/images/picture_io.h"
+#include "base/error.h"
+#include "report/images/image_library.h"
 #include "report/records/format.h"
 
 namespace shadowbench::images {
@@ -30,15 +28,11 @@ double round_up_nicely(double value) {
 }  // namespace
 
 Colors color_map(const std::string& name) {
-  const Image ramp = make_ramp(kMapSteps, 1);
-  const OIIO::ImageSpec spec(kMapSteps, 1, 1, OIIO::TypeDesc::FLOAT);
-  const OIIO::ImageBuf source(spec, const_cast<float*>(ramp.texels.data()));
-  std::vector<Rgb> colors(kMapSteps);
-  OIIO::ImageBufAlgo::color_map(source, 0, name)
-      .get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, colors.data()->data());
-  for (Rgb& color : colors) std::ranges::transform(color, color.begin(), encode_srgb);  // its tables are linear
+  Image colors = open_image_library(ErrorKind::kOutput).color_linearly(make_ramp(kMapSteps, 1), name);
+  std::ranges::transform(colors.texels, colors.texels.begin(), encode_srgb);
   return [colors = std::move(colors)](float value) {
-    return colors[static_cast<std::size_t>(std::clamp(value, 0.0f, 1.0f) * (kMapSteps - 1) + 0.5f)];
+    const float* color = colors.at(static_cast<int>(std::clamp(value, 0.0f, 1.0f) * (kMapSteps - 1) + 0.5f), 0);
+    return Rgb{color[0], color[1], color[2]};
   };
 }
 

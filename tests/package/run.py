@@ -11,7 +11,8 @@ import tempfile
 from pathlib import Path
 
 TINY = ["--size", "32x18", "--map-size", "32", "--rounds", "1", "--no-attribution", "--no-cache", "--gl", "software"]
-OPENED_AT_RUN_TIME = ("fonts-dejavu-core", "libgl1-mesa-dri")
+OPENED_AT_RUN_TIME = ("fonts-dejavu-core", "libgl1-mesa-dri", "libosmesa6")
+MOST_LIBRARIES = 50  # 37 on Debian 12
 LINKED = (r"libembree\d-\d", r"libopenimageio[\d.]+")
 
 
@@ -70,6 +71,32 @@ def check_use(prefix, folder):
     expect((folder / "out/index.html").is_file(), "the run wrote no report")
 
 
+def check_start(prefix):
+    """What few commands need, the program opens when they do: loading it takes ten times as long as all else at the start."""
+    loaded = call("ldd", prefix / "bin/shadowbench").splitlines()
+    expect(len(loaded) <= MOST_LIBRARIES, f"{len(loaded)} libraries are loaded at the start")
+
+
+def check_missing(prefix, folder):
+    """A library that is opened late is missed by what needs it alone: one sentence, and the exit code of what failed."""
+    needed = call("readelf", "-d", prefix / "lib/shadowbench/shadowbench_openimageio.so")
+    broken = folder / "broken"
+    broken.mkdir()
+    for name in (re.search(r"\[(libOpenImageIO\.so[\d.]+)\]", needed)[1], "libOSMesa.so.8"):
+        (broken / name).write_text("no library", encoding="utf-8")
+    environment = dict(os.environ, SHADOWBENCH_ROOT=str(prefix / "share/shadowbench"), LD_LIBRARY_PATH=str(broken))
+    picture = prefix / "share/picture.ppm"
+    picture.write_bytes(b"P6 1 1 255 abc")
+    run = ["run", "--scene", "moved", "--filters", "none", *TINY, "--out", folder / "incomplete"]
+    for words, code, told in ((["--version"], 0, "shadowbench "), (["list", "filters"], 0, "vsm"),
+                              (["diff", picture, picture], 3, "libOpenImageIO"), (run, 6, "libOpenImageIO"),
+                              ([*run[:-3], "osmesa", *run[-2:]], 4, "libOSMesa")):
+        done = subprocess.run([str(word) for word in (prefix / "bin/shadowbench", *words)], text=True, capture_output=True, check=False,
+                              env=environment)
+        expect((done.returncode, told in done.stdout + done.stderr) == (code, True), f"{words}: exit code {done.returncode}\n{done.stderr}")
+        expect(code == 0 or done.stderr.splitlines()[-1].count("; install ") == 1, f"{words}: what is to be installed?\n{done.stderr}")
+
+
 def check_package(build, folder):
     call("cpack", "-G", "DEB", "--config", build / "CPackConfig.cmake", "-B", folder / "package")
     packages = list((folder / "package").glob("*.deb"))
@@ -81,7 +108,7 @@ def check_package(build, folder):
     expect(call("dpkg-deb", "--field", packages[0], "Section").strip() == "graphics", "another section than graphics")
     files = call("dpkg-deb", "--contents", packages[0])
     expect("./usr/bin/shadowbench\n" in files, f"no ./usr/bin/shadowbench in the package:\n{files}")
-    foreign = re.compile(r" \./usr/(?!bin/|share/|$)| \./(?!usr/)\w|_test|_bench")
+    foreign = re.compile(r" \./usr/(?!bin/|lib/$|lib/shadowbench/|share/|$)| \./(?!usr/)\w|_test|_bench")
     others = [line for line in files.splitlines() if foreign.search(line)]
     expect(not others, f"what is no part of the program is in the package: {others}")
 
@@ -96,6 +123,8 @@ def main():
         prefix = install(build, folder)
         check_files(prefix)
         check_use(prefix, folder)
+        check_start(prefix)
+        check_missing(prefix, folder)
         check_package(build, folder)
 
 

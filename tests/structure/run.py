@@ -26,7 +26,7 @@ FORBIDDEN = {
     "harness/stress": ["harness/bias", "harness/tune"], "harness/flicker": ["harness/bias", "harness/tune", "harness/stress"]}
 NAMESPACES = {"base": "shadowbench"}
 # Libraries (as includes have them) and the folder that alone knows them.
-KNOWN_IN = {r"OpenImageIO/(?!hash\.h)": "report/images/", r"ft2build": "report/images/", r"glslang/": "harness/spirv/", r"spirv_cross": "harness/spirv/"}
+KNOWN_IN = {r"OpenImageIO/": "report/images/", r"ft2build": "report/images/", r"glslang/": "harness/spirv/", r"spirv_cross": "harness/spirv/"}
 REPLAYS = "harness/stress/axes/"  # mistakes that were made with certain filters
 REFERENCE = "none"  # what every filter is compared with
 MOST_FILES = 40

@@ -1,3 +1,6 @@
+#include <dlfcn.h>
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "base/error.h"
@@ -16,6 +19,37 @@
 namespace shadowbench::gl {
 namespace {
 
+/// A function of a library, of whatever type it is.
+struct Symbol {
+  void* address;
+  template <class Function>
+  operator Function*() const {
+    return reinterpret_cast<Function*>(address);
+  }
+};
+
+Symbol find_function(const char* name) {
+  static void* const library = dlopen("libOSMesa.so.8", RTLD_NOW);
+  void* const address = library != nullptr ? dlsym(library, name) : nullptr;
+  if (address == nullptr) throw Error(ErrorKind::kContext, fmt::format("OSMesa cannot be loaded ({})", dlerror()));
+  return {address};
+}
+
+/// OSMesa is opened by the first context: it brings LLVM, which takes longer to load than all else that starts the
+/// program.
+struct Osmesa {
+  decltype(&OSMesaCreateContextAttribs) create_context = find_function("OSMesaCreateContextAttribs");
+  decltype(&OSMesaDestroyContext) destroy_context = find_function("OSMesaDestroyContext");
+  decltype(&OSMesaGetCurrentContext) get_current_context = find_function("OSMesaGetCurrentContext");
+  decltype(&OSMesaMakeCurrent) make_current = find_function("OSMesaMakeCurrent");
+  decltype(&OSMesaGetProcAddress) get_function = find_function("OSMesaGetProcAddress");
+};
+
+const Osmesa& osmesa() {
+  static const Osmesa functions;
+  return functions;
+}
+
 class OsmesaContext : public Context {
  public:
   OsmesaContext() {
@@ -31,7 +65,7 @@ class OsmesaContext : public Context {
                               OSMESA_CONTEXT_MINOR_VERSION,
                               5,
                               0};
-    context_ = Owned(OSMesaCreateContextAttribs(attributes, nullptr));
+    context_ = Owned(osmesa().create_context(attributes, nullptr));
     if (!context_) throw Error(ErrorKind::kContext, "OSMesa gives no OpenGL 4.5 core context");
     GlInfo info;
     info.backend = "osmesa";
@@ -42,21 +76,21 @@ class OsmesaContext : public Context {
  private:
   struct Destroy {
     void operator()(OSMesaContext context) const {
-      if (OSMesaGetCurrentContext() == context) OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0);
-      OSMesaDestroyContext(context);
+      if (osmesa().get_current_context() == context) osmesa().make_current(nullptr, nullptr, 0, 0, 0);
+      osmesa().destroy_context(context);
     }
   };
   using Owned = std::unique_ptr<std::remove_pointer_t<OSMesaContext>, Destroy>;
 
   void bind() override {
-    if (OSMesaMakeCurrent(context_.get(), window_, GL_UNSIGNED_BYTE, kSide, kSide) == 0)
+    if (osmesa().make_current(context_.get(), window_, GL_UNSIGNED_BYTE, kSide, kSide) == 0)
       throw Error(ErrorKind::kContext, "OSMesa cannot make its context current");
   }
 
-  void release() override { OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0); }
+  void release() override { osmesa().make_current(nullptr, nullptr, 0, 0, 0); }
 
   GLADloadfunc loader() const override {
-    return [](const char* name) { return reinterpret_cast<GLADapiproc>(OSMesaGetProcAddress(name)); };
+    return [](const char* name) { return reinterpret_cast<GLADapiproc>(osmesa().get_function(name)); };
   }
 
   // OSMesa wants a window to draw into; everything here draws into framebuffer objects.

@@ -11,6 +11,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "report/images/stored_picture.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {
@@ -80,6 +81,22 @@ TEST(PictureIo, GreyPng_IsLinearInTheValue) {
   ASSERT_EQ(back.channels, 1);
   EXPECT_EQ(code_at(back, 1, 0), 128);
   EXPECT_EQ(code_at(back, 3, 0), 255);
+}
+
+TEST(PictureIo, Png_KeepsEveryCode) {
+  const TemporaryFolder folder("png_codes");
+  for (const int channels : {1, 3}) {
+    Image image(257, 129, channels);  // more than one block of deflate
+    for (std::size_t i = 0; i < image.texels.size(); ++i)
+      image.texels[i] = static_cast<float>(i * i / 7 % 256) / 255.0f;
+    (channels == 1 ? write_grey_png : write_display_png)(folder.path() / "a.png", image);
+    const StoredPicture back = read_stored_picture(folder.path() / "a.png");
+    ASSERT_EQ(back.image.texels.size(), image.texels.size());
+    for (std::size_t i = 0; i < image.texels.size(); ++i)
+      ASSERT_FLOAT_EQ(back.image.texels[i], image.texels[i]) << channels << " " << i;
+    EXPECT_EQ(back.image.width, image.width);
+    EXPECT_TRUE(back.srgb);
+  }
 }
 
 TEST(PictureIo, TexelThatIsNotFinite_IsMagenta) {
@@ -209,7 +226,7 @@ TEST(PictureIo, FullDisk_IsAnOutputErrorAndLeavesNothing) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  for (const rlim_t bytes : {rlim_t{0}, rlim_t{100}, rlim_t{400}}) {
+  for (const rlim_t bytes : {rlim_t{0}, rlim_t{50}, rlim_t{150}}) {
     for (std::size_t i = 0; i < actions.size(); ++i) {
       const rlimit small{bytes, before.rlim_max};
       setrlimit(RLIMIT_FSIZE, &small);

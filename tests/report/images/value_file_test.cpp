@@ -1,7 +1,6 @@
 #include "report/images/value_file.h"
 
 #include <gmock/gmock.h>
-#include <zlib.h>
 
 #include <bit>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/compression.h"
 #include "base/error.h"
 #include "tests/report/records/synthetic.h"
 
@@ -35,9 +35,7 @@ std::vector<double> decode(const nlohmann::json& file, const nlohmann::json& pla
   const bool floats = !plane.contains("low");
   const auto packed = decode_base64(plane["data"]);
   std::vector<unsigned char> bytes((floats ? 4 : 2) * count);
-  uLongf size = static_cast<uLongf>(bytes.size());
-  EXPECT_EQ(uncompress(bytes.data(), &size, packed.data(), static_cast<uLong>(packed.size())), Z_OK);
-  EXPECT_EQ(size, bytes.size());
+  EXPECT_TRUE(decompress_bytes(std::as_bytes(std::span(packed)), std::as_writable_bytes(std::span(bytes))));
   std::vector<double> values;
   std::uint32_t word = 0;
   for (std::size_t i = 0; i < count; ++i) {
