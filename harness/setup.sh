@@ -8,7 +8,8 @@ packages="
   libcli11-dev libdeflate-dev libdraco-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev
   libglm-dev libgsl-dev libimgui-dev libmeshoptimizer-dev libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev
   libpugixml-dev libspirv-cross-c-shared-dev libssl-dev libstb-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev
-  libtomlplusplus-dev libvulkan-dev libxxhash-dev nlohmann-json3-dev openimageio-tools fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri mesa-vulkan-drivers
+  libtomlplusplus-dev libvulkan-dev libxxhash-dev nlohmann-json3-dev openimageio-tools
+  fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri mesa-vulkan-drivers
 "
 tests="chromium clang-format faketime gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev munge parallel
   python3-jsonschema slurm-wlm xauth xdotool xvfb"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "report/images/image_library.h"
 #include "report/records/format.h"
 

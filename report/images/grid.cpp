@@ -1,6 +1,7 @@
 #include "report/images/grid.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -157,7 +158,9 @@ Stack make_legend(const Grid& grid, const Shared& shared) {
 Figure make_figure(const Grid& grid) {
   const Shared shared = choose_shared(grid);
   Figure figure{grid.title, grid.subtitle, {}, grid.columns, make_legend(grid, shared)};
-  for (const GridTile& tile : grid.tiles) figure.stacks.push_back(make_stack(tile, grid, shared));
+  figure.stacks.resize(grid.tiles.size());
+  tbb::parallel_for(std::size_t{0}, grid.tiles.size(),
+                    [&](std::size_t i) { figure.stacks[i] = make_stack(grid.tiles[i], grid, shared); });
   return figure;
 }
 

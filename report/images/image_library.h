@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "base/error.h"
 #include "report/images/picture_io.h"
 #include "report/images/stored_picture.h"
 
