@@ -102,7 +102,7 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
 }
 
 /// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
-std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const LayerTrace& trace) {
+KernelTruth CellAnalyser::trace_unsettled(double half_width_texels, const LayerTrace& trace) {
   truth::ReceiverImage receivers = truth_.receivers.image;
   const bool is_within = half_width_texels <= around_.half_width_texels;
   const auto is_known = [&](std::size_t i) { return is_within && around_.settled[i] != 0; };
@@ -110,23 +110,24 @@ std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const
     receivers.content += fmt::format(" unsettled within {} texels", around_.half_width_texels);
   for (std::size_t i = 0; i < receivers.points.size(); ++i)
     if (is_known(i)) receivers.points[i].counts = false;
-  std::vector<float> visibility = trace_layers(layers_, receivers, trace).visibility;
-  for (std::size_t i = 0; i < visibility.size(); ++i)
-    if (is_known(i)) visibility[i] = around_.visibility[i];
-  return visibility;
+  truth::TracedVisibility traced = trace_layers(layers_, receivers, trace);
+  for (std::size_t i = 0; i < traced.visibility.size(); ++i)
+    if (is_known(i)) traced.visibility[i] = around_.visibility[i];
+  return {std::move(traced.visibility), std::move(traced.variance)};
 }
 
-const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
-  if (kernel.is_point()) return truth_.rays.hard;
+const KernelTruth& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
   const auto [place, is_new] = kernels_.try_emplace(kernel.name());
-  if (is_new)
+  if (is_new && kernel.is_point())
+    place->second.visibility = truth_.rays.hard;
+  else if (is_new)
     place->second = trace_unsettled(kernel.half_width(), [&](const auto& receivers, const auto& grid, std::size_t) {
       return assets_.tracer().trace_kernel(receivers, kernel, grid);
     });
   return place->second;
 }
 
-std::vector<float> CellAnalyser::disks_truth(const std::vector<std::vector<float>>& radii_texels) {
+KernelTruth CellAnalyser::disks_truth(const std::vector<std::vector<float>>& radii_texels) {
   double widest = 0.0;
   for (const std::vector<float>& layer : radii_texels)
     widest = std::max(widest, static_cast<double>(*std::ranges::max_element(layer)));
@@ -220,14 +221,15 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
     return;
   }
   const ModelImages images = evaluate(cell);
-  const std::vector<float> kernel = shape ? kernel_truth(*shape) : disks_truth(images.disk_radii_texels);
+  const KernelTruth kernel = shape ? kernel_truth(*shape) : disks_truth(images.disk_radii_texels);
   const std::vector<float>& image = cell.visibility.texels;
   metrics::Attribution attribution = metrics::attribute_error({.image = image,
                                                                .model = images.model,
                                                                .closer = images.closer,
-                                                               .kernel = kernel,
+                                                               .kernel = kernel.visibility,
                                                                .area = truth_.area.texels,
-                                                               .mask = truth_.mask});
+                                                               .mask = truth_.mask,
+                                                               .kernel_variance = kernel.variance});
   if (images.model.empty()) {
     record.absent["excused"] = filters::kNoModel;
     record.absent["attribution.numeric"] = "the filter has no scalar model: numeric error is within the estimator's";
@@ -235,13 +237,14 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
     record.excused = images.excused;
     record.absent.erase("excused");
   }
-  const auto to_kernel = metrics::measure_error(image, kernel, truth_.mask);
+  const auto to_kernel = metrics::measure_error(image, kernel.visibility, truth_.mask, kernel.variance);
   note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
        "no pixel of the image is finite");
   const bool random = request.spec.kind == filters::FilterKind::kStochastic;
-  note(record, "artefact.noise", record.artefact.noise,
-       random ? metrics::rate_noise(image, images.closer, kernel, truth_.mask, options_.width) : std::nullopt,
-       random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
+  note(
+      record, "artefact.noise", record.artefact.noise,
+      random ? metrics::rate_noise(image, images.closer, kernel.visibility, truth_.mask, options_.width) : std::nullopt,
+      random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
   note_attribution(cell, std::move(attribution));
 }
 

@@ -22,6 +22,12 @@ struct Surroundings {
   std::vector<std::uint8_t> settled;  ///< 1 where all rays of the square agree, and those of its neighbours' squares
 };
 
+/// A filter with an ideal map and an ideal bias.
+struct KernelTruth {
+  std::vector<float> visibility;
+  std::vector<float> variance;  ///< as an estimate; empty: none
+};
+
 /// Traces the surroundings of a view's receivers, `widest_kernel_texels` and a little more, or takes them from the
 /// cache. Requires a truth.
 Surroundings trace_surroundings(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
@@ -60,11 +66,11 @@ class CellAnalyser {
   std::vector<TracedLayer> layers_;
   Surroundings around_;
   std::optional<metrics::ArtefactMasks> masks_;
-  std::map<std::string, std::vector<float>> kernels_;  ///< by name
+  std::map<std::string, KernelTruth> kernels_;  ///< by name
 
-  std::vector<float> trace_unsettled(double half_width_texels, const LayerTrace& trace);
-  const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
-  std::vector<float> disks_truth(const std::vector<std::vector<float>>& radii_texels);
+  KernelTruth trace_unsettled(double half_width_texels, const LayerTrace& trace);
+  const KernelTruth& kernel_truth(const filters::Kernel& kernel);
+  KernelTruth disks_truth(const std::vector<std::vector<float>>& radii_texels);
   ModelLayer read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const;
   void count_artefacts(MeasuredCell& cell) const;
   std::optional<double> measure_seam(MeasuredCell& cell) const;
