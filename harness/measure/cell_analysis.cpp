@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "harness/measure/filter_setup.h"
 #include "harness/render/gbuffer.h"
@@ -14,6 +15,9 @@
 
 namespace shadowbench::measure {
 namespace {
+
+/// So many images that filters are compared with are kept: a run's memory does not grow with its cells.
+constexpr std::size_t kKeptClosers = 12;
 
 std::vector<std::uint8_t> find_settled(const truth::TracedVisibility& traced) {
   std::vector<std::uint8_t> settled;
@@ -93,7 +97,8 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
       task_(task),
       assets_(assets),
       truth_(truth),
-      light_(assets.light_map(*task.camera, task.map_size)) {
+      light_(assets.light_map(*task.camera, task.map_size)),
+      view_{options.width, options.height, options.seed, options.bias.plane_max_tangent()} {
   if (!truth_.absent.empty()) return;
   layers_ = list_traced_layers(renderer.shaders, assets.gbuffer(*task.camera),
                                make_unbiased_light(options, task.scene->light, light_.layers));
@@ -187,26 +192,44 @@ std::optional<double> CellAnalyser::measure_seam(MeasuredCell& cell) const {
                                [&](std::size_t a, std::size_t b) { return lie_on_one_surface(points[a], points[b]); });
 }
 
-ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const {
-  const render::Bias own = render::resolve_bias(options_.bias, layer, request.spec, request.values);
-  const bool has_kernel = filters::find_kernel(request.spec, request.values).has_value();
-  const render::Bias comparison =
-      has_kernel ? render::resolve_comparison_bias(options_.bias, layer, request.spec, request.values) : own;
-  const auto read = [&](const render::Bias& bias) {
-    return render::read_receivers(
-        renderer_.shaders, assets_.gbuffer(*task_.camera),
-        render::make_light_setup(layer, task_.scene->light, bias, options_.seed, options_.range));
-  };
-  ModelLayer made{light_.map.read(layer.layer), read(own), {}};
-  made.closer = own == comparison ? made.filter : read(comparison);
-  return made;
+std::vector<ModelLayer> CellAnalyser::read_layers(const std::vector<render::Bias>& biases) const {
+  std::vector<ModelLayer> layers;
+  for (std::size_t i = 0; i < biases.size(); ++i) {
+    const scene::LightFrustum& layer = light_.layers[i];
+    layers.push_back({light_.map.read(layer.layer),
+                      render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera),
+                                             render::make_light_setup(layer, task_.scene->light, biases[i],
+                                                                      options_.seed, options_.range))});
+  }
+  return layers;
 }
 
-ModelImages CellAnalyser::evaluate(const MeasuredCell& cell) const {
-  std::vector<ModelLayer> layers;
-  for (const scene::LightFrustum& layer : light_.layers) layers.push_back(read_layer(cell.request, layer));
-  const ModelView view{options_.width, options_.height, options_.seed, options_.bias.plane_max_tangent()};
-  return evaluate_model(cell.request, layers, view);
+/// `layers` has the receivers with these biases, where they were read.
+const std::vector<double>& CellAnalyser::compare(const filters::Kernel& kernel, const std::vector<render::Bias>& biases,
+                                                 const std::vector<ModelLayer>* layers) {
+  const std::string name = kernel.name();
+  const auto known =
+      std::ranges::find_if(closers_, [&](const Closer& each) { return each.kernel == name && each.biases == biases; });
+  if (known != closers_.end()) return known->image;
+  if (closers_.size() == kKeptClosers) closers_.erase(closers_.begin());
+  std::vector<double> image =
+      layers ? compare_kernel(kernel, *layers, view_) : compare_kernel(kernel, read_layers(biases), view_);
+  return closers_.emplace_back(Closer{name, biases, std::move(image)}).image;
+}
+
+ModelImages CellAnalyser::evaluate(const MeasuredCell& cell) {
+  const filters::FilterSpec& spec = cell.request.spec;
+  const filters::ParamValues& values = cell.request.values;
+  const auto kernel = filters::find_kernel(spec, values);
+  std::vector<render::Bias> own, of_comparison;
+  for (const scene::LightFrustum& layer : light_.layers) {
+    own.push_back(render::resolve_bias(options_.bias, layer, spec, values));
+    if (kernel) of_comparison.push_back(render::resolve_comparison_bias(options_.bias, layer, spec, values));
+  }
+  const std::vector<ModelLayer> layers = read_layers(own);
+  ModelImages images = evaluate_model(cell.request, layers, view_);
+  if (kernel) images.closer = compare(*kernel, of_comparison, own == of_comparison ? &layers : nullptr);
+  return images;
 }
 
 void CellAnalyser::attribute(MeasuredCell& cell) {

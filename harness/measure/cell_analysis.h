@@ -63,18 +63,29 @@ class CellAnalyser {
   SceneAssets& assets_;
   const SceneTruth& truth_;
   LightMap& light_;
+  ModelView view_;
   std::vector<TracedLayer> layers_;
   Surroundings around_;
   std::optional<metrics::ArtefactMasks> masks_;
   std::map<std::string, KernelTruth> kernels_;  ///< by name
 
+  /// What many filters are compared with.
+  struct Closer {
+    std::string kernel;
+    std::vector<render::Bias> biases;  ///< of the map's layers
+    std::vector<double> image;
+  };
+  std::vector<Closer> closers_;
+
   KernelTruth trace_unsettled(double half_width_texels, const LayerTrace& trace);
   const KernelTruth& kernel_truth(const filters::Kernel& kernel);
   KernelTruth disks_truth(const std::vector<std::vector<float>>& radii_texels);
-  ModelLayer read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const;
+  std::vector<ModelLayer> read_layers(const std::vector<render::Bias>& biases) const;
+  const std::vector<double>& compare(const filters::Kernel& kernel, const std::vector<render::Bias>& biases,
+                                     const std::vector<ModelLayer>* layers);
   void count_artefacts(MeasuredCell& cell) const;
   std::optional<double> measure_seam(MeasuredCell& cell) const;
-  ModelImages evaluate(const MeasuredCell& cell) const;
+  ModelImages evaluate(const MeasuredCell& cell);
   void attribute(MeasuredCell& cell);
 };
 
