@@ -74,6 +74,9 @@ class GBuffer {
   /// last kKeptReceiverMaps.
   const ReceiverBuffer& receivers(ShaderLibrary& shaders, const LightSetup& light) const;
 
+  /// Frees what receivers() keeps: 32 bytes for each pixel and light.
+  void forget_receivers() { receivers_.clear(); }
+
   /// Binds the textures to the units that lib/gbuffer.glsl and shade.frag name.
   void bind() const;
 
