@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct EncodeInput {
   T depth{};
   std::array<T, 2> slope{};  ///< |depth per texel| along u and v: of both sides of the texel the smaller
 };
+
+/// Visits the rows of a map, in parallel and in no order.
+void visit_rows(int rows, const std::function<void(int row)>& visit);
 
 /// mix() of each of several numbers.
 template <class T, std::size_t N>
@@ -107,9 +111,18 @@ class EncodedMap {
   void fill(const ModelInput& input, Encode encode) {
     border_ = stored(encode(EncodeInput<T>{T(Position<T>(1)), {}}));
     const std::vector<T> depths = linear_depths(input.map);
-    texels_.reserve(depths.size());
-    for (int y = 0; y < grid_.size(); ++y)
-      for (int x = 0; x < grid_.size(); ++x) texels_.push_back(stored(encode(describe(depths, x, y))));
+    texels_ = make_texels([&](int x, int y) { return stored(encode(describe(depths, x, y))); });
+  }
+
+  template <class Make>
+  std::vector<Texel> make_texels(const Make& make) const {
+    const auto size = static_cast<std::size_t>(grid_.size());
+    std::vector<Texel> texels(size * size);
+    visit_rows(grid_.size(), [&](int y) {
+      for (int x = 0; x < grid_.size(); ++x)
+        texels[static_cast<std::size_t>(y) * size + static_cast<std::size_t>(x)] = make(x, y);
+    });
+    return texels;
   }
 
   void blur(const std::vector<float>& weights) {
@@ -169,19 +182,29 @@ class EncodedMap {
   }
 
   std::vector<Texel> blurred(const std::vector<float>& weights, int dx, int dy) const {
-    std::vector<Texel> result;
-    result.reserve(texels_.size());
-    for (int y = 0; y < grid_.size(); ++y)
-      for (int x = 0; x < grid_.size(); ++x)
-        result.push_back(stored(log_ ? add_logs(weights, x, y, dx, dy) : add(weights, x, y, dx, dy)));
-    return result;
+    const int radius = static_cast<int>(weights.size() / 2), size = grid_.size();
+    return make_texels([&](int x, int y) {
+      const int along = dx * x + dy * y;
+      if (along < radius || along >= size - radius)
+        return blend(weights, [&](int i) -> const Texel& { return texel(x + i * dx, y + i * dy); });
+      const Texel* centre =
+          &texels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x)];
+      return blend(weights, [centre, step = dx + dy * size](int i) -> const Texel& { return centre[i * step]; });
+    });
   }
 
-  Texel add(const std::vector<float>& weights, int x, int y, int dx, int dy) const {
+  /// `tap` gives the texel under each weight, counted from the middle one.
+  template <class Tap>
+  Texel blend(const std::vector<float>& weights, const Tap& tap) const {
+    return stored(log_ ? add_logs(weights, tap) : add(weights, tap));
+  }
+
+  template <class Tap>
+  Texel add(const std::vector<float>& weights, const Tap& tap_at) const {
     const int radius = static_cast<int>(weights.size() / 2);
     Texel sum{};
     for (int i = -radius; i <= radius; ++i) {
-      const Texel& tap = texel(x + i * dx, y + i * dy);
+      const Texel& tap = tap_at(i);
       const T weight(static_cast<Position<T>>(weights[static_cast<std::size_t>(i + radius)]));
       for (std::size_t c = 0; c < N; ++c) sum[c] = sum[c] + weight * tap[c];
     }
@@ -191,16 +214,17 @@ class EncodedMap {
   }
 
   /// ln(sum w e^x), shifted by the largest x so that nothing overflows.
-  Texel add_logs(const std::vector<float>& weights, int x, int y, int dx, int dy) const {
+  template <class Tap>
+  Texel add_logs(const std::vector<float>& weights, const Tap& tap) const {
     const int radius = static_cast<int>(weights.size() / 2);
     Texel result;
     for (std::size_t c = 0; c < N; ++c) {
-      T largest = texel(x - radius * dx, y - radius * dy)[c];
-      for (int i = -radius; i <= radius; ++i) largest = maximum(largest, texel(x + i * dx, y + i * dy)[c]);
+      T largest = tap(-radius)[c];
+      for (int i = -radius; i <= radius; ++i) largest = maximum(largest, tap(i)[c]);
       T sum{};
       for (int i = -radius; i <= radius; ++i) {
         const T weight(static_cast<Position<T>>(weights[static_cast<std::size_t>(i + radius)]));
-        sum = sum + weight * exponential(texel(x + i * dx, y + i * dy)[c] - largest, accuracy_);
+        sum = sum + weight * exponential(tap(i)[c] - largest, accuracy_);
       }
       result[c] = largest + logarithm(sum);
     }

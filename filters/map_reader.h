@@ -148,6 +148,8 @@ class PlaneBias {
   /// `max_tangent` 0 switches it off.
   explicit PlaneBias(double max_tangent) : max_tangent_(max_tangent) {}
 
+  bool is_on() const { return max_tangent_ > 0.0; }
+
   /// `at` in texels of the map; the lowest depth within `reach_texels` of it per axis. `z` is the receiver's biased
   /// depth.
   float depth(const Receiver& r, int map_size, glm::dvec2 at, double reach_texels, float z) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace shadowbench::filters {
 namespace {
@@ -104,9 +105,10 @@ bool PercentageCloser::is_lit(int x, int y, const Receiver& receiver) const {
   return map_.is_lit(depth, map_.at(grid_.find(x, y)));
 }
 
-PercentageCloser::Span PercentageCloser::spread_triangle(double position) const {
+PercentageCloser::Span PercentageCloser::spread_triangle(double position, Span span) const {
   const double h = kernel_.triangle();
-  Span span{static_cast<int>(std::floor(position - h)), {}};
+  span.first = static_cast<int>(std::floor(position - h));
+  span.weights.clear();
   const int last = static_cast<int>(std::floor(position + h));
   for (int texel = span.first; texel <= last; ++texel)
     span.weights.push_back(integrate_tent((texel - position) / h, (texel + 1 - position) / h));
@@ -114,14 +116,13 @@ PercentageCloser::Span PercentageCloser::spread_triangle(double position) const 
 }
 
 /// `position` in texels, texel centres at .5.
-PercentageCloser::Span PercentageCloser::spread(double position) const {
-  if (kernel_.triangle() > 0.0) return spread_triangle(position);
-  Span span;
+PercentageCloser::Span PercentageCloser::spread(double position, Span span) const {
+  if (kernel_.triangle() > 0.0) return spread_triangle(position, std::move(span));
   const bool bilinear = kernel_.reconstruction() == Reconstruction::kBilinear;
   const double shift = bilinear ? 0.5 : 0.0;
   span.first = static_cast<int>(std::floor(position + kernel_.atoms().front().offset - shift));
   const int last = static_cast<int>(std::floor(position + kernel_.atoms().back().offset - shift)) + 1;
-  span.weights.resize(static_cast<std::size_t>(last - span.first + 1));
+  span.weights.assign(static_cast<std::size_t>(last - span.first + 1), 0.0);
   for (const Kernel::Atom& atom : kernel_.atoms()) {
     const double at = position + atom.offset - shift, base = std::floor(at);
     const auto texel = static_cast<std::size_t>(static_cast<int>(base) - span.first);
@@ -132,35 +133,68 @@ PercentageCloser::Span PercentageCloser::spread(double position) const {
   return span;
 }
 
-double PercentageCloser::gather_grid(double px, double py, const Receiver& receiver) const {
-  const Span columns = spread(px), rows = spread(py);
+template <class IsLit>
+double PercentageCloser::gather_grid(double px, double py, const IsLit& is_lit) const {
+  thread_local Span columns, rows;
+  columns = spread(px, std::move(columns));
+  rows = spread(py, std::move(rows));
   double sum = 0.0;
   for (std::size_t y = 0; y < rows.weights.size(); ++y) {
     double row = 0.0;
     for (std::size_t x = 0; x < columns.weights.size(); ++x)
-      if (is_lit(columns.first + static_cast<int>(x), rows.first + static_cast<int>(y), receiver))
-        row += columns.weights[x];
+      if (is_lit(columns.first + static_cast<int>(x), rows.first + static_cast<int>(y))) row += columns.weights[x];
     sum += rows.weights[y] * row;
   }
   return sum;
 }
 
-double PercentageCloser::gather_disk(double px, double py, const Receiver& receiver) const {
+/// Most receivers have texels of one kind around them, which need no weights.
+template <class IsLit>
+double PercentageCloser::gather_disk(double px, double py, const IsLit& is_lit) const {
   const double reach = kernel_.half_width();
+  const int left = static_cast<int>(std::floor(px - reach)), right = static_cast<int>(std::ceil(px + reach)),
+            bottom = static_cast<int>(std::floor(py - reach)), top = static_cast<int>(std::ceil(py + reach));
+  const bool first = is_lit(left, bottom);
+  const auto agree = [&] {
+    for (int y = bottom; y <= top; ++y)
+      for (int x = left; x <= right; ++x)
+        if (is_lit(x, y) != first) return false;
+    return true;
+  };
+  if (agree()) return first ? 1.0 : 0.0;
   double lit = 0.0, all = 0.0;
-  for (int y = static_cast<int>(std::floor(py - reach)); y <= static_cast<int>(std::ceil(py + reach)); ++y) {
-    for (int x = static_cast<int>(std::floor(px - reach)); x <= static_cast<int>(std::ceil(px + reach)); ++x) {
+  for (int y = bottom; y <= top; ++y) {
+    for (int x = left; x <= right; ++x) {
       const double weight = disk_->at(x + 0.5 - px, y + 0.5 - py);
       all += weight;
-      if (is_lit(x, y, receiver)) lit += weight;
+      if (is_lit(x, y)) lit += weight;
     }
   }
   return lit / all;
 }
 
+template <class IsLit>
+double PercentageCloser::gather(double px, double py, const IsLit& is_lit) const {
+  return disk_ ? gather_disk(px, py, is_lit) : gather_grid(px, py, is_lit);
+}
+
+/// Whether all texels about a position lie in the map.
+bool PercentageCloser::lies_inside(double px, double py) const {
+  const double reach = kernel_.half_width() + 1.0;
+  return std::min(px, py) >= reach && std::max(px, py) + reach + 1.0 <= static_cast<double>(map_.size);
+}
+
 double PercentageCloser::at(const Receiver& receiver) const {
   const double px = grid_.position(receiver.uv.x, 0.0), py = grid_.position(receiver.uv.y, 0.0);
-  return disk_ ? gather_disk(px, py, receiver) : gather_grid(px, py, receiver);
+  if (plane_.is_on() || farthest_tap_ > 0.0)
+    return gather(px, py, [&](int x, int y) { return is_lit(x, y, receiver); });
+  const float reference = map_.reference(receiver.depth);
+  if (!lies_inside(px, py))
+    return gather(
+        px, py, [&](int x, int y) { return map_.curve.is_lit(reference, map_.at(grid_.find(x, y))); });
+  return gather(px, py, [&, size = static_cast<std::size_t>(map_.size)](int x, int y) {
+    return map_.curve.is_lit(reference, map_.stored[static_cast<std::size_t>(y) * size + static_cast<std::size_t>(x)]);
+  });
 }
 
 }  // namespace shadowbench::filters

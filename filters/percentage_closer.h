@@ -60,11 +60,20 @@ class PercentageCloser {
   double farthest_tap_;              ///< for which more bias is taken off, texels
   std::optional<DiskWeights> disk_;  ///< for disks alone
 
-  Span spread(double position) const;
-  Span spread_triangle(double position) const;
+  /// Give the weights about a position in the memory of a span.
+  Span spread(double position, Span span) const;
+  Span spread_triangle(double position, Span span) const;
+
   bool is_lit(int x, int y, const Receiver& receiver) const;
-  double gather_grid(double px, double py, const Receiver& receiver) const;
-  double gather_disk(double px, double py, const Receiver& receiver) const;
+  bool lies_inside(double px, double py) const;
+
+  /// `is_lit` says of a texel whether it blocks no light.
+  template <class IsLit>
+  double gather(double px, double py, const IsLit& is_lit) const;
+  template <class IsLit>
+  double gather_grid(double px, double py, const IsLit& is_lit) const;
+  template <class IsLit>
+  double gather_disk(double px, double py, const IsLit& is_lit) const;
 };
 
 }  // namespace shadowbench::filters

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "harness/measure/filter_setup.h"
 #include "harness/render/gbuffer.h"
@@ -14,6 +15,9 @@
 
 namespace shadowbench::measure {
 namespace {
+
+/// So many images that filters are compared with are kept: a run's memory does not grow with its cells.
+constexpr std::size_t kKeptClosers = 12;
 
 std::vector<std::uint8_t> find_settled(const truth::TracedVisibility& traced) {
   std::vector<std::uint8_t> settled;
@@ -93,7 +97,8 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
       task_(task),
       assets_(assets),
       truth_(truth),
-      light_(assets.light_map(*task.camera, task.map_size)) {
+      light_(assets.light_map(*task.camera, task.map_size)),
+      view_{options.width, options.height, options.seed, options.bias.plane_max_tangent()} {
   if (!truth_.absent.empty()) return;
   layers_ = list_traced_layers(renderer.shaders, assets.gbuffer(*task.camera),
                                make_unbiased_light(options, task.scene->light, light_.layers));
@@ -102,7 +107,7 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
 }
 
 /// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
-std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const LayerTrace& trace) {
+KernelTruth CellAnalyser::trace_unsettled(double half_width_texels, const LayerTrace& trace) {
   truth::ReceiverImage receivers = truth_.receivers.image;
   const bool is_within = half_width_texels <= around_.half_width_texels;
   const auto is_known = [&](std::size_t i) { return is_within && around_.settled[i] != 0; };
@@ -110,23 +115,24 @@ std::vector<float> CellAnalyser::trace_unsettled(double half_width_texels, const
     receivers.content += fmt::format(" unsettled within {} texels", around_.half_width_texels);
   for (std::size_t i = 0; i < receivers.points.size(); ++i)
     if (is_known(i)) receivers.points[i].counts = false;
-  std::vector<float> visibility = trace_layers(layers_, receivers, trace).visibility;
-  for (std::size_t i = 0; i < visibility.size(); ++i)
-    if (is_known(i)) visibility[i] = around_.visibility[i];
-  return visibility;
+  truth::TracedVisibility traced = trace_layers(layers_, receivers, trace);
+  for (std::size_t i = 0; i < traced.visibility.size(); ++i)
+    if (is_known(i)) traced.visibility[i] = around_.visibility[i];
+  return {std::move(traced.visibility), std::move(traced.variance)};
 }
 
-const std::vector<float>& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
-  if (kernel.is_point()) return truth_.rays.hard;
+const KernelTruth& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
   const auto [place, is_new] = kernels_.try_emplace(kernel.name());
-  if (is_new)
+  if (is_new && kernel.is_point())
+    place->second.visibility = truth_.rays.hard;
+  else if (is_new)
     place->second = trace_unsettled(kernel.half_width(), [&](const auto& receivers, const auto& grid, std::size_t) {
       return assets_.tracer().trace_kernel(receivers, kernel, grid);
     });
   return place->second;
 }
 
-std::vector<float> CellAnalyser::disks_truth(const std::vector<std::vector<float>>& radii_texels) {
+KernelTruth CellAnalyser::disks_truth(const std::vector<std::vector<float>>& radii_texels) {
   double widest = 0.0;
   for (const std::vector<float>& layer : radii_texels)
     widest = std::max(widest, static_cast<double>(*std::ranges::max_element(layer)));
@@ -186,26 +192,44 @@ std::optional<double> CellAnalyser::measure_seam(MeasuredCell& cell) const {
                                [&](std::size_t a, std::size_t b) { return lie_on_one_surface(points[a], points[b]); });
 }
 
-ModelLayer CellAnalyser::read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const {
-  const render::Bias own = render::resolve_bias(options_.bias, layer, request.spec, request.values);
-  const bool has_kernel = filters::find_kernel(request.spec, request.values).has_value();
-  const render::Bias comparison =
-      has_kernel ? render::resolve_comparison_bias(options_.bias, layer, request.spec, request.values) : own;
-  const auto read = [&](const render::Bias& bias) {
-    return render::read_receivers(
-        renderer_.shaders, assets_.gbuffer(*task_.camera),
-        render::make_light_setup(layer, task_.scene->light, bias, options_.seed, options_.range));
-  };
-  ModelLayer made{light_.map.read(layer.layer), read(own), {}};
-  made.closer = own == comparison ? made.filter : read(comparison);
-  return made;
+std::vector<ModelLayer> CellAnalyser::read_layers(const std::vector<render::Bias>& biases) const {
+  std::vector<ModelLayer> layers;
+  for (std::size_t i = 0; i < biases.size(); ++i) {
+    const scene::LightFrustum& layer = light_.layers[i];
+    layers.push_back({light_.map.read(layer.layer),
+                      render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera),
+                                             render::make_light_setup(layer, task_.scene->light, biases[i],
+                                                                      options_.seed, options_.range))});
+  }
+  return layers;
 }
 
-ModelImages CellAnalyser::evaluate(const MeasuredCell& cell) const {
-  std::vector<ModelLayer> layers;
-  for (const scene::LightFrustum& layer : light_.layers) layers.push_back(read_layer(cell.request, layer));
-  const ModelView view{options_.width, options_.height, options_.seed, options_.bias.plane_max_tangent()};
-  return evaluate_model(cell.request, layers, view);
+/// `layers` has the receivers with these biases, where they were read.
+const std::vector<double>& CellAnalyser::compare(const filters::Kernel& kernel, const std::vector<render::Bias>& biases,
+                                                 const std::vector<ModelLayer>* layers) {
+  const std::string name = kernel.name();
+  const auto known =
+      std::ranges::find_if(closers_, [&](const Closer& each) { return each.kernel == name && each.biases == biases; });
+  if (known != closers_.end()) return known->image;
+  if (closers_.size() == kKeptClosers) closers_.erase(closers_.begin());
+  std::vector<double> image =
+      layers ? compare_kernel(kernel, *layers, view_) : compare_kernel(kernel, read_layers(biases), view_);
+  return closers_.emplace_back(Closer{name, biases, std::move(image)}).image;
+}
+
+ModelImages CellAnalyser::evaluate(const MeasuredCell& cell) {
+  const filters::FilterSpec& spec = cell.request.spec;
+  const filters::ParamValues& values = cell.request.values;
+  const auto kernel = filters::find_kernel(spec, values);
+  std::vector<render::Bias> own, of_comparison;
+  for (const scene::LightFrustum& layer : light_.layers) {
+    own.push_back(render::resolve_bias(options_.bias, layer, spec, values));
+    if (kernel) of_comparison.push_back(render::resolve_comparison_bias(options_.bias, layer, spec, values));
+  }
+  const std::vector<ModelLayer> layers = read_layers(own);
+  ModelImages images = evaluate_model(cell.request, layers, view_);
+  if (kernel) images.closer = compare(*kernel, of_comparison, own == of_comparison ? &layers : nullptr);
+  return images;
 }
 
 void CellAnalyser::attribute(MeasuredCell& cell) {
@@ -220,14 +244,15 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
     return;
   }
   const ModelImages images = evaluate(cell);
-  const std::vector<float> kernel = shape ? kernel_truth(*shape) : disks_truth(images.disk_radii_texels);
+  const KernelTruth kernel = shape ? kernel_truth(*shape) : disks_truth(images.disk_radii_texels);
   const std::vector<float>& image = cell.visibility.texels;
   metrics::Attribution attribution = metrics::attribute_error({.image = image,
                                                                .model = images.model,
                                                                .closer = images.closer,
-                                                               .kernel = kernel,
+                                                               .kernel = kernel.visibility,
                                                                .area = truth_.area.texels,
-                                                               .mask = truth_.mask});
+                                                               .mask = truth_.mask,
+                                                               .kernel_variance = kernel.variance});
   if (images.model.empty()) {
     record.absent["excused"] = filters::kNoModel;
     record.absent["attribution.numeric"] = "the filter has no scalar model: numeric error is within the estimator's";
@@ -235,13 +260,14 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
     record.excused = images.excused;
     record.absent.erase("excused");
   }
-  const auto to_kernel = metrics::measure_error(image, kernel, truth_.mask);
+  const auto to_kernel = metrics::measure_error(image, kernel.visibility, truth_.mask, kernel.variance);
   note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
        "no pixel of the image is finite");
   const bool random = request.spec.kind == filters::FilterKind::kStochastic;
-  note(record, "artefact.noise", record.artefact.noise,
-       random ? metrics::rate_noise(image, images.closer, kernel, truth_.mask, options_.width) : std::nullopt,
-       random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
+  note(
+      record, "artefact.noise", record.artefact.noise,
+      random ? metrics::rate_noise(image, images.closer, kernel.visibility, truth_.mask, options_.width) : std::nullopt,
+      random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
   note_attribution(cell, std::move(attribution));
 }
 

@@ -22,6 +22,12 @@ struct Surroundings {
   std::vector<std::uint8_t> settled;  ///< 1 where all rays of the square agree, and those of its neighbours' squares
 };
 
+/// A filter with an ideal map and an ideal bias.
+struct KernelTruth {
+  std::vector<float> visibility;
+  std::vector<float> variance;  ///< as an estimate; empty: none
+};
+
 /// Traces the surroundings of a view's receivers, `widest_kernel_texels` and a little more, or takes them from the
 /// cache. Requires a truth.
 Surroundings trace_surroundings(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
@@ -57,18 +63,29 @@ class CellAnalyser {
   SceneAssets& assets_;
   const SceneTruth& truth_;
   LightMap& light_;
+  ModelView view_;
   std::vector<TracedLayer> layers_;
   Surroundings around_;
   std::optional<metrics::ArtefactMasks> masks_;
-  std::map<std::string, std::vector<float>> kernels_;  ///< by name
+  std::map<std::string, KernelTruth> kernels_;  ///< by name
 
-  std::vector<float> trace_unsettled(double half_width_texels, const LayerTrace& trace);
-  const std::vector<float>& kernel_truth(const filters::Kernel& kernel);
-  std::vector<float> disks_truth(const std::vector<std::vector<float>>& radii_texels);
-  ModelLayer read_layer(const filters::FilterRequest& request, const scene::LightFrustum& layer) const;
+  /// What many filters are compared with.
+  struct Closer {
+    std::string kernel;
+    std::vector<render::Bias> biases;  ///< of the map's layers
+    std::vector<double> image;
+  };
+  std::vector<Closer> closers_;
+
+  KernelTruth trace_unsettled(double half_width_texels, const LayerTrace& trace);
+  const KernelTruth& kernel_truth(const filters::Kernel& kernel);
+  KernelTruth disks_truth(const std::vector<std::vector<float>>& radii_texels);
+  std::vector<ModelLayer> read_layers(const std::vector<render::Bias>& biases) const;
+  const std::vector<double>& compare(const filters::Kernel& kernel, const std::vector<render::Bias>& biases,
+                                     const std::vector<ModelLayer>* layers);
   void count_artefacts(MeasuredCell& cell) const;
   std::optional<double> measure_seam(MeasuredCell& cell) const;
-  ModelImages evaluate(const MeasuredCell& cell) const;
+  ModelImages evaluate(const MeasuredCell& cell);
   void attribute(MeasuredCell& cell);
 };
 

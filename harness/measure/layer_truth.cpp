@@ -1,6 +1,7 @@
 #include "harness/measure/layer_truth.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/content_hash.h"
 
@@ -21,6 +22,7 @@ class SharedTrace {
   explicit SharedTrace(std::size_t pixels)
       : sum_{std::vector<float>(pixels, 1.0f), std::vector<float>(pixels), std::vector<std::uint8_t>(pixels, 1),
              std::vector<std::uint32_t>(pixels)},
+        deviations_(pixels),
         first_(pixels, kNone) {}
 
   void add(const truth::TracedVisibility& own, const std::vector<float>& shares) {
@@ -28,12 +30,17 @@ class SharedTrace {
       if (shares[i] > 0.0f) add_pixel(i, own, shares[i]);
   }
 
-  truth::TracedVisibility take() { return std::move(sum_); }
+  truth::TracedVisibility take() {
+    for (float& deviation : deviations_) deviation *= deviation;
+    sum_.variance = std::move(deviations_);
+    return std::move(sum_);
+  }
 
  private:
   static constexpr float kNone = -1.0f;
   truth::TracedVisibility sum_;
-  std::vector<float> first_;  ///< what the first layer found
+  std::vector<float> deviations_;  ///< roots of variances: all layers trace a pixel with the same samples
+  std::vector<float> first_;       ///< what the first layer found
 
   void add_pixel(std::size_t i, const truth::TracedVisibility& own, float share) {
     const float found = own.visibility[i];
@@ -42,6 +49,7 @@ class SharedTrace {
     const bool agrees = first_[i] == found;
     sum_.visibility[i] = is_first ? found : sum_.visibility[i] + share * (found - first_[i]);
     sum_.standard_error[i] += share * own.standard_error[i];
+    deviations_[i] += share * std::sqrt(own.variance[i]);
     sum_.unanimous[i] = static_cast<std::uint8_t>(sum_.unanimous[i] && own.unanimous[i] && agrees);
     sum_.rays[i] = std::max(sum_.rays[i], own.rays[i]) + (agrees ? 0 : 1);
   }

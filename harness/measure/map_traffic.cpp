@@ -253,14 +253,14 @@ std::optional<std::vector<double>> count_map_traffic(const filters::FilterReques
   std::vector<TiledLayer> tiled;
   std::size_t receivers = 0;
   for (const ModelLayer& layer : layers) {
-    if (layer.filter.empty()) continue;
+    if (layer.receivers.empty()) continue;
     const filters::ModelInput input{.spec = request.spec,
                                     .values = request.values,
                                     .map = layer.map,
                                     .seed = view.seed,
                                     .plane_max_tangent = view.plane_max_tangent};
-    tiled.emplace_back(model->prepare(input, filters::Precision::kFloat), layer.filter, view.width, view.height);
-    receivers += layer.filter.size();
+    tiled.emplace_back(model->prepare(input, filters::Precision::kFloat), layer.receivers, view.width, view.height);
+    receivers += layer.receivers.size();
   }
   return count_traffic(tiled, receivers, caches);
 }

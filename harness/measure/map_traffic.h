@@ -37,7 +37,6 @@ struct CountedLayer {
 /// associates fully, and drops the line that was not read for the longest time; every line that it does not hold is
 /// fetched. Not counted: reads outside a map, which are none; what the passes before the lookup read and write.
 ///
-/// Of the layers' receivers those of the filter are asked.
 /// Nothing where the filter has no scalar model, or no layer a receiver.
 /// Cost: the model's prefilter in single precision, and some of its lookups. The receivers of a tile are asked in an
 /// order that spreads them over it, until 8 in a row, with 128 reads, bring no new line: all of them where a filter

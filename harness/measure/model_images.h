@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "filters/catalogue.h"
+#include "filters/kernel.h"
 #include "filters/model.h"
 
 namespace shadowbench::measure {
@@ -11,19 +12,18 @@ namespace shadowbench::measure {
 /// What a filter's scalar model and its kernel make of a view; rows run from top to bottom. Visibility is 1 where there
 /// is no receiver, and where the map does not reach.
 struct ModelImages {
-  std::vector<double> model;   ///< the filter in double precision; empty where it has no scalar model
-  std::vector<double> closer;  ///< brute-force percentage-closer filter with its kernel
+  std::vector<double> model;  ///< the filter in double precision; empty where it has no scalar model
+  std::vector<double>
+      closer;  ///< brute-force percentage-closer filter with the pixels' own kernels, where these differ
   /// Of the pixels' own kernels, where these differ, by layer of the map; empty otherwise.
   std::vector<std::vector<float>> disk_radii_texels;
   std::int64_t excused = 0;  ///< receivers where rounding decides which texel is read, or a comparison
 };
 
-/// A layer of a light's map, with the receivers of a view that it serves: with the bias of the filter, and with that of
-/// its percentage-closer filter.
+/// A layer of a light's map, with the receivers of a view that it serves.
 struct ModelLayer {
   filters::DepthMap map;
-  std::vector<filters::Receiver> filter;
-  std::vector<filters::Receiver> closer;  ///< the same pixels in the same order
+  std::vector<filters::Receiver> receivers;
 };
 
 /// What a model has to know of the view that receivers come from.
@@ -32,11 +32,17 @@ struct ModelView {
   int height = 0;
   std::uint32_t seed = 1;  ///< these as in ModelInput
   double plane_max_tangent = 0.0;
+
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
 /// Evaluates a model for receivers that the GPU handed out, in parallel. Requires a filter that has a kernel or a
 /// model.
 ModelImages evaluate_model(const filters::FilterRequest& request, const std::vector<ModelLayer>& layers,
                            const ModelView& view);
+
+/// The brute-force percentage-closer filter with one kernel for all pixels, in parallel; an image as those of a model.
+std::vector<double> compare_kernel(const filters::Kernel& kernel, const std::vector<ModelLayer>& layers,
+                                   const ModelView& view);
 
 }  // namespace shadowbench::measure

@@ -126,8 +126,9 @@ render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
   return kept;
 }
 
-void SceneAssets::draw_view(render::GBuffer& gbuffer, const scene::Camera& camera, const glm::dvec2& jitter) {
-  gbuffer.draw(renderer_.shaders, geometry_, scene_, camera, jitter);
+void SceneAssets::draw_view(render::GBuffer& gbuffer, const scene::Camera& camera, const glm::dvec2& jitter,
+                            const std::optional<render::PictureWindow>& window) {
+  gbuffer.draw(renderer_.shaders, geometry_, scene_, camera, jitter, window);
 }
 
 const SceneTruth& SceneAssets::truth(const scene::Camera& camera) {

@@ -55,8 +55,10 @@ class SceneAssets {
 
   render::GBuffer& gbuffer(const scene::Camera& camera);
 
-  /// Draws a view's receivers into a G-buffer of any size; `jitter` moves the picture, in pixels.
-  void draw_view(render::GBuffer& gbuffer, const scene::Camera& camera, const glm::dvec2& jitter = glm::dvec2(0.0));
+  /// Draws a view's receivers into a G-buffer of any size; `jitter` moves the picture, in pixels. With a window those
+  /// of that part of the picture.
+  void draw_view(render::GBuffer& gbuffer, const scene::Camera& camera, const glm::dvec2& jitter = glm::dvec2(0.0),
+                 const std::optional<render::PictureWindow>& window = std::nullopt);
 
   /// The truth of a view, traced when it is first asked for.
   const SceneTruth& truth(const scene::Camera& camera);

@@ -311,6 +311,7 @@ class SceneBench {
     const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases, options_.seed);
     if (shifts.size() > 1) listener_.begin(options::Work::kPhases, filters.size(), "phases");
     for (std::size_t phase = 1; phase < shifts.size(); ++phase) {
+      gbuffer_.forget_receivers();  // no phase asks for those of another
       const LightMap moved = assets_.make_light_map(task_.scene->light, *task_.camera, task_.map_size, shifts[phase]);
       for (std::size_t i = 0; i < filters.size(); ++i) {
         render::FilterPasses& filter = *filters[i];
@@ -321,6 +322,7 @@ class SceneBench {
       }
       listener_.advance(static_cast<double>(phase) / static_cast<double>(shifts.size() - 1));
     }
+    gbuffer_.forget_receivers();
   }
 };
 

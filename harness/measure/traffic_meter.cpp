@@ -11,12 +11,15 @@ namespace shadowbench::measure {
 namespace {
 
 constexpr int kFrameRows = records::kGpuFrameHeight;
-constexpr double kMostTexels = 1.5;  ///< of the map, under a pixel of half the rows: more, and lines are missed
+constexpr double kMostTexels = 1.5;  ///< of the map, under a pixel that is asked: more, and lines are missed
 
 /// Every how many rows and columns of the frame are asked.
 int choose_step(const options::RunOptions& options, std::optional<double> texels_per_pixel) {
-  const double rows = static_cast<double>(options.height) / (kFrameRows / 2);
-  return texels_per_pixel && *texels_per_pixel * rows * rows <= kMostTexels ? 2 : 1;
+  for (const int step : {8, 4, 2}) {
+    const double rows = static_cast<double>(options.height) * step / kFrameRows;
+    if (texels_per_pixel && *texels_per_pixel * rows * rows <= kMostTexels) return step;
+  }
+  return 1;
 }
 
 int count_columns(const options::RunOptions& options, int rows) {
@@ -37,7 +40,7 @@ TrafficMeter::TrafficMeter(Renderer& renderer, const options::RunOptions& option
   for (const gpu::Gpu& gpu : options_.gpus)
     caches_.push_back({.bytes = static_cast<std::int64_t>(gpu.cache_mib.value * 1024.0 * 1024.0),
                        .line_bytes = static_cast<int>(gpu.line_bytes.value)});
-  for (const scene::LightFrustum& layer : light_.layers) layers_.push_back({light_.map.read(layer.layer), {}, {}});
+  for (const scene::LightFrustum& layer : light_.layers) layers_.push_back({light_.map.read(layer.layer), {}});
 }
 
 void TrafficMeter::measure(MeasuredCell& cell) {
@@ -45,7 +48,7 @@ void TrafficMeter::measure(MeasuredCell& cell) {
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const scene::LightFrustum& layer = light_.layers[i];
     const render::Bias bias = render::resolve_bias(options_.bias, layer, cell.request.spec, cell.request.values);
-    layers_[i].filter = render::read_receivers(
+    layers_[i].receivers = render::read_receivers(
         renderer_.shaders, gbuffer_,
         render::make_light_setup(layer, task_.scene->light, bias, options_.seed, options_.range));
   }
@@ -65,7 +68,7 @@ std::vector<CountedLayer> TrafficMeter::count_reads(const MeasuredCell& cell) {
   std::vector<CountedLayer> layers;
   for (const render::CountedReads& counted : passes->count_reads(renderer_.shaders, gbuffer_, light_.map)) {
     const ModelLayer& own = layers_[layers.size()];
-    CountedLayer& layer = layers.emplace_back(CountedLayer{own.map, own.filter, {}});
+    CountedLayer& layer = layers.emplace_back(CountedLayer{own.map, own.receivers, {}});
     if (passes->encoded_format()) layer.map.texel_bytes = gl::pixel_format(*passes->encoded_format()).bytes_per_texel;
     for (std::size_t i = 0; i < counted.reads.size() / 4; ++i) {
       const int of_64 = static_cast<int>(counted.wide[2 * i]), of_128 = static_cast<int>(counted.wide[2 * i + 1]);

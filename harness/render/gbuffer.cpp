@@ -144,14 +144,16 @@ GBuffer::GBuffer(int width, int height)
 }
 
 void GBuffer::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene,
-                   const scene::Camera& camera, const glm::dvec2& jitter) {
+                   const scene::Camera& camera, const glm::dvec2& jitter, const std::optional<PictureWindow>& window) {
   receivers_.clear();
   framebuffer_.bind();
   set_geometry_state();
   for (int i = 0; i < 4; ++i) framebuffer_.clear_color(i, glm::vec4(0.0f));
   framebuffer_.clear_depth(1.0f);
-  const double aspect = static_cast<double>(width()) / height();
-  const glm::mat4 matrix = clip_from_world(camera, scene.bounds(), aspect, jitter / glm::dvec2(width(), height()));
+  const auto [corner, whole] = window.value_or(PictureWindow{{0, 0}, {width(), height()}});
+  glViewport(-corner.x, -corner.y, whole.x, whole.y);
+  const double aspect = static_cast<double>(whole.x) / whole.y;
+  const glm::mat4 matrix = clip_from_world(camera, scene.bounds(), aspect, jitter / glm::dvec2(whole));
   geometry.draw(shaders, "gbuffer", DrawSet::kAll, [&](gl::Program& program) {
     program.set("clip_from_world", matrix);
     program.set("camera_position_ws", camera.position_ws);

@@ -46,14 +46,21 @@ class ReceiverBuffer {
 /// Layers of lights' maps for which a view keeps its receivers.
 inline constexpr std::size_t kKeptReceiverMaps = 32;
 
+/// A part of a larger picture: its lower left pixel there, and the size of the whole; pixels.
+struct PictureWindow {
+  glm::ivec2 corner;
+  glm::ivec2 whole;
+};
+
 /// What a camera sees, drawn once per view; every filter and the truth use the same receiver points.
 class GBuffer {
  public:
   GBuffer(int width, int height);
 
-  /// Draws the scene; near and far follow its bounds. `jitter` moves the picture to the right and up, in pixels.
+  /// Draws the scene; near and far follow its bounds. `jitter` moves the picture to the right and up, in pixels. With a
+  /// window only that part of the picture is drawn.
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::Scene& scene, const scene::Camera& camera,
-            const glm::dvec2& jitter = glm::dvec2(0.0));
+            const glm::dvec2& jitter = glm::dvec2(0.0), const std::optional<PictureWindow>& window = std::nullopt);
 
   /// Replaces positions and geometric normals by those given, four floats a pixel as in position() and normal(), row 0
   /// at the bottom. Shading normals and colours stay undefined.
@@ -66,6 +73,9 @@ class GBuffer {
   /// Where the receivers lie in a light's map; drawn when it is first asked for, and kept for the
   /// last kKeptReceiverMaps.
   const ReceiverBuffer& receivers(ShaderLibrary& shaders, const LightSetup& light) const;
+
+  /// Frees what receivers() keeps: 32 bytes for each pixel and light.
+  void forget_receivers() { receivers_.clear(); }
 
   /// Binds the textures to the units that lib/gbuffer.glsl and shade.frag name.
   void bind() const;

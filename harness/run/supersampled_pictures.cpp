@@ -1,7 +1,9 @@
 #include "harness/run/supersampled_pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -20,53 +22,68 @@
 namespace shadowbench::run {
 namespace {
 
-/// Samples of a whole picture: their G-buffer takes 268 MB.
+/// Samples of a part: their G-buffer takes 268 MB.
 constexpr int kMostSamples = 1 << 23;
 /// Of the truth at a sample; that of a pixel's 16 is as small as it was measured.
 constexpr double kStandardError = 0.02;
 
 /// Samples of a pixel along each axis; 1 where more would not fit.
-int choose_side(int width, int height) {
+int choose_side(const images::Rect& part) {
   for (const int side : {4, 2})
-    if (std::int64_t{width} * height * side * side <= kMostSamples) return side;
+    if (std::int64_t{part.width} * part.height * side * side <= kMostSamples) return side;
   return 1;
 }
 
-/// One view through one map, drawn with many samples.
+/// A part of one view through one map, drawn with many samples.
 class SampledView {
  public:
   SampledView(measure::Renderer& renderer, const PlannedScene& planned, const measure::SceneTask& task,
-              measure::SceneAssets& assets, int side)
+              measure::SceneAssets& assets, const images::Rect& part, int side)
       : renderer_(renderer),
         planned_(planned),
         task_(task),
         assets_(assets),
-        gbuffer_(side * planned.options.width, side * planned.options.height) {
-    assets.draw_view(gbuffer_, *task.camera);
+        part_(part),
+        side_(side),
+        gbuffer_(side * part.width, side * part.height) {
+    const glm::ivec2 size(planned.options.width, planned.options.height);
+    const glm::ivec2 corner(part.x, size.y - part.y - part.height);
+    assets.draw_view(gbuffer_, *task.camera, {}, render::PictureWindow{side * corner, side * size});
   }
 
   images::Image draw(const filters::FilterRequest& request) {
     measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
     const auto passes = measure::make_filter_passes(renderer_, planned_.options, planned_.scene, light, request);
-    render::ImageTarget target("visibility", GL_R32F, gbuffer_.width(), gbuffer_.height());
     passes->prefilter(light.map);
-    passes->lookup(gbuffer_, light.map, target);
-    return shade(target.texture(), planned_.options.range);
+    const auto look = [&](const render::GBuffer& gbuffer) {
+      render::ImageTarget target("visibility", GL_R32F, gbuffer.width(), gbuffer.height());
+      passes->lookup(gbuffer, light.map, target);
+      return shade(gbuffer, target.texture(), planned_.options.range);
+    };
+    return put(look(gbuffer_), look(assets_.gbuffer(*task_.camera)));
   }
 
-  images::Image draw_truth() { return shade(render::upload_image(trace()), {}); }
+  images::Image draw_truth() {
+    return put(shade(gbuffer_, render::upload_image(trace()), {}), assets_.truth(*task_.camera).area_picture);
+  }
 
  private:
   measure::Renderer& renderer_;
   const PlannedScene& planned_;
   const measure::SceneTask& task_;
   measure::SceneAssets& assets_;
+  images::Rect part_;
+  int side_;
   render::GBuffer gbuffer_;
 
-  images::Image shade(const gl::Texture& visibility, const filters::RangeRule& range) {
-    return images::fit_image(
-        render::shade(renderer_.shaders, gbuffer_, visibility, planned_.scene, *task_.camera, range),
-        {planned_.options.width, planned_.options.height});
+  images::Image shade(const render::GBuffer& gbuffer, const gl::Texture& visibility, const filters::RangeRule& range) {
+    return render::shade(renderer_.shaders, gbuffer, visibility, planned_.scene, *task_.camera, range);
+  }
+
+  /// The part's mean samples in the whole picture.
+  images::Image put(const images::Image& samples, images::Image whole) const {
+    images::paste_image(whole, images::fit_image(samples, {part_.width, part_.height}), part_.x, part_.y);
+    return whole;
   }
 
   /// The light that arrives at the samples. Where a pixel's rays and those of its neighbours all agreed, that is known
@@ -74,29 +91,33 @@ class SampledView {
   images::Image trace() {
     const measure::SceneTruth& truth = assets_.truth(*task_.camera);
     measure::ViewReceivers samples = measure::read_view_receivers(gbuffer_, planned_.scene.light);
-    std::vector<std::uint8_t> traced(samples.image.points.size());
-    const auto pixel_of = [&](std::size_t sample) {
+    const auto pixel_of = [&, side = static_cast<std::size_t>(side_)](std::size_t sample) {
       const auto width = static_cast<std::size_t>(gbuffer_.width());
-      const std::size_t side = width / static_cast<std::size_t>(planned_.options.width);
-      return sample / width / side * (width / side) + sample % width / side;
+      const std::size_t x = static_cast<std::size_t>(part_.x) + sample % width / side,
+                        y = static_cast<std::size_t>(part_.y) + sample / width / side;
+      return y * static_cast<std::size_t>(planned_.options.width) + x;
     };
-    for (std::size_t i = 0; i < traced.size(); ++i) {
+    std::vector<std::uint8_t> is_known(samples.image.points.size());
+    for (std::size_t i = 0; i < is_known.size(); ++i) {
       truth::ReceiverPoint& sample = samples.image.points[i];
       const std::size_t pixel = pixel_of(i);
-      const bool is_known = truth.rays.area.rays[pixel] == truth::kRaysOfSettledPixel &&
-                            measure::lie_on_one_surface(truth.receivers.image.points[pixel], sample);
-      traced[i] = sample.counts && !is_known ? 1 : 0;
+      if (truth.rays.area.rays[pixel] != truth::kRaysOfSettledPixel ||
+          !measure::lie_on_one_surface(truth.receivers.image.points[pixel], sample))
+        continue;
+      is_known[i] = 1;
+      sample.counts = false;  // while the others are traced
     }
     ContentHash hash;
     hash.add(samples.image.content);
-    hash.add_values(std::span<const std::uint8_t>(traced));
-    truth::ReceiverImage open = samples.image;
-    for (std::size_t i = 0; i < traced.size(); ++i) open.points[i].counts = traced[i] != 0;
-    open.content = hash.name();
+    hash.add_values(std::span<const std::uint8_t>(is_known));
+    samples.image.content = hash.name();
     std::vector<float> arriving =
-        assets_.tracer().trace_light(open, scene::make_area_light(planned_.scene.light), kStandardError);
-    for (std::size_t i = 0; i < traced.size(); ++i)
-      if (traced[i] == 0 && samples.image.points[i].counts) arriving[i] = truth.ratio.texels[pixel_of(i)];
+        assets_.tracer().trace_light(samples.image, scene::make_area_light(planned_.scene.light), kStandardError);
+    for (std::size_t i = 0; i < is_known.size(); ++i) {
+      if (is_known[i] == 0) continue;
+      samples.image.points[i].counts = true;
+      arriving[i] = truth.ratio.texels[pixel_of(i)];
+    }
     return samples.to_image(arriving);
   }
 };
@@ -106,17 +127,35 @@ struct ShownCell {
   const PlannedTask* task = nullptr;
   const filters::FilterRequest* request = nullptr;
   records::CellRecord* cell = nullptr;
+  images::Rect part = {};  ///< of all that are shown of its task, whole pixels
+};
+
+/// The whole pixels that hold parts.
+class Bounds {
+ public:
+  void add(const std::array<double, 4>& part) {
+    low_ = glm::min(low_, glm::ivec2(glm::floor(glm::dvec2(part[0], part[1]))));
+    high_ = glm::max(high_, glm::ivec2(glm::ceil(glm::dvec2(part[0] + part[2], part[1] + part[3]))));
+  }
+  images::Rect rect() const { return {low_.x, low_.y, high_.x - low_.x, high_.y - low_.y}; }
+
+ private:
+  glm::ivec2 low_{std::numeric_limits<int>::max()}, high_{0};
 };
 
 std::vector<ShownCell> list_shown(const RunPlan& plan, std::vector<records::CellRecord>& cells) {
-  const std::vector<std::string> keys = pages::list_first_pictures(cells);
+  const std::vector<pages::FirstPicture> first = pages::list_first_pictures(cells);
   std::vector<ShownCell> shown;
   for (const PlannedTask& task : plan.tasks) {
-    if (std::ranges::none_of(keys, [&](const auto& key) { return std::ranges::count(task.keys, key) > 0; })) continue;
+    Bounds bounds;
+    for (const auto& [key, part] : first)
+      if (std::ranges::count(task.keys, key) > 0) bounds.add(part);
+    if (bounds.rect().width < 0) continue;
     for (const filters::FilterRequest& request : task.task.filters) {
       const std::string key = measure::make_record(plan.scenes[task.scene].options, task.task, request).key;
-      if (request.user_file || std::ranges::count(keys, key) == 0) continue;  // one is drawn by a process of its own
-      shown.push_back({&task, &request, &*std::ranges::find(cells, key, &records::CellRecord::key)});
+      if (request.user_file || std::ranges::count(first, key, &pages::FirstPicture::key) == 0)
+        continue;  // a user's is drawn by a process of its own
+      shown.push_back({&task, &request, &*std::ranges::find(cells, key, &records::CellRecord::key), bounds.rect()});
     }
   }
   return shown;
@@ -131,9 +170,9 @@ void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan
   std::optional<SampledView> view;
   const PlannedTask* before = nullptr;
   std::string truth;
-  for (const auto& [task, request, cell] : list_shown(plan, cells)) {
+  for (const auto& [task, request, cell, part] : list_shown(plan, cells)) {
     const PlannedScene& planned = plan.scenes[task->scene];
-    const int side = choose_side(planned.options.width, planned.options.height);
+    const int side = choose_side(part);
     if (side == 1) continue;
     const std::string stem = "images/" + task_stem(planned.options, task->task);
     const std::filesystem::path& out = planned.options.out;
@@ -141,7 +180,7 @@ void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan
       view.reset();
       if (!before || before->scene != task->scene)
         assets.emplace(renderer, planned.options, planned.scene, cache, measure::padding_texels(planned.options));
-      view.emplace(renderer, planned, task->task, *assets, side);
+      view.emplace(renderer, planned, task->task, *assets, part, side);
       truth = stem + ".truth.supersampled.png";
       images::write_picture_png(out / truth, view->draw_truth());
       before = task;

@@ -9,11 +9,11 @@
 
 namespace shadowbench::run {
 
-/// Draws what the run's page shows first once more with 16 samples a pixel, 4 of a large picture, and the truth with as
+/// Draws what the run's page shows first once more with 16 samples a pixel, 4 of a large part, and the truth with as
 /// many: every sample is a receiver of its own, looked up in the map that was measured, and shaded; their mean in
-/// linear light is the pixel. Pictures larger than 2^23 / 4 pixels are left as they are. `cells` are all of the plan;
-/// those that are drawn get the paths, and are written; those that an earlier run measured stay as they are. Cost: 16
-/// lookups and shadings for each, and about one tracing for each view.
+/// linear light is the pixel. The rest of the picture is as it was measured; parts larger than 2^23 / 4 pixels are too.
+/// `cells` are all of the plan; those that are drawn get the paths, and are written; those that an earlier run measured
+/// stay as they are. Cost: 16 lookups and shadings of the part for each, and about one tracing of it for each view.
 void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache,
                                 std::vector<records::CellRecord>& cells);
 

@@ -23,13 +23,18 @@ Parts split(const AttributionStations& s, std::size_t i) {
   return {image - model, model - s.closer[i], s.closer[i] - kernel, kernel - static_cast<double>(s.area[i])};
 }
 
+/// The root of a mean square that sampling made too large by so much.
+double take_root(double mean_square, double variance) { return std::sqrt(std::max(mean_square - variance, 0.0)); }
+
 }  // namespace
 
 std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<const float> truth,
-                                        std::span<const std::uint8_t> mask) {
+                                        std::span<const std::uint8_t> mask, std::span<const float> variance) {
   assert(image.size() == truth.size() && image.size() == mask.size());
+  assert(variance.empty() || variance.size() == mask.size());
   ErrorStats stats;
   std::vector<double> distances;
+  double sampled = 0.0;
   for (std::size_t i = 0; i < image.size(); ++i) {
     if (!mask[i]) continue;
     const double error = static_cast<double>(image[i]) - static_cast<double>(truth[i]);
@@ -41,13 +46,14 @@ std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<
     stats.mean += error;
     stats.rmse += error * error;
     stats.mae += std::abs(error);
+    if (!variance.empty()) sampled += static_cast<double>(variance[i]);
   }
   if (distances.empty()) return std::nullopt;
   const double count = static_cast<double>(distances.size());
   stats.count = static_cast<std::int64_t>(distances.size());
   stats.mean /= count;
   stats.mae /= count;
-  stats.rmse = std::sqrt(stats.rmse / count);
+  stats.rmse = take_root(stats.rmse / count, sampled / count);
   const auto rank = static_cast<std::ptrdiff_t>(std::ceil(0.95 * count)) - 1;
   std::nth_element(distances.begin(), distances.begin() + rank, distances.end());
   stats.p95 = distances[static_cast<std::size_t>(rank)];
@@ -79,10 +85,11 @@ Attribution attribute_error(const AttributionStations& stations) {
   assert(stations.image.size() == pixels && stations.closer.size() == pixels);
   assert(stations.model.empty() || stations.model.size() == pixels);
   assert(stations.kernel.size() == pixels && stations.area.size() == pixels);
+  assert(stations.kernel_variance.empty() || stations.kernel_variance.size() == pixels);
   Attribution result;
   for (auto& part : result.parts) part.assign(pixels, 0.0f);
   Parts squares{}, products{};
-  double error_squares = 0.0, count = 0.0;
+  double error_squares = 0.0, sampled = 0.0, count = 0.0;
   for (std::size_t i = 0; i < pixels; ++i) {
     if (!stations.mask[i]) continue;
     const Parts parts = split(stations, i);
@@ -97,10 +104,14 @@ Attribution attribute_error(const AttributionStations& stations) {
       products[p] += parts[p] * error;
     }
     error_squares += error * error;
+    if (!stations.kernel_variance.empty()) sampled += static_cast<double>(stations.kernel_variance[i]);
     count += 1.0;
   }
-  for (std::size_t p = 0; p < kErrorParts && error_squares > 0.0; ++p)
-    result.stats[p] = PartStats{.rms = std::sqrt(squares[p] / count), .share = products[p] / error_squares};
+  for (std::size_t p = 0; p < kErrorParts && error_squares > 0.0; ++p) {
+    const bool has_kernel = p >= static_cast<std::size_t>(ErrorPart::kDiscretisation);
+    result.stats[p] = PartStats{.rms = take_root(squares[p] / count, has_kernel ? sampled / count : 0.0),
+                                .share = products[p] / error_squares};
+  }
   if (stations.model.empty()) {
     result.parts.front().clear();
     result.stats.front().reset();

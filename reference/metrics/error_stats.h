@@ -19,10 +19,11 @@ struct ErrorStats {
   double mean = 0.0;            ///< signed: positive where the image is brighter than the truth
 };
 
-/// Compares an image with the truth where `mask` is not 0.
-/// Requires three spans of one length. Gives nothing where the mask holds no finite pixel.
+/// Compares an image with the truth where `mask` is not 0. Off the mean square the mean of `variance` is taken, the
+/// truth's own as an estimate, which may be empty: what is left of it is without bias.
+/// Requires spans of one length. Gives nothing where the mask holds no finite pixel.
 std::optional<ErrorStats> measure_error(std::span<const float> image, std::span<const float> truth,
-                                        std::span<const std::uint8_t> mask);
+                                        std::span<const std::uint8_t> mask, std::span<const float> variance = {});
 
 /// A mean with its 95 % confidence interval.
 struct MeanInterval {
@@ -51,6 +52,7 @@ struct AttributionStations {
   std::span<const float> kernel;       ///< ray-traced continuous kernel: an ideal map and an ideal bias
   std::span<const float> area;         ///< ray-traced visibility of the real light
   std::span<const std::uint8_t> mask;  ///< 0: the pixel does not count
+  std::span<const float> kernel_variance = {};  ///< of `kernel` as an estimate; may be empty
 };
 
 /// The parts of an error, in the order in which they add up.
@@ -59,7 +61,9 @@ inline constexpr std::size_t kErrorParts = 4;
 
 /// How much of the error one part is.
 struct PartStats {
-  double rms = 0.0;    ///< root mean square of the part alone; those of several parts do not add
+  /// Root mean square of the part alone; those of several parts do not add. The variance of `kernel` is taken off the
+  /// mean square of the two parts that it is in.
+  double rms = 0.0;
   double share = 0.0;  ///< mean(e * part) / mean(e^2), e the whole error: shares add up to 1, and may be negative
 };
 

@@ -53,8 +53,8 @@ std::vector<Metric> list_errors() {
        kError, kUntabled, "--max-flip", kPictures},
       {"error.kernel_rmse", at<&V::error, &ErrorRecord::kernel_rmse>, "visibility", kPositive, kLess,
        "RMSE to the kernel truth, first phase",
-       "root mean square of image less ray-traced kernel, over receivers; that is the fraction of the filter's own "
-       "kernel, laid on the receiver's tangent plane, that sees the light's centre",
+       "root mean square of image less ray-traced kernel, over receivers, without the rays' sampling variance; that is "
+       "the fraction of the filter's own kernel, laid on the receiver's tangent plane, that sees the light's centre",
        kError, kTabled},
       {"error.flicker", at<&V::error, &ErrorRecord::flicker>, "visibility", kPositive, kLess, "flicker",
        "root mean square of what a receiver's visibility changes by from one place of the map's texel grid to another, "
@@ -164,9 +164,11 @@ std::vector<Metric> list_parts() {
       "light bleeding, noise of few taps; a bound is compared under the bias that a comparison of its kernel needs");
   add_part<&AttributionRecord::discretisation>(
       metrics, "attribution.discretisation.rms", "attribution.discretisation.share",
-      "that percentage-closer filter less the ray-traced kernel: map resolution and bias");
+      "that percentage-closer filter less the ray-traced kernel, whose sampling variance is taken off: map resolution "
+      "and bias");
   add_part<&AttributionRecord::model>(metrics, "attribution.model.rms", "attribution.model.share",
-                                      "the ray-traced kernel less truth: the kernel is not this light's penumbra");
+                                      "the ray-traced kernel, whose sampling variance is taken off, less truth: the "
+                                      "kernel is not this light's penumbra");
   return metrics;
 }
 

@@ -160,6 +160,7 @@ class AdaptiveTracer {
     truth_.rays.assign(pixels, 0);
     truth_.ratio.assign(pixels, 1.0f);
     truth_.ratio_error.assign(pixels, 0.0f);
+    truth_.variance.assign(pixels, 0.0f);
     for (int side = settings_.coarsest; side >= 1; side /= 2) trace_first_points(side);
     const std::vector<float> first = truth_.visibility;
     for_each_tile(kFirstPart, 1.0, [&](const TracedTile& tile) {
@@ -301,6 +302,7 @@ class AdaptiveTracer {
     truth_.rays[pixel] = static_cast<std::uint32_t>(kScrambles * points);
     truth_.unanimous[pixel] = unanimous ? 1 : 0;
     truth_.standard_error[pixel] = unanimous ? 0.0f : static_cast<float>(error);
+    truth_.variance[pixel] = unanimous ? 0.0f : static_cast<float>(squares / (kScrambles - 1) / kScrambles);
     return error;
   }
 

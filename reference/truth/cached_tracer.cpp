@@ -11,7 +11,7 @@ namespace {
 /// Names the code that traces: it changes with the sources of this folder and of the kernels, and with Embree's
 /// version.
 constexpr const char* kVersion = SHADOWBENCH_TRUTH_SOURCES " Embree " RTC_VERSION_STRING;
-constexpr std::size_t kTracedLayers = 4;
+constexpr std::size_t kTracedLayers = 5;
 constexpr std::size_t kViewLayers = kTracedLayers + 4;
 
 std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
@@ -49,14 +49,16 @@ Layers to_layers(const TracedVisibility& traced) {
   return {traced.visibility,
           traced.standard_error,
           {traced.unanimous.begin(), traced.unanimous.end()},
-          {traced.rays.begin(), traced.rays.end()}};
+          {traced.rays.begin(), traced.rays.end()},
+          traced.variance};
 }
 
 TracedVisibility from_layers(Layers layers) {
-  return {std::move(layers[0]),
-          std::move(layers[1]),
-          {layers[2].begin(), layers[2].end()},
-          {layers[3].begin(), layers[3].end()}};
+  return {.visibility = std::move(layers[0]),
+          .standard_error = std::move(layers[1]),
+          .unanimous = {layers[2].begin(), layers[2].end()},
+          .rays = {layers[3].begin(), layers[3].end()},
+          .variance = std::move(layers[4])};
 }
 
 }  // namespace
@@ -80,6 +82,12 @@ const SampleSets& CachedTracer::samples(const AreaLight& light) {
   const auto found = samples_.find(light.shape());
   if (found != samples_.end()) return found->second;
   return samples_.emplace(light.shape(), make_light_samples(light, settings_)).first->second;
+}
+
+TraceSettings CachedTracer::within(double standard_error) const {
+  TraceSettings settings = settings_;
+  settings.standard_error = standard_error;
+  return settings;
 }
 
 Layers CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::string& what, std::size_t count,
@@ -117,9 +125,7 @@ ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLigh
 std::vector<float> CachedTracer::trace_light(const ReceiverImage& receivers, const AreaLight& light,
                                              double standard_error) {
   const auto trace = [&] {
-    TraceSettings rough = settings_;
-    rough.standard_error = standard_error;
-    return Layers{trace_area(occluders(), receivers, light, rough, samples(light)).ratio};
+    return Layers{trace_area(occluders(), receivers, light, within(standard_error), samples(light)).ratio};
   };
   return find_or_trace(receivers, fmt::format("{} within {}", name_light(light), standard_error), 1, trace).front();
 }
@@ -133,16 +139,17 @@ TracedVisibility CachedTracer::find_or_trace(const ReceiverImage& receivers, con
 TracedVisibility CachedTracer::trace_kernel(const ReceiverImage& receivers, const filters::Kernel& kernel,
                                             const MapGrid& grid) {
   return find_or_trace(
-      receivers, fmt::format("kernel {} {}", kernel.name(), name_grid(grid)),
-      [&] { return truth::trace_kernel(occluders(), receivers, kernel, grid, settings_); });
+      receivers, fmt::format("kernel {} {} within {}", kernel.name(), name_grid(grid), kKernelStandardError),
+      [&] { return truth::trace_kernel(occluders(), receivers, kernel, grid, within(kKernelStandardError)); });
 }
 
 TracedVisibility CachedTracer::trace_disks(const ReceiverImage& receivers, std::span<const float> radii_texels,
                                            const MapGrid& grid) {
   ContentHash radii;
   radii.add_values(radii_texels);
-  return find_or_trace(receivers, fmt::format("disks {} {}", radii.name(), name_grid(grid)),
-                       [&] { return truth::trace_disks(occluders(), receivers, radii_texels, grid, settings_); });
+  return find_or_trace(
+      receivers, fmt::format("disks {} {} within {}", radii.name(), name_grid(grid), kKernelStandardError),
+      [&] { return truth::trace_disks(occluders(), receivers, radii_texels, grid, within(kKernelStandardError)); });
 }
 
 TracedVisibility CachedTracer::trace_surroundings(const ReceiverImage& receivers, double half_width_texels,
@@ -150,8 +157,7 @@ TracedVisibility CachedTracer::trace_surroundings(const ReceiverImage& receivers
   return find_or_trace(
       receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)),
       [&] {
-        TraceSettings rough = settings_;
-        rough.standard_error = 1.0;
+        TraceSettings rough = within(1.0);
         rough.max_points = 16;  // every pixel is content with the first 16 points
         return trace_square(occluders(), receivers, half_width_texels, grid, rough);
       });

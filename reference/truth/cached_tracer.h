@@ -18,6 +18,9 @@ struct ViewRays {
   std::vector<float> first_blockers_ws;  ///< see trace_first_blockers()
 };
 
+/// Of kernels; that of lights is TraceSettings' own.
+inline constexpr double kKernelStandardError = 0.01;
+
 /// Traces one scene, or takes from the cache what an earlier run traced. The acceleration structure is built when the
 /// first rays are needed. Receivers without a `content` are always traced.
 class CachedTracer {
@@ -47,10 +50,11 @@ class CachedTracer {
   /// Cost: 64 rays for most receivers, at the edges of shadows as many as `standard_error` needs.
   std::vector<float> trace_light(const ReceiverImage& receivers, const AreaLight& light, double standard_error);
 
-  /// Cost: as trace_view().
+  /// Traces a kernel within a standard error of `kKernelStandardError`: a part of an error is the mean over many
+  /// pixels, off which its `variance` can be taken. Cost: as trace_view(), about half of its rays.
   TracedVisibility trace_kernel(const ReceiverImage& receivers, const filters::Kernel& kernel, const MapGrid& grid);
 
-  /// Traces disks of a radius for each receiver. Cost: as trace_view().
+  /// Traces disks of a radius for each receiver. Error and cost: as trace_kernel().
   TracedVisibility trace_disks(const ReceiverImage& receivers, std::span<const float> radii_texels,
                                const MapGrid& grid);
 
@@ -68,6 +72,7 @@ class CachedTracer {
   const std::string& geometry();
   const Occluders& occluders();
   const SampleSets& samples(const AreaLight& light);
+  TraceSettings within(double standard_error) const;
 
   /// Returns the `count` layers that `what` names: from the cache, or from `trace`, and then kept.
   Layers find_or_trace(const ReceiverImage& receivers, const std::string& what, std::size_t count,

@@ -20,10 +20,11 @@ struct OcclusionContext : EmbreeContext {
 
 #if SHADOWBENCH_EMBREE_MAJOR == 3
 /// Sets `tfar` of every active ray that something blocks to minus infinity. Filter functions find `dimming` in their
-/// context.
+/// context. The rays of a packet visit the same parts of the scene: Embree is told so, and blocks the same rays.
 inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays, Dimming* dimming = nullptr) {
   OcclusionContext context;
   rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   context.dimming = dimming;
   rtcOccluded16(active, scene, &context, rays);
 }
@@ -41,6 +42,7 @@ inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays, Di
   context.dimming = dimming;
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   arguments.context = &context;
   rtcOccluded16(active, scene, rays, &arguments);
 }

@@ -109,6 +109,8 @@ struct TracedVisibility {
   /// 1, or empty from the cache.
   std::vector<float> ratio = {};
   std::vector<float> ratio_error = {};  ///< its standard error
+  /// Of `visibility` as an estimate, without bias: `standard_error` assumes a deviation of one point on top.
+  std::vector<float> variance = {};
 };
 
 /// The number of rays of a pixel that agrees with its neighbours.

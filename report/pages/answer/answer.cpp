@@ -113,16 +113,17 @@ analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& c
   return request;
 }
 
-std::vector<std::string> list_first_pictures(const std::vector<records::CellRecord>& measured) {
+std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRecord>& measured) {
   const auto withheld = analysis::withhold_mixed_times(measured);
   const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
-  std::vector<std::string> keys;
-  if (!can_advise(cells)) return keys;
+  std::vector<FirstPicture> pictures;
+  if (!can_advise(cells)) return pictures;
   const analysis::Advice advice = analysis::advise(cells, choose_request(cells));
-  if (advice.keeping.empty()) return keys;
+  if (advice.keeping.empty()) return pictures;
   for (const analysis::Pick& pick : analysis::list_picks(advice))
-    if (const auto* cell = find_worst_picture(advice.keeping[pick.index].configuration)) keys.push_back(cell->key);
-  return keys;
+    if (const auto* cell = find_worst_picture(advice.keeping[pick.index].configuration))
+      pictures.push_back({cell->key, choose_part(*cell)});
+  return pictures;
 }
 
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,14 @@ namespace shadowbench::pages {
 /// What a run's page asks first: no limit, a moving light, and analysis::choose_cost().
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells);
 
-/// The keys of the cells whose pictures the page of these cells shows first: one of each answer, where it differs most
-/// from the truth.
-std::vector<std::string> list_first_pictures(const std::vector<records::CellRecord>& measured);
+/// A cell whose picture a page shows first, and the part of it that is seen: left, top, width, height; pixels.
+struct FirstPicture {
+  std::string key;
+  std::array<double, 4> part{};
+};
+
+/// Those that the page of these cells shows: one of each answer, where it differs most from the truth.
+std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRecord>& measured);
 
 /// Says which filters are fast, balanced and best, over all scenes and on each, at what cost and error and why, with a
 /// picture of one beside the truth. In the browser a script makes the same of limits that the reader moves.

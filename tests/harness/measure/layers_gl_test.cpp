@@ -303,6 +303,7 @@ TEST(LayerTruth, OfLayersThatAgree_IsWholeAndUnanimous) {
       layers, receivers, [](const truth::ReceiverImage& own, const truth::MapGrid&, std::size_t layer) {
         truth::TracedVisibility each{
             {0.0f, 1.0f, layer == 0 ? 0.0f : 1.0f}, {0.0f, 0.0f, 0.1f}, {1, 1, 1}, {64, 64, 64}};
+        each.variance = {0.0f, 0.0f, layer == 0 ? 0.01f : 0.09f};
         if (layer == 1) EXPECT_FALSE(own.points[0].counts);
         return each;
       });
@@ -310,6 +311,7 @@ TEST(LayerTruth, OfLayersThatAgree_IsWholeAndUnanimous) {
   EXPECT_EQ(traced.unanimous, (std::vector<std::uint8_t>{1, 1, 0})) << "the layers disagree on the last";
   EXPECT_EQ(traced.rays[1], truth::kRaysOfSettledPixel);
   EXPECT_NE(traced.rays[2], truth::kRaysOfSettledPixel);
+  EXPECT_NEAR(traced.variance[2], 0.04f, 1e-6f) << "deviations of 0.1 and 0.3, of the same samples";
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ filters::Receiver make_receiver(glm::ivec2 pixel, glm::ivec2 texel, int map_side
 }
 
 ModelLayer make_layer(std::vector<filters::Receiver> receivers, int map_side = kSide) {
-  return {{map_side, std::vector<float>(static_cast<std::size_t>(map_side * map_side), 0.5f)}, receivers, receivers};
+  return {{map_side, std::vector<float>(static_cast<std::size_t>(map_side * map_side), 0.5f)}, std::move(receivers)};
 }
 
 /// A receiver for every pixel, which lie so many texels apart in the map.
@@ -135,7 +135,7 @@ TEST(MapTraffic, WhereReceiversBringNothingNew_TheRestAreNotAsked_AndLittleIsMis
   // The texels that the kernels cover are a square, and so are its lines.
   constexpr int kFirst = 3, kLast = kSide - 1 + 4, kShift = 32, kMap = 2 * kSide;
   ModelLayer layer = make_steps(kSide, kSide, 1, kMap);
-  for (filters::Receiver& receiver : layer.filter) receiver.uv += static_cast<float>(kShift) / kMap;
+  for (filters::Receiver& receiver : layer.receivers) receiver.uv += static_cast<float>(kShift) / kMap;
   const int columns = (kShift + kLast) / 8 - (kShift - kFirst) / 8 + 1;
   const int rows = (kShift + kLast) / 4 - (kShift - kFirst) / 4 + 1;
   const double bytes = count("tent7x7", {layer}, kHoldsAll), expected = columns * rows * 128.0 / (kSide * kSide);
@@ -161,7 +161,7 @@ TEST(MapTraffic, IsNothingWithoutAModelOrAReceiver) {
 
 /// Every lookup reads so often, of texels of one width, and so far.
 double count_reads(const ModelLayer& layer, const PixelReads& reads, const CacheShape& cache) {
-  const CountedLayer counted{layer.map, layer.filter, std::vector<PixelReads>(kSide * kSide, reads)};
+  const CountedLayer counted{layer.map, layer.receivers, std::vector<PixelReads>(kSide * kSide, reads)};
   return count_map_traffic({counted}, {kSide, kSide}, {{cache}}).value().front();
 }
 

@@ -144,5 +144,28 @@ TEST(ReceiverPosition, RaysOfTheTruth_NeverMeetThePlaneThatTheyLeave) {
   }
 }
 
+TEST(GBufferWindow, HoldsThatPartOfTheWholePicture) {
+  gl::Context& context = shared_context();
+  render::ShaderLibrary shaders(options::find_resources().shaders);
+  const scene::Scene scene = load_builtin("stack");
+  const scene::Camera& camera = scene.cameras.front();
+  const render::Geometry geometry(scene);
+  constexpr int kWidth = 96, kHeight = 54, kX = 40, kY = 12, kPartWidth = 31, kPartHeight = 17;
+  render::GBuffer whole(kWidth, kHeight), part(kPartWidth, kPartHeight);
+  whole.draw(shaders, geometry, scene, camera);
+  part.draw(shaders, geometry, scene, camera, {}, render::PictureWindow{{kX, kY}, {kWidth, kHeight}});
+  const images::Image all = render::read_image(whole.position(), 4), own = render::read_image(part.position(), 4);
+  int surfaces = 0;
+  for (int y = 0; y < kPartHeight; ++y) {
+    for (int x = 0; x < kPartWidth; ++x) {
+      const float *a = own.at(x, y), *b = all.at(kX + x, kHeight - kY - kPartHeight + y);
+      surfaces += a[3] != 0.0f;
+      for (int c = 0; c < 4; ++c) ASSERT_NEAR(a[c], b[c], 1e-4f) << x << ", " << y;
+    }
+  }
+  EXPECT_GT(surfaces, kPartWidth * kPartHeight / 2);
+  context.require_no_gl_errors();
+}
+
 }  // namespace
 }  // namespace shadowbench::test

@@ -67,6 +67,23 @@ TEST(Attribution, WithoutAModel_TheEstimatorsPartHoldsTheNumericOne) {
   EXPECT_EQ(result.stats[1]->share, 0.5);
 }
 
+TEST(Attribution, TheKernelsVariance_IsTakenOffTheTwoPartsThatItIsIn) {
+  Stations stations;
+  stations.add(0.9f, 0.8, 0.5, 0.25f, 0.125f);
+  stations.add(0.1f, 0.2, 0.5, 0.25f, 0.75f);
+  stations.add(0.0f, 0.0, 0.0, 1.0f, 0.0f, false);
+  const std::vector<float> variance = {0.01f, 0.02f, 9.0f};
+  const Attribution plain = stations.attribute(),
+                    less = attribute_error({stations.image, stations.model, stations.closer, stations.kernel,
+                                            stations.area, stations.mask, variance});
+  for (std::size_t p = 0; p < kErrorParts; ++p) {
+    const double off = p < 2 ? 0.0 : 0.015, before = plain.stats[p]->rms, after = less.stats[p]->rms;
+    EXPECT_NEAR(before * before - after * after, off, 1e-8) << p;
+    EXPECT_EQ(plain.stats[p]->share, less.stats[p]->share) << p;
+    EXPECT_EQ(plain.parts[p], less.parts[p]) << p;
+  }
+}
+
 TEST(Attribution, SharesOfCancellingParts_AreNegative) {
   // Estimator +0.5 and model -0.25 in one pixel, nothing in the other: e = 0.25.
   Stations stations;

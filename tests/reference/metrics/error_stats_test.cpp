@@ -46,5 +46,17 @@ TEST(ErrorStats, EmptyMask_HasNone) {
   EXPECT_FALSE(measure_error(std::vector<float>{1.0f}, std::vector<float>{0.0f}, std::vector<std::uint8_t>{0}));
 }
 
+TEST(ErrorStats, TheTruthsVariance_IsTakenOffTheMeanSquareAlone) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> image = {0.5f, 0.25f, nan, 1.0f}, truth = {0.0f, 0.0f, 0.0f, 0.0f};
+  const std::vector<std::uint8_t> mask = {1, 1, 1, 0};
+  const std::vector<float> variance = {0.0625f, 0.03125f, 9.0f, 9.0f}, more(4, 9.0f);
+  const auto plain = measure_error(image, truth, mask), less = measure_error(image, truth, mask, variance);
+  EXPECT_NEAR(less->rmse * less->rmse, plain->rmse * plain->rmse - 0.046875, 1e-12) << "of finite pixels that count";
+  EXPECT_EQ(less->mae, plain->mae);
+  EXPECT_EQ(less->max, plain->max);
+  EXPECT_EQ(measure_error(image, truth, mask, more)->rmse, 0.0) << "never below nought";
+}
+
 }  // namespace
 }  // namespace shadowbench::metrics

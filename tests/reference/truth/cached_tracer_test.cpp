@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -122,6 +123,28 @@ TEST_F(Tracer, ReceiversWithoutAName_AreNotKept) {
   count_traced(make_meshes(), [&](CachedTracer& t) { rays = t.trace_view(receivers, make_light()); });
   EXPECT_EQ(rays.hard.front(), 0.0f);
   EXPECT_FALSE(std::filesystem::exists(folder_));
+}
+
+TEST_F(Tracer, Kernels_AreTracedWithinTheirOwnError_AndKeepTheirVariance) {
+  const MapGrid grid{.texel_size_ws = 0.25};
+  const filters::Kernel kernel = filters::Kernel::make_disk(3.0);
+  const std::vector<float> radii(make_receivers().points.size(), 3.0f);
+  const Meshes meshes = make_meshes();
+  const TraceSettings settings{.standard_error = kKernelStandardError};
+  const TracedVisibility plain = trace_kernel(Occluders(meshes), make_receivers(), kernel, grid, settings),
+                         disks = trace_disks(Occluders(meshes), make_receivers(), radii, grid, settings);
+  ASSERT_GT(*std::ranges::max_element(plain.variance), 0.0f);
+  for (const int traced : {2, 0}) {
+    EXPECT_EQ(count_traced(
+                  meshes,
+                  [&](CachedTracer& t) {
+                    const TracedVisibility own = t.trace_kernel(make_receivers(), kernel, grid);
+                    EXPECT_EQ(own.rays, plain.rays);
+                    EXPECT_EQ(own.variance, plain.variance);
+                    EXPECT_EQ(t.trace_disks(make_receivers(), radii, grid).rays, disks.rays);
+                  }),
+              traced);
+  }
 }
 
 TEST_F(Tracer, Kernels_AreKeptByKernelAndGrid) {

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "filters/kernel.h"
+#include "reference/metrics/error_stats.h"
 #include "tests/reference/truth/shapes.h"
 #include "tests/reference/truth/z_scores.h"
 
@@ -214,6 +216,43 @@ TEST(SquareTruth, IsALinearRamp) {
   expect_agreement(score_seeds(
       [&](std::uint32_t seed) { return trace_square(occluders, image, 2.5, tilted_grid(), {.seed = seed}); }, image,
       [](const glm::dvec3& p) { return std::clamp(0.5 + texels_from_edge(p) / 5.0, 0.0, 1.0); }));
+}
+
+/// Mean squares over an edge of how far an image is from kernels traced with many seeds: as they are, and without the
+/// variance of the traced.
+struct MeanSquares {
+  double plain = 0.0, unbiased = 0.0;
+};
+
+MeanSquares measure_squares(double standard_error) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
+  const Occluders occluders(meshes);
+  const Kernel kernel = Kernel::make_point(Reconstruction::kBilinear);
+  const ReceiverImage image = make_receivers(0.9 * kernel.half_width());
+  const std::vector<std::uint8_t> mask(image.points.size(), 1);
+  std::vector<float> shifted;
+  for (const ReceiverPoint& point : image.points)
+    shifted.push_back(static_cast<float>(tent_below(texels_from_edge(glm::dvec3(point.position_ws)) + 0.01)));
+  MeanSquares squares;
+  constexpr int kSeeds = 64;
+  for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+    const TracedVisibility traced =
+        trace_kernel(occluders, image, kernel, tilted_grid(), {.standard_error = standard_error, .seed = seed});
+    const double plain = metrics::measure_error(shifted, traced.visibility, mask)->rmse;
+    const double unbiased = metrics::measure_error(shifted, traced.visibility, mask, traced.variance)->rmse;
+    squares.plain += plain * plain / kSeeds;
+    squares.unbiased += unbiased * unbiased / kSeeds;
+  }
+  return squares;
+}
+
+TEST(KernelTruth, MeanSquaresWithoutItsVariance_AreThoseOfAFinerTruth) {
+  const MeanSquares rough = measure_squares(0.01), fine = measure_squares(0.0025);
+  std::printf("mean squares: %.3g, unbiased %.3g; finer %.3g, unbiased %.3g\n", rough.plain, rough.unbiased, fine.plain,
+              fine.unbiased);
+  const double bias = rough.plain - fine.unbiased;
+  EXPECT_GT(bias, 0.2 * fine.unbiased) << "what sampling adds is seen";
+  EXPECT_NEAR(rough.unbiased, fine.unbiased, 0.1 * bias);
 }
 
 }  // namespace
