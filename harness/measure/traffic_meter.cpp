@@ -11,15 +11,12 @@ namespace shadowbench::measure {
 namespace {
 
 constexpr int kFrameRows = records::kGpuFrameHeight;
-constexpr double kMostTexels = 1.5;  ///< of the map, under a pixel that is asked: more, and lines are missed
+constexpr double kMostTexels = 1.5;  ///< of the map, under a pixel of half the rows: more, and lines are missed
 
 /// Every how many rows and columns of the frame are asked.
 int choose_step(const options::RunOptions& options, std::optional<double> texels_per_pixel) {
-  for (const int step : {8, 4, 2}) {
-    const double rows = static_cast<double>(options.height) * step / kFrameRows;
-    if (texels_per_pixel && *texels_per_pixel * rows * rows <= kMostTexels) return step;
-  }
-  return 1;
+  const double rows = static_cast<double>(options.height) / (kFrameRows / 2);
+  return texels_per_pixel && *texels_per_pixel * rows * rows <= kMostTexels ? 2 : 1;
 }
 
 int count_columns(const options::RunOptions& options, int rows) {
