@@ -224,9 +224,6 @@ std::vector<Found> list_gltf_files() {
                    p.more = R"(, "extensionsUsed": ["KHR_node_visibility"])";
                  }),
                  {}),
-      gltf_found("a light of no intensity",
-                 with_lights(R"({"type": "point", "name": "off", "intensity": 0}, {"type": "directional"})"),
-                 {.lights = 1, .warnings = {"light 'off' has an intensity of 0"}}),
       gltf_found("a spot as wide as half of everything",
                  with_lights(R"({"type": "spot", "name": "wide", "spot": {"outerConeAngle": 1.5707963267948966}},
                      {"type": "directional"})"),
