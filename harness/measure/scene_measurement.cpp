@@ -13,6 +13,7 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/phases.h"
 #include "harness/measure/receiver_pixels.h"
+#include "harness/measure/scene_truth.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
 #include "harness/measure/timing/many_lights_timing.h"
@@ -59,6 +60,9 @@ class SceneBench {
     time(result, filters);
     draw_phases(result, filters);
     warn_of_coarse_depth(result);
+    if (const std::string wide = describe_wide_scene(*task_.scene, light_.frustum().texel_size_ws);
+        options_.truth && !wide.empty())
+      for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(wide);
     renderer_.context->require_no_gl_errors();
     return result;
   }

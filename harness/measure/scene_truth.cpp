@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtx/component_wise.hpp>
 
 #include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/penumbra_growth.h"
+#include "reference/truth/occluders.h"
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
 #include "report/records/absence.h"
@@ -141,6 +143,18 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
   record.truth = {truth.standard_error, truth.unanimous, truth.weight_rmse, truth.lit, truth.penumbra};
   if (truth.weight_rmse > kTellingWeight) record.warnings.push_back(warn_of_weight(record, truth.weight_rmse));
   return flip;
+}
+
+std::string describe_wide_scene(const scene::Scene& scene, double texel_m) {
+  constexpr double kMostTexels = 0.1;
+  const scene::Bounds bounds = scene.bounds();
+  const float largest = glm::compMax(glm::max(glm::abs(bounds.min), glm::abs(bounds.max)));
+  const double offset_m = static_cast<double>(truth::origin_offset(largest, largest));
+  if (offset_m < kMostTexels * texel_m) return "";
+  return fmt::format(
+      "{}: the scene is too wide for single precision: rays of the truth start {} m off surfaces where a texel of the "
+      "map is {} m, so that shadows lose their contacts; leave out of its file what casts no shadow into view",
+      scene.name, records::format_number(offset_m), records::format_number(texel_m));
 }
 
 }  // namespace shadowbench::measure

@@ -9,6 +9,7 @@
 #include "harness/measure/view_receivers.h"
 #include "harness/options/options.h"
 #include "harness/scene/lights/light.h"
+#include "harness/scene/scene.h"
 #include "reference/metrics/flip.h"
 #include "reference/truth/cached_tracer.h"
 #include "report/images/image.h"
@@ -55,5 +56,10 @@ images::Image make_error_image(const images::Image& visibility, const SceneTruth
 /// The same to another image of truth, where the mask is 1.
 images::Image make_error_image(const images::Image& visibility, const images::Image& truth,
                                const std::vector<std::uint8_t>& mask);
+
+/// Empty unless the scene is too wide for single precision: rays of the truth start off their surfaces by a share of
+/// its extent, truth::origin_offset(), and miss what is nearer. It is told from a tenth of a texel on. Measured on a
+/// fence under a map of 8 m and 512 texels: by 0.15 texels the RMSE of pcf2x2 is 3 % off, by 0.6 it is 25 %.
+std::string describe_wide_scene(const scene::Scene& scene, double texel_m);
 
 }  // namespace shadowbench::measure

@@ -27,9 +27,11 @@ DepthRange depth_range(const scene::Camera& camera, const scene::Bounds& bounds)
   }
   const double margin = 0.01 * std::max(farthest - nearest, 1e-6 * std::abs(farthest));
   const double far = std::max(farthest + margin, 1e-30);
-  // A perspective near plane at or behind the camera does not exist; a ten-thousandth keeps single precision usable.
+  // A perspective near plane at or behind the camera does not exist. In a wide scene a share of it would cut off what
+  // stands before the camera; in a small one a browser, whose depth cannot be reversed, still resolves that share.
+  constexpr double kNearest_m = 0.05, kNearestShare = 1e-4;
   const bool perspective = camera.orthographic_height_m <= 0.0f;
-  return {perspective ? std::max(nearest - margin, 1e-4 * far) : nearest - margin, far};
+  return {perspective ? std::max(nearest - margin, std::min(kNearest_m, kNearestShare * far)) : nearest - margin, far};
 }
 
 constexpr GLuint kPlacesUnit = 5, kPlanesUnit = 6, kSharesUnit = 16;  // of lib/receiver.glsl
@@ -104,15 +106,20 @@ filters::Receiver make_receiver(const ReceiverTexels& texels, std::size_t i, con
 
 }  // namespace
 
+glm::dmat4 reverse_depth(glm::dmat4 clip) {
+  for (int column = 0; column < 4; ++column) clip[column][2] = clip[column][3] - clip[column][2];
+  return clip;
+}
+
 glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& bounds, double aspect,
                           const glm::dvec2& shift) {
   const DepthRange range = depth_range(camera, bounds);
   const glm::dvec3 eye(camera.position_ws);
   const glm::dmat4 view = glm::lookAtRH(eye, eye + glm::dvec3(camera.forward_ws), glm::dvec3(camera.up_ws));
   const double half = 0.5 * static_cast<double>(camera.orthographic_height_m);
-  const glm::dmat4 projection =
+  const glm::dmat4 projection = reverse_depth(
       half > 0.0 ? glm::orthoRH_ZO(-half * aspect, half * aspect, -half, half, range.near, range.far)
-                 : glm::perspectiveRH_ZO(static_cast<double>(camera.vertical_fov_rad), aspect, range.near, range.far);
+                 : glm::perspectiveRH_ZO(static_cast<double>(camera.vertical_fov_rad), aspect, range.near, range.far));
   if (shift == glm::dvec2(0.0)) return glm::mat4(projection * view);
   return glm::mat4(glm::translate(glm::dmat4(1.0), glm::dvec3(2.0 * shift, 0.0)) * projection * view);
 }
@@ -148,8 +155,9 @@ void GBuffer::draw(ShaderLibrary& shaders, const Geometry& geometry, const scene
   receivers_.clear();
   framebuffer_.bind();
   set_geometry_state();
+  glDepthFunc(GL_GREATER);
   for (int i = 0; i < 4; ++i) framebuffer_.clear_color(i, glm::vec4(0.0f));
-  framebuffer_.clear_depth(1.0f);
+  framebuffer_.clear_depth(0.0f);
   const auto [corner, whole] = window.value_or(PictureWindow{{0, 0}, {width(), height()}});
   glViewport(-corner.x, -corner.y, whole.x, whole.y);
   const double aspect = static_cast<double>(whole.x) / whole.y;

@@ -98,8 +98,13 @@ class GBuffer {
   mutable std::deque<ReceiverBuffer> receivers_;
 };
 
-/// The matrix from world to clip space, depth zero-to-one, of a camera that looks at these bounds; `shift` moves what
-/// it sees to the right and up, in widths and heights of the picture.
+/// Turns clip z around: w - z. It is computed in double, since a float projection has already lost the precision that a
+/// reversed depth would keep.
+glm::dmat4 reverse_depth(glm::dmat4 clip);
+
+/// The matrix from world to clip space of a camera that looks at these bounds; depth is one at the near plane and zero
+/// at the far one, so that a float resolves it as well far away. `shift` moves what it sees to the right and up, in
+/// widths and heights of the picture.
 glm::mat4 clip_from_world(const scene::Camera& camera, const scene::Bounds& bounds, double aspect,
                           const glm::dvec2& shift = glm::dvec2(0.0));
 

@@ -15,13 +15,6 @@
 namespace shadowbench::render {
 namespace {
 
-/// Turns clip z around: w - z. It is computed in double, since a float projection has already lost the precision that a
-/// reversed depth would keep.
-glm::dmat4 reverse_depth(glm::dmat4 clip) {
-  for (int column = 0; column < 4; ++column) clip[column][2] = clip[column][3] - clip[column][2];
-  return clip;
-}
-
 /// What a light's map holds: a perspective one the depth of its projection.
 filters::DepthCurve fit_curve(filters::DepthCurve wanted, const scene::LightFrustum& frustum) {
   if (!frustum.perspective || is_curved(frustum.shape)) return wanted;

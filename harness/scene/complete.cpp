@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -212,6 +213,24 @@ Scene with_floor(Scene scene, float ground_y) {
   return scene;
 }
 
+/// Leaves out lights of intensity 0, with the cameras that look at them alone. Returns whether none is left.
+bool leave_out_dark_lights(Scene& scene) {
+  std::vector<Light> lights = std::exchange(scene.other_lights, {});
+  lights.insert(lights.begin(), std::move(scene.light));
+  std::erase_if(lights, [&](const Light& light) {
+    if (light.intensity != 0.0f) return false;
+    const std::string& name = light.name;
+    scene.warnings.push_back(
+        fmt::format("{} has an intensity of 0; it is left out", name.empty() ? "a light" : "the light '" + name + "'"));
+    if (!name.empty()) std::erase_if(scene.cameras, [&](const Camera& each) { return each.light == name; });
+    return true;
+  });
+  if (lights.empty()) return true;
+  scene.light = std::move(lights.front());
+  scene.other_lights.assign(std::next(lights.begin()), lights.end());
+  return false;
+}
+
 /// Adds the usual sun, where there is none, and puts the lights where they were asked for.
 Scene with_placed_lights(Scene scene, const Completion& completion) {
   if (completion.needs_sun) scene.light = place_in_sky({}, usual_view(scene.bounds()).sun);
@@ -357,8 +376,9 @@ std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free, c
                      choice.is_usual ? "the usual view" : percent(choice.usual_edges) + " in the usual view");
 }
 
-Scene complete(Scene scene, const Completion& completion, const std::string& where) {
+Scene complete(Scene scene, Completion completion, const std::string& where) {
   warn_of_rounding(scene);
+  if (leave_out_dark_lights(scene)) completion.needs_sun = true;
   ViewFreedom free{.sun = completion.needs_sun && !completion.light};
   if (completion.ground) free.ground_y = ground_height(scene);
   scene = validate(with_placed_lights(std::move(scene), completion), where);

@@ -92,9 +92,9 @@ struct Completion {
 
 /// Returns a checked scene that has all it lacked: a sun, a camera for each light that has none, by choose_view(),
 /// which a note names, and a floor. Of several lights each has its camera, called as the light. Cameras and lights that
-/// the scene has, and a place that was asked for, stay as they are.
+/// the scene has, and a place that was asked for, stay as they are; lights of intensity 0 are left out with a warning.
 ///
 /// Requires validated geometry. Throws kInput, at `where`, as validate() does.
-Scene complete(Scene scene, const Completion& completion, const std::string& where);
+Scene complete(Scene scene, Completion completion, const std::string& where);
 
 }  // namespace shadowbench::scene

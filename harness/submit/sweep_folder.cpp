@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -70,6 +71,17 @@ T read_as(const fs::path& file) {
       file, [](const json& content) { return content.get<T>(); });
 }
 
+/// Refuses names of jobs that no engine gives: their programs take them as words, and a folder may be of somebody else.
+/// A name is a number, perhaps with ';' or '@' and where the job is.
+void require_job_names(const SubmittedJobs& jobs) {
+  constexpr const char* kDigits = "0123456789";
+  for (const std::string& job : {jobs.truth, jobs.cells, jobs.merge}) {
+    const std::size_t end = job.find_first_of(";@");
+    if (!job.empty() && (end == 0 || job.find_first_not_of(kDigits) != end))
+      throw std::invalid_argument(fmt::format("it names a job '{}', which is no number", job));
+  }
+}
+
 bool is_there(const fs::path& file) {
   std::error_code ignored;
   return fs::exists(file, ignored);
@@ -85,7 +97,15 @@ bool is_sweep(const fs::path& out) { return is_there(out / run::kSweepFile); }
 
 void write_sweep(const fs::path& out, const Sweep& sweep) { write_json(out / run::kSweepFile, sweep); }
 
-Sweep read_sweep(const fs::path& out) { return read_as<Sweep>(out / run::kSweepFile); }
+Sweep read_sweep(const fs::path& out) {
+  return read_json(
+      out / run::kSweepFile,
+      [](const json& content) {
+        auto sweep = content.get<Sweep>();
+        std::ranges::for_each(sweep.jobs, require_job_names);
+        return sweep;
+      });
+}
 
 void write_task(const fs::path& out, const SweepTask& task) {
   write_json(task_folder(out, task.kind, task.number) / kTaskFile, task);

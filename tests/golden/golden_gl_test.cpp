@@ -67,15 +67,17 @@ TEST_P(Golden, OutputIsUnchanged_OnEveryScene) {
 INSTANTIATE_TEST_SUITE_P(AllFilters, Golden, ::testing::ValuesIn(filter_ids()),
                          [](const auto& each) { return each.param; });
 
-/// A context, the width of LLVM's vectors in bits, and the rasteriser's threads.
-using Platform = std::tuple<std::string, int, int>;
+/// A context, the width of LLVM's vectors in bits, the rasteriser's threads, and what of the processor's instructions
+/// may be used: without those of AVX2 nothing is multiplied and added with one rounding.
+using Platform = std::tuple<std::string, int, int, std::string>;
 class Portable : public ProgramTest, public ::testing::WithParamInterface<Platform> {};
 
 /// The driver's shader cache does not tell vector widths apart: with it, one width's code would run under another's
 /// name.
 std::string make_environment(const Platform& platform) {
   return "MESA_SHADER_CACHE_DISABLE=true LP_NATIVE_VECTOR_WIDTH=" + std::to_string(std::get<1>(platform)) +
-         " LP_NUM_THREADS=" + std::to_string(std::get<2>(platform));
+         " LP_NUM_THREADS=" + std::to_string(std::get<2>(platform)) +
+         " GALLIUM_OVERRIDE_CPU_CAPS=" + std::get<3>(platform);
 }
 
 TEST_P(Portable, TheSameBaselineHolds) {
@@ -98,9 +100,10 @@ TEST_P(Portable, TheSameBaselineHolds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Llvmpipe, Portable,
-                         ::testing::Values(Platform("osmesa", 128, 1), Platform("osmesa", 256, 2),
-                                           Platform("osmesa", 512, 2), Platform("egl", 128, 2), Platform("egl", 256, 1),
-                                           Platform("glfw", 128, 1), Platform("glfw", 256, 2)),
+                         ::testing::Values(Platform("osmesa", 128, 1, "sse2"), Platform("osmesa", 256, 2, "avx"),
+                                           Platform("osmesa", 512, 2, ""), Platform("egl", 128, 2, "avx"),
+                                           Platform("egl", 256, 1, "avx2"), Platform("glfw", 128, 1, "sse2"),
+                                           Platform("glfw", 256, 2, "")),
                          [](const auto& each) {
                            return std::get<0>(each.param) + "_" + std::to_string(std::get<1>(each.param)) + "_bits_" +
                                   std::to_string(std::get<2>(each.param)) + "_threads";

@@ -259,10 +259,6 @@ class GltfImporter {
     const tinygltf::Light& source = find_element(source_.lights, index, "there is no light", where_);
     const std::string name =
         source.name.empty() ? fmt::format("light {}", index) : fmt::format("light '{}'", source.name);
-    if (source.intensity == 0.0) {
-      warn(fmt::format("{} has an intensity of 0; it is left out", name));
-      return;
-    }
     const std::optional<LightKind> kind =
         make_gltf_light(source.type, world_from_node, source.spot.innerConeAngle, source.spot.outerConeAngle);
     if (!kind) {
@@ -275,6 +271,7 @@ class GltfImporter {
     Light light;
     light.name = source.name;
     light.kind = *kind;
+    if (source.intensity == 0.0) light.intensity = 0.0f;
     if (source.color.size() == 3)
       for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>(source.color[static_cast<std::size_t>(i)]);
     const toml::table extras = read_light_extras(source.extras);

@@ -188,8 +188,9 @@ std::optional<fs::path> resolve_inside(const fs::path& folder, std::string_view 
   const fs::path relative = fs::path(reference).lexically_normal();
   if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return std::nullopt;
   std::error_code failure;
-  const fs::path top = fs::weakly_canonical(folder.empty() ? "." : folder, failure);
-  const fs::path target = failure ? fs::path() : fs::weakly_canonical(folder / relative, failure);
+  const fs::path here = folder.empty() ? "." : folder;  // what begins with no folder may be absent as a whole
+  const fs::path top = fs::weakly_canonical(here, failure);
+  const fs::path target = failure ? fs::path() : fs::weakly_canonical(here / relative, failure);
   if (failure || !is_below(top, target)) return std::nullopt;
   return folder / relative;
 }

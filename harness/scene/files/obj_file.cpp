@@ -29,8 +29,7 @@ constexpr std::size_t kMostCornersOfAFace = 2048;
 std::string read_text(const std::filesystem::path& file) {
   const std::vector<unsigned char> bytes = read_file_bytes(file);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const bool is_wide = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
-  if (is_wide || text.substr(0, 4).find('\0') != text.npos)
+  if (text.substr(0, 4).find('\0') != text.npos)  // with its mark or without
     fail_input("this text is UTF-16: save it as UTF-8", file.string());
   return std::string(text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0));
 }

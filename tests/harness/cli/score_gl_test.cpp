@@ -110,7 +110,7 @@ TEST_F(Score, RegressTellsThatItMoved) {
 
 TEST_F(Score, AnExportedScene_HasTheSameTruth) {
   make_run();
-  ASSERT_EQ(run("export cubes --size 96x54 --map-size 128 --out scenes").exit_code, 0);
+  ASSERT_EQ(run("export cubes --strict --size 96x54 --map-size 128 --out scenes").exit_code, 0);
   const json scene = json::parse(read_text(folder() / "scenes/cubes/scene.json"));
   EXPECT_EQ(scene["maps"][0]["layers"][0]["kind"], "orthographic");
   ASSERT_EQ(run("run --grids --all-parts --out again --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene "
@@ -119,6 +119,16 @@ TEST_F(Score, AnExportedScene_HasTheSameTruth) {
             0);
   const Outcome diff = run("diff --json out/cubes.exr#truth.area again/cubes.exr#truth.area");
   EXPECT_LT(json::parse(diff.out)["rmse"].get<double>(), 1e-5);
+}
+
+/// Of a scene without warnings --strict says nothing, see above.
+TEST_F(Score, AnExportedSceneThatWarns_IsWritten_AndIsNotStrict) {
+  write("table.obj", "mtllib absent.mtl\nv 0 1 0\nv 1 1 0\nv 1 1 1\nf 1 2 3\n");
+  const Outcome exported = run("export table.obj --ground --strict --size 32x18 --map-size 64 --out scenes");
+  EXPECT_EQ(exported.exit_code, 1) << exported.err;
+  EXPECT_THAT(exported.err, HasSubstr("warning: table: the material library 'absent.mtl'"));
+  EXPECT_THAT(exported.err, HasSubstr("--strict: the scene has 1 warning: table: the material library 'absent.mtl'"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "scenes/table/table.glb"));
 }
 
 TEST_F(Score, ACommandDrawsTheScene) {

@@ -121,6 +121,35 @@ TEST(ReceiverPosition, BackFacesOfABox_AreSeenOutsideOfIt) {
   EXPECT_EQ(inside, 0);
 }
 
+/// A floor of some kilometres, a box before the camera, and two walls at its end of which the nearer is seen.
+TEST(ReceiverPosition, WideScenes_ShowWhatIsNearAndWhatIsFar) {
+  constexpr float kNear = 0.3f;
+  for (const float size : {100.0f, 1e3f, 20e3f, 100e3f}) {
+    const float far = 0.45f * size;
+    scene::Mesh box = scene::make_box(glm::vec3(0.1f), 1);
+    for (scene::Vertex& v : box.vertices) v.position_ws += glm::vec3(0.1f, 1.5f, -kNear);
+    std::vector<scene::Mesh> meshes = {scene::make_plane(glm::vec2(size), 16), box};
+    for (const float distance : {1.01f * far, far}) {
+      meshes.push_back(scene::make_box({0.1f * size, 0.1f * size, 1e-4f * size}, 1));
+      for (scene::Vertex& v : meshes.back().vertices) v.position_ws.z -= distance;
+    }
+    scene::Camera camera;
+    camera.position_ws = {0.0f, 1.5f, 0.0f};
+    camera.forward_ws = {0.0f, 0.0f, -1.0f};
+    scene::Scene scene = make_scene_of(meshes);
+    scene.light.kind = scene::Sun{.direction_ws = camera.forward_ws};
+    int near = 0, at_wall = 0, behind_wall = 0;
+    Viewer(240, 135).see(scene, camera, [&](const glm::vec3& position, const glm::vec3&, auto) {
+      if (position.z > -2.0f * kNear) ++near;
+      if (std::abs(position.z + far) < 1e-3f * size) ++at_wall;
+      if (std::abs(position.z + 1.01f * far) < 1e-3f * size) ++behind_wall;
+    });
+    EXPECT_GT(near, 500) << size;
+    EXPECT_GT(at_wall, 500) << size;
+    EXPECT_EQ(behind_wall, 0) << size;
+  }
+}
+
 TEST(ReceiverPosition, RaysOfTheTruth_NeverMeetThePlaneThatTheyLeave) {
   Viewer viewer(960, 540);
   for (const std::string& name : scenes_of_all_lights()) {

@@ -7,7 +7,7 @@
 
 #include "harness/scene/complete.h"
 #include "harness/scene/lights/light_fit.h"
-#include "test_files.h"
+#include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -222,6 +222,50 @@ TEST(LoadTest, ModelsOwnCameraAndLight_AreUsed) {
   ASSERT_EQ(scene.cameras.size(), 1U);
   EXPECT_EQ(scene.cameras[0].position_ws, glm::vec3(0, 0, 9));
   EXPECT_EQ(-to_light(scene.light, {}), glm::vec3(0, 0, -1));
+}
+
+TEST(LoadTest, LightsOfIntensity0_AreLeftOut) {
+  const TestFolder folder;
+  const auto load_with = [&](const std::string& lights) {
+    return load(folder
+                    .write("dark.toml", "title = \"dark\"\n" + lights +
+                                            "[[object]]\nshape = \"plane\"\nsize = [1, 1]\n"
+                                            "[[camera]]\nname = \"a\"\nposition = [0, 2, 2]\ntarget = [0, 0, 0]\n"
+                                            "[[camera]]\nname = \"b\"\nlight = \"off\"\nposition = [0, 2, 3]\n"
+                                            "target = [0, 0, 0]\n")
+                    .string(),
+                make_options());
+  };
+  const std::string angles = "azimuth_deg = 10\nelevation_deg = 20\n";
+  const std::string off = "[[light]]\nname = \"off\"\nintensity = 0\n" + angles;
+  const std::string on = "[[light]]\nname = \"on\"\nintensity = 0.001\n" + angles;
+  const auto warning = HasSubstr("the light 'off' has an intensity of 0; it is left out");
+  for (const std::string& lights : {off + on, on + off}) {
+    const Scene scene = load_with(lights);
+    EXPECT_EQ(scene.light.name, "on");
+    EXPECT_TRUE(scene.other_lights.empty());
+    ASSERT_EQ(scene.cameras.size(), 1U) << "the other camera looks at the light that is left out";
+    EXPECT_EQ(scene.cameras[0].name, "a");
+    EXPECT_THAT(scene.warnings, testing::ElementsAre(warning));
+  }
+  const Scene scene = load_with(off);
+  EXPECT_GT(scene.light.intensity, 0.0f) << "a sun takes its place";
+  EXPECT_THAT(scene.warnings, testing::Contains(warning));
+}
+
+TEST(LoadTest, LightOfAModelOfIntensity0_IsLeftOut) {
+  const TestFolder folder;
+  GltfParts parts;
+  parts.more = R"(, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
+      {"type": "point", "name": "off", "intensity": 0}, {"type": "directional", "name": "on"}]}})";
+  parts.nodes = R"([{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}},
+      {"extensions": {"KHR_lights_punctual": {"light": 1}}}])";
+  parts.scenes = R"([{"nodes": [0, 1, 2]}])";
+  folder.write("data.bin", parts.buffer);
+  const Scene scene = load(folder.write("dark.gltf", gltf_of(parts)).string(), make_options());
+  EXPECT_EQ(scene.light.name, "on");
+  EXPECT_TRUE(scene.other_lights.empty());
+  EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("the light 'off' has an intensity of 0; it is left out")));
 }
 
 /// The models lie outside the project; SHADOWBENCH_SCENES names their folder.

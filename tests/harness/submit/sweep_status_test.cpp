@@ -145,6 +145,32 @@ TEST_F(SweepStatusTest, OfDamagedFiles_IsRefused) {
   EXPECT_THROW(read_sweep(out() / "tasks"), Error);
 }
 
+/// Engines' programs are given the names: scancel ends all of a user's jobs for one of these.
+TEST_F(SweepStatusTest, OfJobsThatAreNoNumbers_IsRefused) {
+  Sweep sweep = read_sweep(out());
+  for (const std::string job : {"", "12", "12;cluster", "12@machine"}) {
+    sweep.jobs = {{"slurm", job, job, job}};
+    write_sweep(out(), sweep);
+    EXPECT_EQ(read_sweep(out()).jobs.at(0).merge, job);
+  }
+  const auto expect_refused = [&](const SubmittedJobs& jobs, const std::string& job) {
+    sweep.jobs.back() = jobs;
+    write_sweep(out(), sweep);
+    try {
+      read_sweep(out());
+      ADD_FAILURE() << job;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kInput);
+      EXPECT_THAT(error.message(), HasSubstr("a job '" + job + "', which is no number"));
+    }
+  };
+  for (const std::string job : {"--me", "1 --me", "-1", ";cluster", "@machine", "12x;cluster", "../1", "all"}) {
+    expect_refused({"slurm", job, "", ""}, job);
+    expect_refused({"slurm", "", job, ""}, job);
+    expect_refused({"slurm", "", "", job}, job);
+  }
+}
+
 /// Where two processes do one task, the first to end takes the file of the other away.
 TEST_F(SweepStatusTest, SignOfLife_ComesAgain) {
   using std::chrono::milliseconds;

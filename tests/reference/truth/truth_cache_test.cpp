@@ -135,16 +135,16 @@ TEST_F(Cache, Prune_RemovesWhatWasUsedLongestAgo) {
   EXPECT_TRUE(std::filesystem::exists(file("c")));
 }
 
-/// Neither a name nor an ending makes a file ours.
+/// Neither a name nor an ending nor what it begins with makes a file ours, and none makes a folder another's.
 TEST_F(Cache, Prune_LeavesFilesThatAreNotOurs) {
-  TruthCache cache = open();
-  cache.store("a", make_layers(0.5f));
+  open().store("a", make_layers(0.5f));
   std::ofstream(folder_ / "old.exr") << std::string(1000, 'x');
   std::ofstream(folder_ / "own.truth") << std::string(1000, 'x');
+  std::filesystem::copy_file(file("a"), folder_ / "copy.bin");
   std::filesystem::create_symlink("a.truth", folder_ / "link.truth");
-  cache.prune(0);
+  open().prune(0);
   EXPECT_FALSE(std::filesystem::exists(file("a")));
-  for (const char* name : {"old.exr", "own.truth", "link.truth"})
+  for (const char* name : {"old.exr", "own.truth", "copy.bin", "link.truth"})
     EXPECT_TRUE(std::filesystem::is_symlink(folder_ / name) || std::filesystem::exists(folder_ / name)) << name;
 }
 

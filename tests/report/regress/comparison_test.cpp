@@ -180,6 +180,34 @@ TEST(Comparison, RoundingBound_WidensItsPixelAlone) {
   EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged);
 }
 
+/// Both images keep bounds below 2^-14 as 0, and the pixel's own tolerance is spent on storing visibility in 16 bits.
+TEST(Comparison, SmallRounding_IsAddedToThatOfStoring) {
+  ActualCell before = make_cell();
+  const auto compare_moved = [&](float difference) {
+    ActualCell now = before;
+    *now.images.visibility.at(5, 5) += difference;
+    return compare_cell(now, expect(before), before.images, Tolerances()).outcome;
+  };
+  EXPECT_EQ(compare_moved(0x1p-12f), Outcome::kSame);
+  EXPECT_EQ(compare_moved(0x1p-12f + 0x1p-15f), Outcome::kChanged) << "there are no bounds";
+  before.images.uncertainty.rounding = make_image(0.0f);
+  EXPECT_EQ(compare_moved(0x1p-12f + 0x1p-15f), Outcome::kSame);
+  EXPECT_EQ(compare_moved(0x1p-12f + 0x1p-13f), Outcome::kSame);
+  EXPECT_EQ(compare_moved(0x1p-12f + 0x1.1p-13f), Outcome::kChanged);
+}
+
+TEST(Comparison, PixelThatRoundingMovesFar_DiffersWhereItMovesFartherThanItsBounds) {
+  ActualCell before = make_cell();
+  before.images.uncertainty.rounding = make_image(kWidestBound);
+  const auto count_moved = [&](float difference) {
+    ActualCell now = before;
+    now.images.visibility = make_image(0.5f + difference);
+    return compare_cell(now, expect(before), before.images, Tolerances()).pixels->excused_changed;
+  };
+  EXPECT_EQ(count_moved(0x1p-4f), 0);
+  EXPECT_EQ(count_moved(0x1.1p-4f), kWidth * kHeight);
+}
+
 /// A map that is broken has bounds that explain anything: no reason to excuse the whole image.
 TEST(Comparison, ExcusingMuchMoreThanTheBaseline_IsAChange) {
   ActualCell before = make_cell();

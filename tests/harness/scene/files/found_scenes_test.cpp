@@ -168,6 +168,7 @@ GltfParts with_skin(const std::string& skin, const std::vector<float>& weights) 
 }
 
 const std::vector<float> kFirstJoint{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+const std::vector<float> kHalfFirstJoint{0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5, 0, 0, 0};
 const std::vector<float> kBothJoints{1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
 
 const std::string kGloss = R"("KHR_materials_pbrSpecularGlossiness")";
@@ -210,6 +211,17 @@ std::vector<Found> list_gltf_files() {
           {.opacities = {0.25}, .warnings = {"blends"}}),
       gltf_found("transmission", with_material(transmits, kTransmission),
                  {.opacities = {0.25}, .warnings = {"blends"}}),
+      gltf_found("transmission of a material whose alpha does not count",
+                 with_material(
+                     R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5], "baseColorTexture": {"index": 0}},
+                         "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.75}}})",
+                     kTransmission),
+                 {.opacities = {0.25}, .warnings = {"blends"}}),
+      gltf_found("transmission beside holes",
+                 with_material(R"({"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+                         "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.75}}})",
+                               kTransmission),
+                 {.opacities = {0.5}, .warnings = {"only the holes"}}),
       gltf_found("volume", with_material("{}", R"("KHR_materials_volume")"), {.warnings = {"KHR_materials_volume"}}),
       gltf_found("a material of the future",
                  with([](GltfParts& p) { p.more = R"(, "extensionsUsed": ["KHR_materials_gauze"])"; }),
@@ -224,9 +236,6 @@ std::vector<Found> list_gltf_files() {
                    p.more = R"(, "extensionsUsed": ["KHR_node_visibility"])";
                  }),
                  {}),
-      gltf_found("a light of no intensity",
-                 with_lights(R"({"type": "point", "name": "off", "intensity": 0}, {"type": "directional"})"),
-                 {.lights = 1, .warnings = {"light 'off' has an intensity of 0"}}),
       gltf_found("a spot as wide as half of everything",
                  with_lights(R"({"type": "spot", "name": "wide", "spot": {"outerConeAngle": 1.5707963267948966}},
                      {"type": "directional"})"),
@@ -242,6 +251,10 @@ std::vector<Found> list_gltf_files() {
                  {.triangles = 6, .size = {10, 2, 10}}),
       gltf_found("instances that are turned", with_instances(R"("ROTATION": 4)"), {.triangles = 6, .size = {4, 4, 0}}),
       gltf_found("a skin without bind matrices, of one joint", with_skin(R"({"joints": [1, 2]})", kFirstJoint),
+                 {.size = {2, 2, 0}}),
+      gltf_found("a skin whose weights add up to a half", with_skin(R"({"joints": [1, 2]})", kHalfFirstJoint),
+                 {.size = {2, 2, 0}}),
+      gltf_found("a skin without weights", with_skin(R"({"joints": [1, 2]})", std::vector<float>(16)),
                  {.size = {2, 2, 0}}),
       gltf_found("a skin of two joints", with_skin(R"({"joints": [1, 2], "inverseBindMatrices": 4})", kBothJoints),
                  {.size = {3, 1, 10}}),
@@ -263,6 +276,13 @@ std::string name_row(const testing::TestParamInfo<Found>& row) {
 
 INSTANTIATE_TEST_SUITE_P(Obj, FoundScenesTest, testing::ValuesIn(list_obj_files()), name_row);
 INSTANTIATE_TEST_SUITE_P(Gltf, FoundScenesTest, testing::ValuesIn(list_gltf_files()), name_row);
+
+TEST(FoundScenes, PictureOfOpacities_KeepsTheColours) {
+  const TestFolder folder;
+  for (const auto& [name, bytes] : obj_of("", "map_Kd grey.tga\nmap_d half.tga\n", {}).files) folder.write(name, bytes);
+  EXPECT_THAT(import_obj(folder.path() / "a.obj").textures.at(0).rgba,
+              testing::ElementsAre(128, 128, 128, 0, 128, 128, 128, 255));
+}
 
 TEST(FoundScenes, WhatCannotBeRead_IsNamed) {
   const TestFolder folder;

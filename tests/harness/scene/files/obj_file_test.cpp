@@ -53,6 +53,13 @@ TEST(ObjFileTest, MissingMaterialLibrary_IsAWarning) {
   EXPECT_THAT(model.warnings, testing::Contains(HasSubstr("absent.mtl")));
 }
 
+/// A scene may be named without a folder, and what it names be missing.
+TEST(ObjFileTest, ReferencesOfAFileWithoutAFolder_AreInside) {
+  EXPECT_EQ(resolve_inside("", "absent.mtl"), std::filesystem::path("absent.mtl"));
+  EXPECT_EQ(resolve_inside("", "tex/absent.png"), std::filesystem::path("tex/absent.png"));
+  EXPECT_EQ(resolve_inside("", "../absent.mtl"), std::nullopt);
+}
+
 TEST(ObjFileTest, LibraryOrTextureOutsideTheFolder_IsRefused) {
   const Error library = error_of([] { import_text("mtllib ../../etc/passwd\nv 0 0 0\n"); });
   EXPECT_THAT(library.message(), HasSubstr("outside its folder"));
