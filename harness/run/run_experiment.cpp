@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -28,6 +29,7 @@
 #include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"
 #include "report/files/folder_lock.h"
+#include "report/pages/write_page.h"
 #include "report/pages/write_report.h"
 #include "report/records/filter_mistakes.h"
 #include "report/records/format.h"
@@ -127,13 +129,37 @@ class Experiment {
     const std::vector<records::CellRecord> replaced = read_replaced();
     steps_.plan(plan);
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) run_scene(plan, scene);
+    for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) {
+      run_scene(plan, scene);
+      if (options_.part.product == options::Product::kReport) show_early(plan, scene + 1);
+    }
     run_.work.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
     if (!options_.part.is_task()) finish(plan, replaced);
     steps_.finish();
+  }
+
+  /// The page of the scenes that are measured, whenever they are twice as many: so it is there after the first, and all
+  /// such pages together cost less than the last.
+  void show_early(const RunPlan& plan, std::size_t scenes) {
+    if (options_.part.is_task() || options_.part.is_worker() || scenes == plan.scenes.size() ||
+        !std::has_single_bit(scenes))
+      return;
+    std::vector<std::string> keys;
+    for (const PlannedTask& task : plan.tasks)
+      if (task.scene < scenes) keys.insert(keys.end(), task.keys.begin(), task.keys.end());
+    const auto is_left = [&](const std::string& name) {
+      return std::any_of(
+          plan.scenes.begin() + static_cast<std::ptrdiff_t>(scenes), plan.scenes.end(),
+          [&](const PlannedScene& planned) { return planned.scene.name == name; });
+    };
+    const auto whole = std::ranges::count_if(run_.scenes, [&](const auto& scene) { return !is_left(scene.name); });
+    pages::write_early_report(options_.out, run_, records::read_cells(options_.out, keys),
+                              fmt::format("The run goes on: {} of {} scenes, {} of {} cells are measured. Open this "
+                                          "page again when it has ended.",
+                                          whole, run_.scenes.size(), keys.size(), plan.own_cells));
   }
 
   void finish(const RunPlan& plan, const std::vector<records::CellRecord>& replaced) {
@@ -214,8 +240,7 @@ class Experiment {
   /// decides, not the times of the files: the clock may have been set in between.
   bool has_report(const RunPlan& plan) const {
     const std::filesystem::path file = options_.out / "results.json";
-    if (options_.part.is_worker() || !std::filesystem::exists(file) ||
-        !std::filesystem::exists(options_.out / "index.html"))
+    if (options_.part.is_worker() || !std::filesystem::exists(file) || !pages::has_page(options_.out, "run"))
       return false;
     try {
       const records::Results results = records::read_results(file);

@@ -67,9 +67,11 @@ TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
       << "the number of rounds is told";
   EXPECT_EQ(results(), first);
   // Without its page or its results the report is made again, and nothing else.
-  std::filesystem::remove(folder() / "out" / "index.html");
-  ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
-  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "index.html"));
+  for (const char* page : {"index.html", "summary.md"}) {
+    std::filesystem::remove(folder() / "out" / page);
+    ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder() / "out" / page));
+  }
   std::filesystem::remove(folder() / "out" / "results.json");
   ASSERT_EQ(run("run e.toml --out out").exit_code, 0);
   EXPECT_EQ(cell_times(), before);
@@ -157,14 +159,16 @@ TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCells_AndNoAdviceWhereNothingShowsThe
 
 TEST_F(Sweep, KilledAndContinued_EqualsAnUninterruptedOne) {
   ASSERT_EQ(run("run e.toml --out whole").exit_code, 0);
-  for (const int enough : {3, 20}) run_and_kill("run e.toml --out out", enough);
+  for (const std::size_t enough : {std::size_t{3}, kCells / 2 + 4}) run_and_kill("run e.toml --out out", enough);
   EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "results.json"));
+  EXPECT_THAT(read_text(folder() / "out" / "index.html"), HasSubstr("1 of 2 scenes, 24 of 48 cells"));
   const auto before = cell_times();
-  EXPECT_GE(before.size(), 20u);
+  EXPECT_GE(before.size(), kCells / 2);
   const Outcome outcome = run("run e.toml --out out");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("finished before"));
   expect_same("whole", "out");
+  EXPECT_THAT(read_text(folder() / "out" / "index.html"), Not(HasSubstr("of 2 scenes")));
   const auto after = cell_times();
   for (const auto& [name, time] : before) {
     if (!name.ends_with(".json") || name.size() != 21) continue;  // a killed run's unfinished file
