@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "base/content_hash.h"
 #include "base/error.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
@@ -53,6 +54,15 @@ std::vector<std::string> list_view_words(const PlannedScene& planned) {
   return words;
 }
 
+/// Names an empty entry of the cache, which says for the next run that a task's truths were traced.
+std::string name_traces(const PlannedScene& planned, const PlannedTask& task) {
+  ContentHash hash;
+  hash.add(name_view(planned, *task.task.camera));
+  hash.add(fmt::format("{} {} {}", task.task.map_size, scene::describe_fit(planned.options.fit),
+                       planned.options.attribution));
+  return hash.name();
+}
+
 class Experiment {
  public:
   Experiment(const options::RunOptions& options, options::Progress& progress)
@@ -74,7 +84,8 @@ class Experiment {
 
   records::RunRecord run() {
     require_no_sweep();
-    const RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
+    RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
+    for (PlannedTask& task : plan.tasks) task.is_traced = cache_.has(name_traces(plan.scenes[task.scene], task));
     announce(plan);
     if (!options_.part.is_task()) lock_.emplace(options_.out, options_.force || options_.part.is_worker());
     require_writable(options_.out);
@@ -168,7 +179,8 @@ class Experiment {
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (!options_.part.is_worker()) {
       std::vector<records::CellRecord> cells = records::read_cells(options_.out, keep_rows(plan));
-      if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, plan, cache_, cells);
+      if (options_.pictures && options_.truth)
+        draw_supersampled_pictures(renderer_, plan, cache_, cells, [this](double part) { steps_.advance(part); });
       pages::write_report(options_.out, run_, cells);
     }
     cache_.prune(truth::kMaxCacheBytes);
@@ -199,7 +211,7 @@ class Experiment {
     if (plan.finished > 0)
       text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
     const TimeForecast forecast =
-        left > 0 && !options_.part.is_task() ? forecast_time(renderer_, plan, cache_, left) : TimeForecast();
+        left > 0 && !options_.part.is_task() ? forecast_time(renderer_, plan, cache_) : TimeForecast();
     text += forecast.text;
     progress_.note(text);
     if (options_.part.is_task() || (left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine)
@@ -329,9 +341,10 @@ class Experiment {
   }
 
   /// Traces what all cells of a view and map ask for, and leaves it in the cache.
-  void trace_shared(const PlannedScene& planned, const measure::SceneTask& task, measure::SceneAssets& assets) {
+  void trace_shared(const PlannedScene& planned, const PlannedTask& each, measure::SceneAssets& assets) {
+    const measure::SceneTask& task = each.task;
     const std::string what = fmt::format("{} · {} · truth", planned.scene.name, task.map_size);
-    steps_.begin(planned.options, options::Work::kTruth, task.filters.size(), what);
+    steps_.begin(planned, each, options::Work::kTruth, task.filters.size(), what);
     assets.tracer().listen([this](double part) { steps_.advance_tracing(part); });
     const measure::SceneTruth& truth = assets.truth(*task.camera);
     const measure::CellAnalyser traces(renderer_, planned.options, task, assets, truth);
@@ -351,11 +364,13 @@ class Experiment {
       if (!assets)
         assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(planned.options));
       if (options_.part.product == options::Product::kTruth)
-        trace_shared(planned, each.task, *assets);
+        trace_shared(planned, each, *assets);
       else if (options_.part.product == options::Product::kPrograms)
         compile(planned, each.task, *assets);
       else
         measure_task({renderer_, planned, each, *assets, run_, listener_, gpus_});
+      if (options_.truth && options_.part.product != options::Product::kPrograms && !each.is_traced)
+        cache_.store(name_traces(planned, each), {});
     }
   }
 };
