@@ -74,6 +74,15 @@ double count_frames(const options::RunOptions& options) {
   return 1.0 + std::accumulate(options.lights.begin(), options.lights.end(), 0.0);
 }
 
+/// Pictures that are drawn soon are precise soon, unless a larger budget says that they are to be more so.
+double presume_timing_s(const options::RunOptions& options, double draw_s) {
+  if (options.rounds.is_fixed()) return 0.1 * draw_s * options.rounds.most * count_frames(options);
+  const double budget_s = 1e-3 * options.rounds.budget_ms;
+  const bool is_told_more = options.rounds.budget_ms > options::RoundLimits().budget_ms;
+  return (1.0 + static_cast<double>(options.lights.size())) *
+         (is_told_more ? budget_s : std::min(budget_s, 15.0 * draw_s));
+}
+
 double forecast_timing_s(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
   double seconds = 0.0;
   std::optional<RoundRate> rate;
@@ -103,19 +112,19 @@ double presume_cell_s(const PlannedScene& scene, const PlannedTask& task, Work k
   const double of_task = 1.0 / static_cast<double>(std::max<std::size_t>(task.task.filters.size(), 1));
   const double to_trace = !options.truth ? 0.0 : task.is_traced ? 0.3 : 1.0;
   const double cores = scale_by_cores();
+  const double compile_s = task.is_traced ? 0.035 : 0.07;  // for each GPU, once: the first scene's passes are all passes
   switch (kind) {
     case Work::kDrawing:
       return cores * (draw_s + (options.stability ? megapixels : 0.0) + (options.uncertainty ? 2.0 * megapixels : 0.0));
-    case Work::kTiming:
-      return options.rounds.is_fixed()
-                 ? options.rounds.most * count_frames(options) * 0.1 * draw_s
-                 : 1e-3 * options.rounds.budget_ms * (1.0 + static_cast<double>(options.lights.size()));
+    case Work::kTiming: return presume_timing_s(options, draw_s);
     case Work::kPhases: return cores * 0.6 * draw_s * (options.phases - 1);
     case Work::kTruth: return cores * 0.65 * megapixels * of_task * to_trace;
     case Work::kScores: return options.truth ? cores * 0.11 * megapixels : 0.0;
     case Work::kSurroundings: return cores * 0.73 * megapixels * of_task * to_trace;
     case Work::kAttribution: return options.attribution ? cores * 0.38 * megapixels * to_trace : 0.0;
-    case Work::kGpus: return options.gpus.empty() ? 0.0 : 0.06 + 0.33 * megapixels;
+    case Work::kGpus:
+      if (options.gpus.empty()) return 0.0;
+      return 0.25 * megapixels + (task.scene > 0 ? 0.0 : compile_s * static_cast<double>(options.gpus.size()));
     case Work::kFrames: return options.frames > 1 ? cores * megapixels * (4.0 + 0.2 * options.frames) : 0.0;
     case Work::kPictures: return options.pictures ? cores * 0.25 * megapixels : 0.0;
     case Work::kReport: return 0.0;
