@@ -110,23 +110,23 @@ double presume_cell_s(const PlannedScene& scene, const PlannedTask& task, Work k
   const double megapixels = count_megapixels(options), megatexels = count_megatexels(task.task.map_size);
   const double draw_s = 0.06 * megapixels + 0.02 * megatexels;  // prefilter, lookup, and what is read back
   const double of_task = 1.0 / static_cast<double>(std::max<std::size_t>(task.task.filters.size(), 1));
-  const double to_trace = !options.truth ? 0.0 : task.is_traced ? 0.3 : 1.0;
+  const double to_trace = !options.truth ? 0.0 : task.is_traced ? 0.45 : 1.0;
   const double cores = scale_by_cores();
   const double compile_s = task.is_traced ? 0.035 : 0.07;  // for each GPU, once: the first scene's passes are all passes
   switch (kind) {
     case Work::kDrawing:
       return cores * (draw_s + (options.stability ? megapixels : 0.0) + (options.uncertainty ? 2.0 * megapixels : 0.0));
     case Work::kTiming: return presume_timing_s(options, draw_s);
-    case Work::kPhases: return cores * 0.6 * draw_s * (options.phases - 1);
+    case Work::kPhases: return cores * 0.5 * draw_s * (options.phases - 1);
     case Work::kTruth: return cores * 0.65 * megapixels * of_task * to_trace;
     case Work::kScores: return options.truth ? cores * 0.11 * megapixels : 0.0;
     case Work::kSurroundings: return cores * 0.73 * megapixels * of_task * to_trace;
-    case Work::kAttribution: return options.attribution ? cores * 0.38 * megapixels * to_trace : 0.0;
+    case Work::kAttribution: return options.attribution ? cores * 0.36 * megapixels * to_trace : 0.0;
     case Work::kGpus:
       if (options.gpus.empty()) return 0.0;
-      return 0.25 * megapixels + (task.scene > 0 ? 0.0 : compile_s * static_cast<double>(options.gpus.size()));
+      return 0.33 * megapixels + (task.scene > 0 ? 0.0 : compile_s * static_cast<double>(options.gpus.size()));
     case Work::kFrames: return options.frames > 1 ? cores * megapixels * (4.0 + 0.2 * options.frames) : 0.0;
-    case Work::kPictures: return options.pictures ? cores * 0.25 * megapixels : 0.0;
+    case Work::kPictures: return options.pictures ? cores * 0.15 * megapixels : 0.0;
     case Work::kReport: return 0.0;
   }
   return 0.0;
@@ -136,7 +136,7 @@ double presume_report_s(const RunPlan& plan) {
   const options::RunOptions& options = plan.scenes.front().options;
   const bool has_first_pictures = options.pictures && options.truth;
   return 0.02 * plan.own_cells +
-         (has_first_pictures ? scale_by_cores() * kFirstPictures * 3.5 * count_megapixels(options) : 0.0);
+         (has_first_pictures ? scale_by_cores() * kFirstPictures * 2.3 * count_megapixels(options) : 0.0);
 }
 
 TimeForecast forecast_time(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
