@@ -112,7 +112,7 @@ double presume_cell_s(const PlannedScene& scene, const PlannedTask& task, Work k
   const double of_task = 1.0 / static_cast<double>(std::max<std::size_t>(task.task.filters.size(), 1));
   const double to_trace = !options.truth ? 0.0 : task.is_traced ? 0.45 : 1.0;
   const double cores = scale_by_cores();
-  const double compile_s = task.is_traced ? 0.035 : 0.07;  // for each GPU, once: the first scene's passes are all passes
+  const double compile_s = task.is_traced ? 0.035 : 0.07;  // for each GPU, once: all scenes have the same passes
   switch (kind) {
     case Work::kDrawing:
       return cores * (draw_s + (options.stability ? megapixels : 0.0) + (options.uncertainty ? 2.0 * megapixels : 0.0));
