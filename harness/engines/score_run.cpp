@@ -360,7 +360,7 @@ void RunScorer::draw_grid(const run::PlannedTask& task, const records::CellRecor
     if (!cell.visibility.empty()) cell.picture = shade(task, cell.visibility);
   }
   if (std::ranges::all_of(measured.cells, [](const auto& cell) { return cell.visibility.empty(); })) return;
-  run::write_grid(planned.options, task.task, measured, assets_of(task).truth(*task.task.camera), results_.run.gl);
+  run::plan_grid(planned.options, task.task, measured, assets_of(task).truth(*task.task.camera), results_.run.gl)();
   for (const measure::MeasuredCell& cell : measured.cells)
     if (cell.record.external) keep(cell.record);
 }

@@ -16,6 +16,7 @@ enum class Work {
   kScores,
   kSurroundings,
   kAttribution,
+  kGpus,
   kFrames,
   kPictures,
   kReport,

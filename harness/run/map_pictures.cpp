@@ -7,7 +7,6 @@
 
 #include "harness/measure/filter_setup.h"
 #include "harness/render/shade_pass.h"
-#include "harness/run/task_images.h"
 #include "report/analysis/summary.h"
 #include "report/images/grid.h"
 #include "report/images/map_figures.h"
@@ -115,30 +114,35 @@ class TilePainter {
 
 }  // namespace
 
-void write_map_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                        measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,
-                        const measure::LightMap& light) {
+std::vector<FileJob> plan_map_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                                       measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,
+                                       const measure::LightMap& light) {
   const std::string base = "images/" + task_stem(options, task);
   const std::string depth = base + ".depth_map.png", density = base + ".texel_density.png",
                     grid = base + ".texel_grid.png";
   const std::string& scene = task.scene->name;
   const std::string settings = records::describe_settings(measured.cells.front().record);
   const std::string note = settings + " · " + records::describe_coverage(coverage.record);
-  write_depth(options.out / depth, scene, settings, measured, light);
-  images::write_figure(options.out / density,
-                       {scene + ": map texels per pixel", note, {images::show_density(coverage.density)}});
   const measure::MeasuredCell* background = choose_background(measured.cells);
-  if (background) {
-    images::write_figure(options.out / grid,
-                         {fmt::format("{}: the map's texels on the surfaces, over {}", scene, background->label),
-                          note,
-                          {images::show_texels(background->picture, coverage.texel, coverage.density)}});
-  }
   for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.images.depth_map = depth;
     cell.record.images.texel_density = density;
     if (background) cell.record.images.texel_grid = grid;
   }
+  std::vector<FileJob> jobs = {
+      [file = options.out / depth, scene, settings, &measured, &light] {
+        write_depth(file, scene, settings, measured, light);
+      },
+      [file = options.out / density, scene, note, &coverage] {
+        images::write_figure(file, {scene + ": map texels per pixel", note, {images::show_density(coverage.density)}});
+      }};
+  if (!background) return jobs;
+  jobs.emplace_back([file = options.out / grid, scene, note, background, &coverage] {
+    images::write_figure(file, {fmt::format("{}: the map's texels on the surfaces, over {}", scene, background->label),
+                                note,
+                                {images::show_texels(background->picture, coverage.texel, coverage.density)}});
+  });
+  return jobs;
 }
 
 void write_border_page(const std::filesystem::path& file, measure::Renderer& renderer,

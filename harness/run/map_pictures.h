@@ -6,15 +6,16 @@
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
+#include "harness/run/task_images.h"
 
 namespace shadowbench::run {
 
-/// Writes what shows how a light's map lies on the scene, one file each for all cells of the task: the depth map with
-/// its histogram, the texels per pixel, and the texels on the surfaces; notes their paths in the records. Throws
-/// Error(kOutput).
-void write_map_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                        measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,
-                        const measure::LightMap& light);
+/// Notes the paths of what shows how a light's map lies on the scene, one file each for all cells of the task, and
+/// returns what writes them: the depth map with its histogram, the texels per pixel, and the texels on the surfaces.
+/// What it is given must outlive the jobs.
+std::vector<FileJob> plan_map_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                                       measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,
+                                       const measure::LightMap& light);
 
 /// Draws what every filter of a task makes of the receivers outside the map, beside each other: the right rule, then
 /// each rule of an orthographic map that is wrong in one thing. Users' own filters, which have a process of their own,

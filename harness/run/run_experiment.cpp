@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include <set>
 
 #include "base/atomic_file.h"
+#include "base/content_hash.h"
 #include "base/error.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
@@ -28,6 +30,7 @@
 #include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"
 #include "report/files/folder_lock.h"
+#include "report/pages/write_page.h"
 #include "report/pages/write_report.h"
 #include "report/records/filter_mistakes.h"
 #include "report/records/format.h"
@@ -51,6 +54,15 @@ std::vector<std::string> list_view_words(const PlannedScene& planned) {
   return words;
 }
 
+/// Names an empty entry of the cache, which says for the next run that a task's truths were traced.
+std::string name_traces(const PlannedScene& planned, const PlannedTask& task) {
+  ContentHash hash;
+  hash.add(name_view(planned, *task.task.camera));
+  hash.add(fmt::format("{} {} {}", task.task.map_size, scene::describe_fit(planned.options.fit),
+                       planned.options.attribution));
+  return hash.name();
+}
+
 class Experiment {
  public:
   Experiment(const options::RunOptions& options, options::Progress& progress)
@@ -72,7 +84,8 @@ class Experiment {
 
   records::RunRecord run() {
     require_no_sweep();
-    const RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
+    RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
+    for (PlannedTask& task : plan.tasks) task.is_traced = cache_.has(name_traces(plan.scenes[task.scene], task));
     announce(plan);
     if (!options_.part.is_task()) lock_.emplace(options_.out, options_.force || options_.part.is_worker());
     require_writable(options_.out);
@@ -127,7 +140,10 @@ class Experiment {
     const std::vector<records::CellRecord> replaced = read_replaced();
     steps_.plan(plan);
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) run_scene(plan, scene);
+    for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) {
+      run_scene(plan, scene);
+      if (options_.part.product == options::Product::kReport) show_early(plan, scene + 1);
+    }
     run_.work.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
     run_.work.truths_traced = cache_.traced();
@@ -136,13 +152,35 @@ class Experiment {
     steps_.finish();
   }
 
+  /// The page of the scenes that are measured, whenever they are twice as many: so it is there after the first, and all
+  /// such pages together cost less than the last.
+  void show_early(const RunPlan& plan, std::size_t scenes) {
+    if (options_.part.is_task() || options_.part.is_worker() || scenes == plan.scenes.size() ||
+        !std::has_single_bit(scenes))
+      return;
+    std::vector<std::string> keys;
+    for (const PlannedTask& task : plan.tasks)
+      if (task.scene < scenes) keys.insert(keys.end(), task.keys.begin(), task.keys.end());
+    const auto is_left = [&](const std::string& name) {
+      return std::any_of(
+          plan.scenes.begin() + static_cast<std::ptrdiff_t>(scenes), plan.scenes.end(),
+          [&](const PlannedScene& planned) { return planned.scene.name == name; });
+    };
+    const auto whole = std::ranges::count_if(run_.scenes, [&](const auto& scene) { return !is_left(scene.name); });
+    pages::write_early_report(options_.out, run_, records::read_cells(options_.out, keys),
+                              fmt::format("The run goes on: {} of {} scenes, {} of {} cells are measured. Open this "
+                                          "page again when it has ended.",
+                                          whole, run_.scenes.size(), keys.size(), plan.own_cells));
+  }
+
   void finish(const RunPlan& plan, const std::vector<records::CellRecord>& replaced) {
     steps_.begin_report();
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (!options_.part.is_worker()) {
       std::vector<records::CellRecord> cells = records::read_cells(options_.out, keep_rows(plan));
-      if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, plan, cache_, cells);
+      if (options_.pictures && options_.truth)
+        draw_supersampled_pictures(renderer_, plan, cache_, cells, [this](double part) { steps_.advance(part); });
       pages::write_report(options_.out, run_, cells);
     }
     cache_.prune(truth::kMaxCacheBytes);
@@ -173,7 +211,7 @@ class Experiment {
     if (plan.finished > 0)
       text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
     const TimeForecast forecast =
-        left > 0 && !options_.part.is_task() ? forecast_time(renderer_, plan, cache_, left) : TimeForecast();
+        left > 0 && !options_.part.is_task() ? forecast_time(renderer_, plan, cache_) : TimeForecast();
     text += forecast.text;
     progress_.note(text);
     if (options_.part.is_task() || (left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine)
@@ -214,8 +252,7 @@ class Experiment {
   /// decides, not the times of the files: the clock may have been set in between.
   bool has_report(const RunPlan& plan) const {
     const std::filesystem::path file = options_.out / "results.json";
-    if (options_.part.is_worker() || !std::filesystem::exists(file) ||
-        !std::filesystem::exists(options_.out / "index.html"))
+    if (options_.part.is_worker() || !std::filesystem::exists(file) || !pages::has_page(options_.out, "run"))
       return false;
     try {
       const records::Results results = records::read_results(file);
@@ -304,9 +341,10 @@ class Experiment {
   }
 
   /// Traces what all cells of a view and map ask for, and leaves it in the cache.
-  void trace_shared(const PlannedScene& planned, const measure::SceneTask& task, measure::SceneAssets& assets) {
+  void trace_shared(const PlannedScene& planned, const PlannedTask& each, measure::SceneAssets& assets) {
+    const measure::SceneTask& task = each.task;
     const std::string what = fmt::format("{} · {} · truth", planned.scene.name, task.map_size);
-    steps_.begin(planned.options, options::Work::kTruth, task.filters.size(), what);
+    steps_.begin(planned, each, options::Work::kTruth, task.filters.size(), what);
     assets.tracer().listen([this](double part) { steps_.advance_tracing(part); });
     const measure::SceneTruth& truth = assets.truth(*task.camera);
     const measure::CellAnalyser traces(renderer_, planned.options, task, assets, truth);
@@ -326,11 +364,13 @@ class Experiment {
       if (!assets)
         assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(planned.options));
       if (options_.part.product == options::Product::kTruth)
-        trace_shared(planned, each.task, *assets);
+        trace_shared(planned, each, *assets);
       else if (options_.part.product == options::Product::kPrograms)
         compile(planned, each.task, *assets);
       else
         measure_task({renderer_, planned, each, *assets, run_, listener_, gpus_});
+      if (options_.truth && options_.part.product != options::Product::kPrograms && !each.is_traced)
+        cache_.store(name_traces(planned, each), {});
     }
   }
 };

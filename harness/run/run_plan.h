@@ -25,6 +25,7 @@ struct PlannedTask {
   measure::SceneTask task;            ///< its filters are those still to be measured
   std::vector<std::string> keys;      ///< of all its cells, measured or not
   std::vector<std::string> contents;  ///< of those still to be measured; names of all that a cell is made from
+  bool is_traced = false;             ///< an earlier run traced its truths, and the cache may have them
 };
 
 /// What a run is to measure, in the order of its records: picture size, scene, light, fit, view, map size, filter.

@@ -18,7 +18,8 @@ class RunProgress {
   void plan(const RunPlan& plan);
 
   /// A step for so many cells of a task begins. One that the options make no work of is not shown.
-  void begin(const options::RunOptions& options, options::Work kind, std::size_t cells, const std::string& what);
+  void begin(const PlannedScene& scene, const PlannedTask& task, options::Work kind, std::size_t cells,
+             const std::string& what);
 
   /// So much of the step is done, 0 .. 1. Safe to call from many threads.
   void advance(double part);

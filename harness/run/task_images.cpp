@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <tbb/parallel_for_each.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 
-#include "harness/measure/stability_meter.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/trade_measures.h"
@@ -109,45 +106,40 @@ images::ValuePlanes list_planes(const measure::MeasuredCell& cell) {
 }
 
 /// No two labels share a file.
-void write_cell_pictures(const options::RunOptions& options, const std::string& stem, measure::MeasuredCell& cell) {
+void note_cell_pictures(const std::string& stem, measure::MeasuredCell& cell) {
   if (cell.picture.empty()) return;
   const std::string base = "images/" + stem + "." + files::make_file_stem(cell.label);
   cell.record.images.picture = base + ".picture.png";
   cell.record.images.visibility = base + ".visibility.png";
   cell.record.images.values = base + ".values.js";
-  images::write_picture_png(options.out / *cell.record.images.picture, cell.picture);
-  images::write_grey_png(options.out / *cell.record.images.visibility, cell.visibility);
-  images::write_value_file(options.out / *cell.record.images.values, *cell.record.images.values, list_planes(cell));
 }
 
-/// Writes what the page's viewer shows of the truth.
-void write_truth_pictures(const options::RunOptions& options, const std::string& stem,
-                          measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
-  if (!truth.absent.empty()) return;
+/// Writes what is noted of a cell.
+void write_noted_pictures(const std::filesystem::path& out, const measure::MeasuredCell& cell) {
+  const records::ImagesRecord& images = cell.record.images;
+  if (!images.picture) return;
+  images::write_picture_png(out / *images.picture, cell.picture);
+  images::write_grey_png(out / *images.visibility, cell.visibility);
+  images::write_value_file(out / *images.values, *images.values, list_planes(cell));
+}
+
+/// What the page's viewer shows of the truth.
+FileJob plan_truth_pictures(const std::filesystem::path& out, const std::string& stem,
+                            measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
   const std::string picture = "images/" + stem + ".truth.area.png", values = "images/" + stem + ".truth.area.values.js";
-  images::write_picture_png(options.out / picture, truth.area_picture);
-  images::write_value_file(
-      options.out / values, values,
-      {{"area", truth.area},
-       {"hard", truth.hard},
-       {"standard_error", images::make_image(truth.area.width, truth.area.height, truth.standard_errors)},
-       {"mask", images::make_image(truth.area.width, truth.area.height, truth.mask)}});
   for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.images.truth_picture = picture;
     cell.record.images.truth_values = values;
   }
-}
-
-/// Writes what is shown of each cell by itself, and of the truth.
-void write_shown(const options::RunOptions& options, const std::string& stem, measure::SceneMeasurement& measured,
-                 const measure::SceneTruth& truth, const std::function<void(double part)>& on_part) {
-  write_truth_pictures(options, stem, measured, truth);
-  std::atomic<std::size_t> written = 0;
-  tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
-    write_cell_pictures(options, stem, cell);
-    on_part(static_cast<double>(++written) / static_cast<double>(measured.cells.size()));
-  });
-  for (measure::MeasuredCell& cell : measured.cells) measure::write_stability(options, stem, cell);
+  return [out, picture, values, &truth] {
+    images::write_picture_png(out / picture, truth.area_picture);
+    images::write_value_file(
+        out / values, values,
+        {{"area", truth.area},
+         {"hard", truth.hard},
+         {"standard_error", images::make_image(truth.area.width, truth.area.height, truth.standard_errors)},
+         {"mask", images::make_image(truth.area.width, truth.area.height, truth.mask)}});
+  };
 }
 
 }  // namespace
@@ -190,28 +182,29 @@ std::string task_stem(const options::RunOptions& options, const measure::SceneTa
 
 void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                          measure::MeasuredCell& cell) {
-  write_cell_pictures(options, task_stem(options, task), cell);
+  note_cell_pictures(task_stem(options, task), cell);
+  write_noted_pictures(options.out, cell);
 }
 
-void write_grid(const options::RunOptions& options, const measure::SceneTask& task, measure::SceneMeasurement& measured,
-                const measure::SceneTruth& truth, const records::GlRecord& gl) {
+std::vector<FileJob> plan_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                                   measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
+  const std::string stem = task_stem(options, task);
+  std::vector<FileJob> jobs;
+  for (measure::MeasuredCell& cell : measured.cells) {
+    note_cell_pictures(stem, cell);
+    jobs.emplace_back([&out = options.out, &cell] { write_noted_pictures(out, cell); });
+  }
+  if (truth.absent.empty()) jobs.push_back(plan_truth_pictures(options.out, stem, measured, truth));
+  return jobs;
+}
+
+FileJob plan_grid(const options::RunOptions& options, const measure::SceneTask& task,
+                  measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl) {
   const std::string grid_name = task_stem(options, task) + ".grid.png";
-  images::write_grid(options.out / grid_name, make_grid(options, task, measured, truth, gl));
   for (measure::MeasuredCell& cell : measured.cells) cell.record.images.grid = grid_name;
-}
-
-void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                           measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
-  write_shown(options, task_stem(options, task), measured, truth, [](double) {});
-  for (measure::MeasuredCell& cell : measured.cells) cell.record.absent["images"] = "the run was made with --no-grids";
-}
-
-void write_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl,
-                    const std::function<void(double part)>& on_part) {
-  write_grid(options, task, measured, truth, gl);
-  on_part(0.5);
-  write_shown(options, task_stem(options, task), measured, truth, [&](double part) { on_part(0.5 + 0.5 * part); });
+  return [file = options.out / grid_name, grid = make_grid(options, task, measured, truth, gl)] {
+    images::write_grid(file, grid);
+  };
 }
 
 }  // namespace shadowbench::run

@@ -23,24 +23,20 @@ std::string caption_cell(const records::CellRecord& cell, const analysis::CostKi
 /// The part of the picture, of this size, in which the filters disagree most about a shadow's edge.
 images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images::Size size);
 
-/// Writes each cell's picture, visibility and values, and the truth's, and notes their paths in the records; in place
-/// of write_pictures() where the run has no grids. Safe for any part of a task's cells. Throws Error(kOutput).
-void write_single_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                           measure::SceneMeasurement& measured, const measure::SceneTruth& truth);
-
 /// Writes a cell's picture, visibility and values, and notes their paths.
 void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                          measure::MeasuredCell& cell);
 
-/// Draws the grid of a task and notes its path.
-void write_grid(const options::RunOptions& options, const measure::SceneTask& task, measure::SceneMeasurement& measured,
-                const measure::SceneTruth& truth, const records::GlRecord& gl);
+/// Writes files when it is called, on any thread and beside others. Throws Error(kOutput).
+using FileJob = std::function<void()>;
 
-/// Writes what people look at: grid and single pictures; notes their paths in the records. `on_part` hears how much of
-/// it is done, 0 .. 1, from many threads.
-/// Throws Error(kOutput).
-void write_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl,
-                    const std::function<void(double part)>& on_part);
+/// Notes the paths of each cell's picture, visibility and values, and of the truth's, and returns what writes them.
+/// Safe for any part of a task's cells. What it is given must outlive the jobs; they read its images alone.
+std::vector<FileJob> plan_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                                   measure::SceneMeasurement& measured, const measure::SceneTruth& truth);
+
+/// Notes the path of a task's grid, and returns what writes it, from copies.
+FileJob plan_grid(const options::RunOptions& options, const measure::SceneTask& task,
+                  measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl);
 
 }  // namespace shadowbench::run

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for_each.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,6 +15,7 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/layer_truth.h"
 #include "harness/measure/map_coverage.h"
+#include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
 #include "harness/measure/traffic_meter.h"
 #include "harness/render/shade_pass.h"
@@ -38,6 +40,33 @@ class Stopwatch {
  private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_ = Clock::now();
+};
+
+/// Files that are written while other work goes on. Ends with the last job under way; where something else has failed
+/// by then, that is told alone.
+class FilesBeside {
+ public:
+  FilesBeside() = default;
+  FilesBeside(const FilesBeside&) = delete;
+  FilesBeside& operator=(const FilesBeside&) = delete;
+  ~FilesBeside() {
+    group_.cancel();
+    try {
+      group_.wait();
+    } catch (const std::exception&) {
+      // wait() was not reached.
+    }
+  }
+
+  void write(std::vector<FileJob> jobs) {
+    for (FileJob& job : jobs) group_.run(std::move(job));
+  }
+
+  /// Throws what a job threw.
+  void wait() { group_.wait(); }
+
+ private:
+  tbb::task_group group_;
 };
 
 /// One task under way.
@@ -115,10 +144,14 @@ class TaskRun {
     if (!options_.part.is_worker()) score(measured);
     measure_coverage(measured);
     if (options_.frames > 1) accumulate(measured, built_in.size());
+    FilesBeside files;  // after what its jobs read
+    start_pictures(task_of(all), measured, files);
+    begin(options::Work::kGpus, measured.cells.size(), "costs on GPUs");
     if (bench_.gpus.compile(measured.cells)) count_traffic(measured);
-    begin(options::Work::kPictures, measured.cells.size(), "pictures");
     bench_.gpus.add_to(measured.cells);
-    write_images(task_of(all), measured);
+    begin(options::Work::kPictures, measured.cells.size(), "pictures");
+    write_images(task_of(all), measured, files);
+    files.wait();
     const double shared_s = watch.read_s() - measured.truth_s - measured.attribution_s;
     for (measure::MeasuredCell& cell : measured.cells)
       *cell.record.measured_s += shared_s / static_cast<double>(measured.cells.size());
@@ -218,22 +251,32 @@ class TaskRun {
     for (measure::MeasuredCell& cell : measured.cells) traffic_->measure(cell);
   }
 
-  void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {
-    write_frames(renderer_, options_, task, assets_, measured);
+  /// Has pictures written from now on, beside what is still to be measured, but for the grid, which says all of it.
+  void start_pictures(const measure::SceneTask& task, measure::SceneMeasurement& measured, FilesBeside& files) {
+    if (options_.part.is_worker() || (options_.grids && !options_.pictures)) return;
+    files.write(plan_pictures(options_, task, measured, assets_.truth(*task.camera)));
+    if (options_.grids)
+      files.write(
+          plan_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size)));
+  }
+
+  void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured, FilesBeside& files) {
     const measure::SceneTruth& truth = assets_.truth(*task.camera);
-    if (!options_.grids && !options_.part.is_worker()) {
-      write_single_pictures(options_, task, measured, truth);
-      return;
-    }
-    if (!options_.part.is_worker() && options_.pictures) {
-      write_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size));
-      steps_.advance(0.2);
-      write_pictures(options_, task, measured, truth, bench_.run.gl,
-                     [this](double part) { steps_.advance(0.2 + 0.5 * part); });
+    if (!options_.part.is_worker() && options_.grids && options_.pictures)
+      files.write({plan_grid(options_, task, measured, truth, bench_.run.gl)});
+    write_frames(renderer_, options_, task, assets_, measured);
+    steps_.advance(0.3);
+    if (!options_.part.is_worker()) {
+      for (measure::MeasuredCell& cell : measured.cells) {
+        measure::write_stability(options_, task_stem(options_, task), cell);
+        if (!options_.grids) cell.record.absent["images"] = "the run was made with --no-grids";
+      }
+      if (!options_.grids) return;
     }
     note_float_images(options_, task, measured);
     if (options_.border_page) draw_border_page(task);
     write_float_images(options_, task, measured, truth, renderer_.context->info());
+    steps_.advance(0.6);
   }
 
   void draw_border_page(const measure::SceneTask& task) {
@@ -254,7 +297,7 @@ class TaskRun {
   }
 
   void begin(options::Work kind, std::size_t cells, const std::string& what) const {
-    listener_.progress->begin(options_, kind, cells,
+    listener_.progress->begin(bench_.planned, bench_.task, kind, cells,
                               fmt::format("{} · {} · {}", task_.scene->name, task_.map_size, what));
   }
 };

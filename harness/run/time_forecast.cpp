@@ -1,13 +1,13 @@
 #include "harness/run/time_forecast.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <optional>
+#include <numeric>
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
@@ -17,8 +17,24 @@
 namespace shadowbench::run {
 namespace {
 
-constexpr double kMostDrawing_s = 2.0;
+using options::Work;
+
 constexpr int kDrawn = 3;  // the first of them warms up
+
+/// What a picture of any size costs, in pixels.
+constexpr double kFixedMegapixels = 0.05;
+
+/// Pictures that the page shows first, with many samples: so many as it has choices.
+constexpr double kFirstPictures = 2.0;
+
+double count_megapixels(const options::RunOptions& options) {
+  return kFixedMegapixels + 1e-6 * options.width * options.height;
+}
+
+double count_megatexels(int map_size) { return 1e-6 * map_size * map_size; }
+
+/// How many times as long work takes as on two cores; a third of it is done by one.
+double scale_by_cores() { return 1.0 / 3.0 + 4.0 / 3.0 / tbb::this_task_arena::max_concurrency(); }
 
 std::string describe_duration(double seconds) {
   if (seconds < 10.0) return records::format_number(seconds) + " s";
@@ -28,12 +44,10 @@ std::string describe_duration(double seconds) {
   return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
-/// What a round of one view through one map takes.
-struct RoundTime {
+/// Milliseconds of a round for each million texels of the map, and pixels of a lookup.
+struct RoundRate {
   double map_ms = 0.0;
   double lookup_ms = 0.0;
-
-  double of_cells_ms(std::size_t cells) const { return map_ms + static_cast<double>(cells) * lookup_ms; }
 };
 
 double find_quickest_ms(gl::TimerKind timer, const std::function<void()>& work) {
@@ -42,86 +56,100 @@ double find_quickest_ms(gl::TimerKind timer, const std::function<void()>& work) 
   return quickest;
 }
 
-RoundTime draw_round(measure::Renderer& renderer, const PlannedScene& planned, const measure::SceneTask& task,
-                     measure::SceneAssets& assets) {
+RoundRate draw_round(measure::Renderer& renderer, const PlannedScene& planned, const measure::SceneTask& task,
+                     truth::TruthCache& cache) {
   const options::RunOptions& options = planned.options;
+  measure::SceneAssets assets(renderer, options, planned.scene, cache, measure::padding_texels(options));
   measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
   render::GBuffer& gbuffer = assets.gbuffer(*task.camera);
   const auto reference = measure::make_filter_passes(renderer, options, planned.scene, light, options.reference);
   render::ImageTarget target("timed visibility", GL_R32F, options.width, options.height);
-  return {find_quickest_ms(renderer.timer, [&] { assets.redraw(light); }),
-          find_quickest_ms(renderer.timer, [&] { reference->lookup(gbuffer, light.map, target); })};
+  const double map_ms = find_quickest_ms(
+      renderer.timer, [&] { assets.redraw(light); });
+  const double lookup_ms = find_quickest_ms(renderer.timer, [&] { reference->lookup(gbuffer, light.map, target); });
+  return {map_ms / count_megatexels(task.map_size), lookup_ms / count_megapixels(options)};
 }
 
-/// The least time that timed work takes, in seconds.
-struct TimeFloor {
+double count_frames(const options::RunOptions& options) {
+  return 1.0 + std::accumulate(options.lights.begin(), options.lights.end(), 0.0);
+}
+
+/// Pictures that are drawn soon are precise soon, unless a larger budget says that they are to be more so.
+double presume_timing_s(const options::RunOptions& options, double draw_s) {
+  if (options.rounds.is_fixed()) return 0.1 * draw_s * options.rounds.most * count_frames(options);
+  const double budget_s = 1e-3 * options.rounds.budget_ms;
+  const bool is_told_more = options.rounds.budget_ms > options::RoundLimits().budget_ms;
+  return (1.0 + static_cast<double>(options.lights.size())) *
+         (is_told_more ? budget_s : std::min(budget_s, 15.0 * draw_s));
+}
+
+double forecast_timing_s(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
   double seconds = 0.0;
-  bool whole = true;  ///< false: not every view and map was drawn, and those left count as the quickest that was
-};
-
-/// Draws the planned tasks scene by scene until that has taken long enough.
-class FloorMeter {
- public:
-  FloorMeter(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache)
-      : renderer_(renderer), plan_(plan), cache_(cache) {}
-
-  TimeFloor run() {
-    for (std::size_t scene = 0; scene < plan_.scenes.size(); ++scene) add_scene(scene);
-    TimeFloor floor{1e-3 * drawn_ms_, left_cells_ == 0};
-    if (!floor.whole) floor.seconds += 1e-3 * static_cast<double>(rounds()) * quickest_.of_cells_ms(left_cells_);
-    return floor;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  measure::Renderer& renderer_;
-  const RunPlan& plan_;
-  truth::TruthCache& cache_;
-  Clock::time_point start_ = Clock::now();
-  double drawn_ms_ = 0.0;
-  std::size_t left_cells_ = 0;
-  RoundTime quickest_{0.0, std::numeric_limits<double>::infinity()};
-
-  int rounds() const { return plan_.scenes.front().options.rounds.most; }
-
-  bool is_time_left() const {
-    return std::chrono::duration<double>(Clock::now() - start_).count() < kMostDrawing_s || drawn_ms_ == 0.0;
-  }
-
-  void add_scene(std::size_t scene) {
-    const PlannedScene& planned = plan_.scenes[scene];
-    const options::RunOptions& options = planned.options;
-    std::optional<measure::SceneAssets> assets;
-    for (const PlannedTask& each : plan_.tasks) {
-      if (each.scene != scene || each.task.filters.empty()) continue;
-      if (!is_time_left()) {
-        left_cells_ += each.task.filters.size();
-        continue;
-      }
-      if (!assets) assets.emplace(renderer_, options, planned.scene, cache_, measure::padding_texels(options));
-      const RoundTime round = draw_round(renderer_, planned, each.task, *assets);
-      drawn_ms_ += rounds() * round.of_cells_ms(each.task.filters.size());
-      if (round.lookup_ms < quickest_.lookup_ms) quickest_ = {0.0, round.lookup_ms};
+  std::optional<RoundRate> rate;
+  for (const PlannedTask& task : plan.tasks) {
+    const PlannedScene& planned = plan.scenes[task.scene];
+    const auto cells = static_cast<double>(task.task.filters.size());
+    if (cells == 0.0) continue;
+    if (!planned.options.rounds.is_fixed()) {
+      seconds += cells * presume_cell_s(planned, task, Work::kTiming);
+      continue;
     }
+    if (!rate) rate = draw_round(renderer, planned, task.task, cache);
+    seconds += 1e-3 * planned.options.rounds.most * count_frames(planned.options) *
+               (count_megatexels(task.task.map_size) * rate->map_ms +
+                cells * count_megapixels(planned.options) * rate->lookup_ms);
   }
-};
+  return seconds;
+}
 
 }  // namespace
 
-TimeForecast forecast_time(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache, int left) {
-  const options::RunOptions& options = plan.scenes.front().options;
-  const char* on_top = options.truth ? "rays and pictures come on top" : "pictures come on top";
-  if (!options.rounds.is_fixed()) {
-    const double timings = 1.0 + static_cast<double>(options.lights.size());
-    const double seconds = left * timings * 1e-3 * options.rounds.budget_ms;
-    return {seconds, fmt::format("; {} of timed work at most, more where four rounds take longer; {}",
-                                 describe_duration(seconds), on_top)};
+/// Measured in quiet processor seconds of the default run: each kind's time in its busiest thread, or half of all.
+double presume_cell_s(const PlannedScene& scene, const PlannedTask& task, Work kind) {
+  const options::RunOptions& options = scene.options;
+  const double megapixels = count_megapixels(options), megatexels = count_megatexels(task.task.map_size);
+  const double draw_s = 0.06 * megapixels + 0.02 * megatexels;  // prefilter, lookup, and what is read back
+  const double of_task = 1.0 / static_cast<double>(std::max<std::size_t>(task.task.filters.size(), 1));
+  const double to_trace = !options.truth ? 0.0 : task.is_traced ? 0.45 : 1.0;
+  const double cores = scale_by_cores();
+  const double compile_s = task.is_traced ? 0.035 : 0.07;  // for each GPU, once: all scenes have the same passes
+  switch (kind) {
+    case Work::kDrawing:
+      return cores * (draw_s + (options.stability ? megapixels : 0.0) + (options.uncertainty ? 2.0 * megapixels : 0.0));
+    case Work::kTiming: return presume_timing_s(options, draw_s);
+    case Work::kPhases: return cores * 0.5 * draw_s * (options.phases - 1);
+    case Work::kTruth: return cores * 0.65 * megapixels * of_task * to_trace;
+    case Work::kScores: return options.truth ? cores * 0.11 * megapixels : 0.0;
+    case Work::kSurroundings: return cores * 0.73 * megapixels * of_task * to_trace;
+    case Work::kAttribution: return options.attribution ? cores * 0.36 * megapixels * to_trace : 0.0;
+    case Work::kGpus:
+      if (options.gpus.empty()) return 0.0;
+      return 0.33 * megapixels + (task.scene > 0 ? 0.0 : compile_s * static_cast<double>(options.gpus.size()));
+    case Work::kFrames: return options.frames > 1 ? cores * megapixels * (4.0 + 0.2 * options.frames) : 0.0;
+    case Work::kPictures: return options.pictures ? cores * 0.15 * megapixels : 0.0;
+    case Work::kReport: return 0.0;
   }
-  const TimeFloor floor = FloorMeter(renderer, plan, cache).run();
-  return {floor.seconds, fmt::format("; {} {} of timed work, what --rounds {} of the unfiltered lookup take; {}",
-                                     floor.whole ? "at least" : "about", describe_duration(floor.seconds),
-                                     options.rounds.most, on_top)};
+  return 0.0;
+}
+
+double presume_report_s(const RunPlan& plan) {
+  const options::RunOptions& options = plan.scenes.front().options;
+  const bool has_first_pictures = options.pictures && options.truth;
+  return 0.02 * plan.own_cells +
+         (has_first_pictures ? scale_by_cores() * kFirstPictures * 2.3 * count_megapixels(options) : 0.0);
+}
+
+TimeForecast forecast_time(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
+  const double timing_s = forecast_timing_s(renderer, plan, cache);
+  double seconds = timing_s + presume_report_s(plan);
+  for (const PlannedTask& task : plan.tasks)
+    for (std::size_t kind = 0; kind < options::kWorks; ++kind)
+      if (static_cast<Work>(kind) != Work::kTiming)
+        seconds += static_cast<double>(task.task.filters.size()) *
+                   presume_cell_s(plan.scenes[task.scene], task, static_cast<Work>(kind));
+  return {seconds,
+          fmt::format("; about {}: {} of timing, the rest {}", describe_duration(seconds), describe_duration(timing_s),
+                      plan.scenes.front().options.truth ? "ray tracing and images" : "images")};
 }
 
 }  // namespace shadowbench::run

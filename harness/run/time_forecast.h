@@ -3,22 +3,28 @@
 #include <string>
 
 #include "harness/measure/renderer.h"
+#include "harness/options/work_meter.h"
 #include "harness/run/run_plan.h"
 #include "reference/truth/truth_cache.h"
 
 namespace shadowbench::run {
 
+/// Gives the seconds that a step presumably takes for one cell of a task, from the sizes of picture and map, the number
+/// of cores, and what the cache has. What all cells of a task share is in equal parts in each.
+double presume_cell_s(const PlannedScene& scene, const PlannedTask& task, options::Work kind);
+
+/// The same of the report at the end.
+double presume_report_s(const RunPlan& plan);
+
 /// What is known of a run's time before it begins.
 struct TimeForecast {
-  double seconds = 0.0;  ///< of timed work
-  std::string text;
+  double seconds = 0.0;
+  std::string text;  ///< "; about 90 s: 16 s of timing, the rest ray tracing and images"
 };
 
-/// Forecasts the timed work of the cells that are left, so many; the progress bar counts rays and pictures in once the
-/// first are made. For a fixed number of rounds it draws each view and map of the plan with the filter that the others
-/// are timed against, which is the quickest, and multiplies by rounds and cells. The run takes longer: prefilters and
-/// rounds that warm up are left out, and the map is counted once for all cells of a view. Throws Error(kUsage) when the
-/// GL cannot give a map of a planned size. Cost: some 2 s at most beside one view's.
-TimeForecast forecast_time(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache, int left);
+/// Forecasts the time of the cells that are left. For a fixed number of rounds it draws the first task's map and the
+/// filter that the others are timed against, and counts texels and pixels of all. Throws Error(kUsage) when the GL
+/// cannot give a map of the first size.
+TimeForecast forecast_time(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache);
 
 }  // namespace shadowbench::run

@@ -289,7 +289,8 @@ std::optional<document::Section> make_gpu_section(const std::vector<records::Cel
   return section;
 }
 
-document::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+document::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                        bool is_whole) {
   document::Section section{"evidence", "Behind the numbers", {}};
   if (const std::string power = analysis::describe_power(cells); !power.empty())
     section.blocks.emplace_back(document::Paragraph{power, true});
@@ -304,6 +305,7 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
   section.blocks.emplace_back(explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy)));
   section.blocks.emplace_back(
       document::Details{"Machine, OpenGL, command and seed", {document::Facts{analysis::list_run_facts(run)}}});
+  if (!is_whole) return section;
   section.blocks.emplace_back(document::Links{"Data:",
                                               {{"summary.md", "summary.md"},
                                                {"timings.csv", "timings.csv"},
@@ -317,10 +319,12 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
 
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                              const std::optional<Trade>& trade, const std::vector<records::GpuTimes>& machines,
-                             const std::vector<records::BiasToShip>& biases) {
+                             const std::vector<records::BiasToShip>& biases, const std::string& so_far) {
   const analysis::AdviceRequest request = choose_request(cells);
-  document::Page page{"Shadow filters compared", {make_answer_section(run, cells, request, biases)}, {}};
+  document::Page page{"Shadow filters compared", {}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
+  if (!so_far.empty()) add({"so-far", "", {document::Paragraph{so_far}}, true});
+  add(make_answer_section(run, cells, request, biases));
   const auto without_external = analysis::leave_out_external(cells);
   const std::vector<records::CellRecord>& own = without_external ? *without_external : cells;
   if (auto causes = make_causes_section(run, own)) add(std::move(*causes));
@@ -340,7 +344,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   if (auto external = make_external_section(cells)) add(std::move(*external));
   if (trade) add(make_trade_section(run, own, *trade));
   if (auto gpus = make_gpu_section(own)) add(std::move(*gpus));
-  add(make_evidence_section(run, cells));
+  add(make_evidence_section(run, cells, so_far.empty()));
   return page;
 }
 

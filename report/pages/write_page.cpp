@@ -14,6 +14,12 @@
 namespace shadowbench::pages {
 namespace {
 
+const PageFile& find_page(std::string_view command) {
+  const auto own = std::ranges::find(list_pages(), command, &PageFile::command);
+  assert(own != list_pages().end());
+  return *own;
+}
+
 /// Finds another page as seen from one in `dir`: in the same folder, or at its place in the same report.
 std::optional<std::filesystem::path> find_sibling(const std::filesystem::path& dir, const PageFile& own,
                                                   const PageFile& other) {
@@ -65,19 +71,29 @@ const std::vector<PageFile>& list_pages() {
 }
 
 void write_page(const std::filesystem::path& dir, std::string_view command, document::Page page) {
-  const auto own = std::ranges::find(list_pages(), command, &PageFile::command);
-  assert(own != list_pages().end());
-  page.siblings = list_siblings(dir, *own);
-  write_text_file(dir / own->markdown, document::write_markdown(page));
-  write_text_file(dir / own->html, document::write_html(page));
+  const PageFile& own = find_page(command);
+  page.siblings = list_siblings(dir, own);
+  write_text_file(dir / own.html, document::write_html(page));
+  write_text_file(dir / own.markdown, document::write_markdown(page));
   for (const document::Link& sibling : page.siblings) link_back((dir / sibling.path).lexically_normal());
 }
 
-void remove_page(const std::filesystem::path& dir, std::string_view command) {
-  const auto own = std::ranges::find(list_pages(), command, &PageFile::command);
-  assert(own != list_pages().end());
+void write_early_page(const std::filesystem::path& dir, std::string_view command, const document::Page& page) {
+  const PageFile& own = find_page(command);
   std::error_code ignored;
-  for (const std::string_view name : {own->html, own->markdown}) std::filesystem::remove(dir / name, ignored);
+  std::filesystem::remove(dir / own.markdown, ignored);
+  write_text_file(dir / own.html, document::write_html(page));
+}
+
+bool has_page(const std::filesystem::path& dir, std::string_view command) {
+  const PageFile& own = find_page(command);
+  return std::filesystem::exists(dir / own.html) && std::filesystem::exists(dir / own.markdown);
+}
+
+void remove_page(const std::filesystem::path& dir, std::string_view command) {
+  const PageFile& own = find_page(command);
+  std::error_code ignored;
+  for (const std::string_view name : {own.html, own.markdown}) std::filesystem::remove(dir / name, ignored);
 }
 
 std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record) {

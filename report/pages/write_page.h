@@ -25,6 +25,13 @@ const std::vector<PageFile>& list_pages();
 /// already, and these with it. Throws Error(kOutput).
 void write_page(const std::filesystem::path& dir, std::string_view command, document::Page page);
 
+/// Writes the HTML alone, of work that goes on, and removes the Markdown: where that is, the page is whole.
+/// Throws Error(kOutput).
+void write_early_page(const std::filesystem::path& dir, std::string_view command, const document::Page& page);
+
+/// Whether a folder has a command's page, whole.
+bool has_page(const std::filesystem::path& dir, std::string_view command);
+
 /// Removes a command's page from a folder, where it is there.
 void remove_page(const std::filesystem::path& dir, std::string_view command);
 

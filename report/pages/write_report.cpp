@@ -61,4 +61,12 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run,
   records::write_results(dir, run, cells);
 }
 
+void write_early_report(const std::filesystem::path& dir, records::RunRecord run,
+                        const std::vector<records::CellRecord>& cells, const std::string& so_far) {
+  add_warnings(run, cells);
+  const auto withheld = analysis::withhold_mixed_times(cells);
+  const std::vector<records::CellRecord>& shown = withheld ? *withheld : cells;
+  write_early_page(dir, "run", make_run_page(run, shown, make_trade(shown), {}, {}, so_far));
+}
+
 }  // namespace shadowbench::pages

@@ -19,4 +19,8 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
 void write_report(const std::filesystem::path& dir, records::RunRecord run,
                   const std::vector<records::CellRecord>& cells);
 
+/// Writes the page, and nothing else, of a run that goes on and has these cells; `so_far` says how far it is.
+void write_early_report(const std::filesystem::path& dir, records::RunRecord run,
+                        const std::vector<records::CellRecord>& cells, const std::string& so_far);
+
 }  // namespace shadowbench::pages

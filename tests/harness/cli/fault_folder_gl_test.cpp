@@ -202,6 +202,17 @@ TEST_F(FaultFolder, WithoutTheRightToWrite_IsAnOutputError) {
   expect_one_message(read_text(folder() / "script.txt"), {"out: ", "Permission denied", "rights", "--out"});
 }
 
+/// Pictures are written beside other work.
+TEST_F(FaultFolder, WhereAPictureCannotBe_IsAnOutputErrorThatNamesIt) {
+  for (const char* picture : {"images/cubes.none.picture.png", "cubes.grid.png"}) {
+    std::filesystem::create_directories(folder() / "out" / picture);
+    const Outcome outcome = run("run --grids --force --out out " + std::string(kSmallFolderRun));
+    EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
+    expect_one_message(outcome.err, {picture, "--out"});
+    std::filesystem::remove_all(folder() / "out");
+  }
+}
+
 TEST_F(FaultFolder, ThatIsAFile_IsAnOutputErrorForEveryCommand) {
   run_whole();
   write("out", "a file");

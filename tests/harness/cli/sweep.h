@@ -48,7 +48,7 @@ class Sweep : public ProgramTest {
   }
 
   /// Runs the program until its folder `out` holds so many cells, and kills it.
-  void run_and_kill(const std::string& arguments, int cells) const {
+  void run_and_kill(const std::string& arguments, std::size_t cells) const {
     const std::string script =
         "cd '" + folder().string() + "'\nXDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
         with_test_defaults(arguments) +

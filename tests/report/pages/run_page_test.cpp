@@ -9,6 +9,7 @@
 
 #include "report/images/picture_io.h"
 #include "report/pages/trade_charts.h"
+#include "report/pages/write_page.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 #include "tests/report/records/synthetic.h"
@@ -279,20 +280,30 @@ TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
     records::write_cell(folder.path(), cell);
     keys.push_back(cell.key);
   }
-  write_report(folder.path(), make_run(), keys);
-  const std::string page = read_text(folder.path() / "index.html");
-  std::size_t files = 0;
-  for (const std::string& url : list_links(page)) {
-    if (url.front() == '#') {
-      EXPECT_THAT(page, HasSubstr("id=\"" + url.substr(1) + "\""));
-    } else if (url.rfind("data:", 0) != 0) {
-      EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(url))) << url;
-      ++files;
+  const auto count_files = [&] {
+    const std::string page = read_text(folder.path() / "index.html");
+    std::size_t files = 0;
+    for (const std::string& url : list_links(page)) {
+      if (url.front() == '#') {
+        EXPECT_THAT(page, HasSubstr("id=\"" + url.substr(1) + "\""));
+      } else if (url.rfind("data:", 0) != 0) {
+        EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(url))) << url;
+        ++files;
+      }
     }
-  }
-  EXPECT_GE(files, 11u);
-  for (const nlohmann::json& cell : read_data(page)["cells"])
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(cell["picture"]))) << cell;
+    for (const nlohmann::json& cell : read_data(page)["cells"])
+      EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(cell["picture"]))) << cell;
+    return files;
+  };
+  write_early_report(folder.path(), make_run(), records::read_cells(folder.path(), {keys.front()}), "1 of 2 scenes");
+  EXPECT_THAT(read_text(folder.path() / "index.html"), HasSubstr("1 of 2 scenes"));
+  EXPECT_FALSE(has_page(folder.path(), "run")) << "it is not whole";
+  EXPECT_GE(count_files(), 3u);
+  write_report(folder.path(), make_run(), keys);
+  EXPECT_TRUE(has_page(folder.path(), "run"));
+  EXPECT_GE(count_files(), 11u);
+  write_early_report(folder.path(), make_run(), records::read_cells(folder.path(), keys), "1 of 3 scenes");
+  EXPECT_FALSE(has_page(folder.path(), "run")) << "the page of another run is whole, and this one is not";
 }
 
 TEST(RunPage, Page_HoldsWhatTheReportIsOf) {
