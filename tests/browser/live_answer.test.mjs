@@ -115,13 +115,13 @@ test("ThePictureOfTheAnswer_IsTheStillOne_UntilItIsTurned", (context) => withBro
     await page.locator(".answer").getByRole("button", { name: "Live" }).click();
     await isLive(page);
     assert.equal(await bottom(), before, "nothing moves");
-    const live = await stageOf(page).screenshot(), gap = await compareShots(browser, [still, live]);
+    const live = await stageOf(page).screenshot(), gap = compareShots([still, live]);
     context.diagnostic(`mean gap ${gap.mean} of 255, ${gap.share} of the values farther than 8`);
     assert.ok(gap.mean < 0.5 && gap.share < 0.003, JSON.stringify(gap));
     await drag(page, 60);
     await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("mean of 256 maps"), null, { timeout: 60000 });
     assert.equal(await splitOf(page), "50");
-    const turned = await compareShots(browser, [still, await stageOf(page).screenshot()]);
+    const turned = compareShots([still, await stageOf(page).screenshot()]);
     assert.ok(turned.share > 0.03, JSON.stringify(turned));
     await shoot(`answer.live.${viewport ? "phone" : "wide"}`);
     assert.ok((await measureOverflow(page)) <= 0);
@@ -138,7 +138,7 @@ test("ThePictureOfTheAnswer_IsTheStillOne_UntilItIsTurned", (context) => withBro
     await page.locator(".stage input").fill("50");
     await page.locator(".answer").getByRole("button", { name: "Live" }).click();
     await stageOf(page).locator("input").blur();
-    const ended = await compareShots(browser, [still, await stageOf(page).screenshot()]);
+    const ended = compareShots([still, await stageOf(page).screenshot()]);
     assert.ok(ended.mean < 0.002, JSON.stringify(ended)); // the browser scales a picture not always alike
     assert.deepEqual(messages, []);
     await close();
@@ -153,7 +153,7 @@ test("AGpu_DrawsThePictureOfTheAnswer_WhenAPointerComes", () => withBrowser(kMes
   await page.locator(".answer").getByLabel("A drag turns").selectOption("light");
   await drag(page, 80);
   await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("maps"));
-  assert.ok((await compareShots(browser, [before, await look()])).share > 0.01);
+  assert.ok((compareShots([before, await look()])).share > 0.01);
   // Another filter is drawn with the same light.
   await page.locator(".picks button:not([aria-pressed=true])").first().click();
   await isLive(page);
@@ -172,7 +172,7 @@ test("WhereFramesAreMissing_TheStillPicturesStay", () => withBrowser(kMesa, asyn
     assert.equal(await page.locator(".answer .split p.note").textContent(), "");
     await page.locator(".answer").getByRole("button", { name: "Live" }).click();
     await page.waitForFunction(() => document.querySelector(".answer .split p.note").textContent.includes("not beside this page"));
-    assert.ok((await compareShots(browser, [still, await stageOf(page).screenshot()])).mean < 0.001);
+    assert.ok((compareShots([still, await stageOf(page).screenshot()])).mean < 0.001);
     await close();
   }
 }));

@@ -32,7 +32,7 @@ const ownPicture = (run, data, place, label) => {
   return readFileSync(pageOf(run, decodeURI(data.cells.find((cell) => cell.place === at && cell.configuration === who).picture)));
 };
 const holdAgainst = async (context, browser, name, [shown, drawn, own], most = 0.03) => {
-  const [gap, moved] = [await compareShots(browser, [shown, drawn], 24), await compareShots(browser, [own, drawn], 24)];
+  const [gap, moved] = [compareShots([shown, drawn], 24), compareShots([own, drawn], 24)];
   context.diagnostic(`${name}: ${gap.share} of the values differ from the program's, and ${moved.share} from those of the run's own light`);
   assert.ok(gap.share < most && gap.share < moved.share / 3, `${name}: ${JSON.stringify([gap, moved])}`);
 };
@@ -85,12 +85,12 @@ test("CascadesFollowSunAndCamera_AndAWarpedMapSaysThatItStays", (context) => wit
     const own = ownPicture("fits", data, "avenue", label);
     await holdAgainst(context, browser, fit, [picture, drawByProgram(words, join(folder, fit), folder), own], most);
     // A whole turn of the camera fits its windows anew, and shows what was seen before.
-    const whole = await drawTurned(browser, "fits", "avenue", label, [2 * Math.PI, 0], [0, 0]), gap = await compareShots(browser, [whole.picture, own], 24);
+    const whole = await drawTurned(browser, "fits", "avenue", label, [2 * Math.PI, 0], [0, 0]), gap = compareShots([whole.picture, own], 24);
     context.diagnostic(`${fit}: ${gap.share} of the values move with a whole turn`);
     assert.ok(gap.share < most, JSON.stringify(gap));
   }
   const label = labelOf("lispsm"), warped = await drawTurned(browser, "fits", "avenue", label, [0, 0], [0.4, 0.1]);
   assert.match(warped.said, /This light stays: its map is bent/);
-  assert.ok((await compareShots(browser, [warped.picture, ownPicture("fits", data, "avenue", label)])).mean < 0.5);
+  assert.ok((compareShots([warped.picture, ownPicture("fits", data, "avenue", label)])).mean < 0.5);
   rmSync(folder, { recursive: true });
 }));

@@ -101,7 +101,7 @@ test("TheCommand_MeasuresWhatIsSeen", (context) => withBrowser(kMesa, async (bro
     await page.locator(".live-stage input").fill("0");
     await settled(page);
     const shown = await canvasOf(page).evaluate((canvas) => canvas.toDataURL().split(",")[1]), drawn = readFileSync(join(out, cell.images.picture));
-    const gap = await compareShots(browser, [Buffer.from(shown, "base64"), drawn], 24), moved = await compareShots(browser, [readFileSync(pageOf(run, decodeURI(data.cells.find(({ key }) => key === beforeKey).picture))), drawn], 24);
+    const gap = compareShots([Buffer.from(shown, "base64"), drawn], 24), moved = compareShots([readFileSync(pageOf(run, decodeURI(data.cells.find(({ key }) => key === beforeKey).picture))), drawn], 24);
     context.diagnostic(`${run}: ${gap.share} of the values differ from the program's, and ${moved.share} from those of the run's own sun`);
     const isModel = run === "odd"; // its camera and floor follow the light
     assert.equal((await page.locator(".live .unsaid").textContent()).includes("follow its light"), isModel);
@@ -145,7 +145,7 @@ test("MapAndBias_AreThoseThatTheProgramDraws_AndALinkHoldsThem", (context) => wi
     const [cell] = JSON.parse(readFileSync(join(out, "results.json"), "utf8")).cells, own = data.cells.find(({ configuration, place }) => place === 0 && data.configurations[configuration].label === label);
     assert.deepEqual([cell.filter, cell.map_size, cell.map_format], [filter, size, format]);
     const pictures = [Buffer.from(shown, "base64"), readFileSync(pageOf("several", decodeURI(own.picture)))];
-    const [gap, moved] = await Promise.all(pictures.map((each) => compareShots(browser, [each, readFileSync(join(out, cell.images.picture))], 24)));
+    const [gap, moved] = await Promise.all(pictures.map((each) => compareShots([each, readFileSync(join(out, cell.images.picture))], 24)));
     context.diagnostic(`${filter}: ${gap.share} of the values differ from the program's, and ${moved.share} from those of the run`);
     // The page keeps the phase of its own map in metres, the program that of the map asked for in texels.
     assert.ok(gap.share < 0.01 && gap.share < moved.share / 2, JSON.stringify([gap, moved]));

@@ -5,6 +5,7 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { pathToFileURL } from "node:url";
+import { inflateSync } from "node:zlib";
 
 const { SHADOWBENCH_PROGRAM: kProgram, SHADOWBENCH_BROWSER: kFolder, SHADOWBENCH_CHROMIUM: kChromium, SHADOWBENCH_SHOTS: kShots } = process.env;
 if (!kProgram || !kFolder || !kChromium) throw new Error("Run these tests with 'ctest -L browser': it names the program, its runs and the browser.");
@@ -64,22 +65,30 @@ export const linkOf = async (page) => {
   return page.evaluate(() => location.hash);
 };
 export const hashOf = async (page) => decodeURIComponent(await linkOf(page));
-// Draws a screenshot of one pane into a canvas of another page, since a page from disk may not read its own pictures.
+// The pixels of a PNG with 8 bits a channel, which screenshots, canvases and the program's pictures are.
+export const readPng = (png) => {
+  const chunks = [], [width, height] = [png.readUInt32BE(16), png.readUInt32BE(20)], channels = { 0: 1, 2: 3, 4: 2, 6: 4 }[png[25]], row = width * channels;
+  if (png[24] !== 8 || !channels || png[28] !== 0) throw new Error("a PNG of another kind");
+  for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at)) if (png.toString("latin1", at + 4, at + 8) === "IDAT") chunks.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
+  const coded = inflateSync(Buffer.concat(chunks)), pixels = new Uint8Array(row * height);
+  for (let y = 0, from = 0, to = 0; y < height; ++y) {
+    const filter = coded[from++];
+    for (let i = 0; i < row; ++i, ++from, ++to) {
+      const left = i < channels ? 0 : pixels[to - channels], up = y === 0 ? 0 : pixels[to - row], corner = i < channels || y === 0 ? 0 : pixels[to - row - channels];
+      const [a, b, c] = [Math.abs(up - corner), Math.abs(left - corner), Math.abs(left + up - 2 * corner)];
+      pixels[to] = coded[from] + [0, left, up, (left + up) >> 1, a <= b && a <= c ? left : b <= c ? up : corner][filter];
+    }
+  }
+  return { width, height, channels, pixels };
+};
+// How often each colour is in one pane.
 export const colours = async (page, index = 0) => {
-  const shot = await page.locator(".viewer .panes canvas").nth(index).screenshot();
-  const reader = await (await common.newContext()).newPage();
-  const all = await reader.evaluate(async (text) => {
-    const image = new Image();
-    image.src = "data:image/png;base64," + text;
-    await image.decode();
-    const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }), context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height), seen = {};
-    for (let i = 0; i < data.length; i += 4) seen[data.slice(i, i + 3).join()] = (seen[data.slice(i, i + 3).join()] || 0) + 1;
-    return seen;
-  }, shot.toString("base64"));
-  await reader.context().close();
-  return all;
+  const { channels, pixels } = readPng(await page.locator(".viewer .panes canvas").nth(index).screenshot()), counts = new Map();
+  for (let i = 0; i < pixels.length; i += channels) {
+    const colour = (pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2];
+    counts.set(colour, (counts.get(colour) ?? 0) + 1);
+  }
+  return Object.fromEntries([...counts].map(([colour, count]) => [[colour >> 16, (colour >> 8) & 255, colour & 255].join(), count]));
 };
 
 // Writes a page beside a run's own, whose data a function has changed.
@@ -105,7 +114,7 @@ export const multiply = (data, count) => {
 // What axe-core finds wrong, in a line each.
 export const listViolations = async (page) => {
   await page.evaluate(kAxe);
-  const { violations } = await page.evaluate(() => axe.run());
+  const { violations } = await page.evaluate(() => axe.run({ resultTypes: ["violations"], preload: false }));
   return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id} at ${target}: ${failureSummary.replaceAll(/\s+/g, " ")}`));
 };
 
