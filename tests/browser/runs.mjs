@@ -26,7 +26,7 @@ const kSmall = ["--size", "160x90", "--map-size", "128", "--rounds", "2", ...kLe
 const kMany = ["none", ...Array.from({ length: 399 }, (_, i) => `vsm:bleed_reduction=${(i + 1) / 1000}`)].join();
 const kPanes = ["run", "--scene", "panes", ...kSmall, "--filters", "none,tent3x3,vsm", "--blend-casters"];
 const kRuns = {
-  several: ["run", "--scene", "cubes", "--scene", "ball", "--size", "240x135", "--map-size", "128", "--rounds", "2", "--no-grids", "--stability",
+  several: ["run", "--scene", "cubes", "--scene", "ball", "--size", "240x135", "--map-size", "128", "--rounds", "2", "--stability",
     "--uncertainty", "--filters", "none,pcf2x2,tent3x3,box4x4,box3x3,vsm,vsm:radius=1,esm:radius=1"],
   odd: ["run", "--scene", kOddScene, "--ground", "--scene", "cubes", ...kSmall, "--filters", "none,constant,nine_compares", "--filter-file",
     "constant.glsl", "--filter-file", "nine_compares.glsl"],
