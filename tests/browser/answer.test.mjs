@@ -1,11 +1,10 @@
 // The answer on top of a run's page is that of the program.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { isDeepStrictEqual } from "node:util";
-import { changePage, folderOf, linkOf, makeRandom, open, openRun, readData, readResults, runProgram } from "./support.mjs";
+import { changePage, folderOf, linkOf, makeRandom, open, openRun, readData, readResults, runProgram, splitWords } from "./support.mjs";
 
 const kRandomPositions = 12;
 
@@ -198,9 +197,6 @@ test("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", async () =
   assert.deepEqual(messages, []);
   await close();
 });
-
-// The words of a command as a shell reads them.
-const splitWords = (command) => execFileSync("sh", ["-c", command.replace("shadowbench", "printf '%s\\n'")], { encoding: "utf8" }).trimEnd().split("\n");
 
 test("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven_OrIsHidden", async () => {
   const { page, close } = await openAnswer("odd"), { scenes } = readResults("odd"), lines = [];

@@ -4,7 +4,7 @@ import { cpSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 import { changeFrames, compareShots, keepContexts, kMesa, withBrowser } from "./live_support.mjs";
-import { changePage, folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
+import { changePage, dragOver, folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
 
 const kMeasure = "this GPU (measure)";
 const listTitles = (page) => page.locator("select[name=cost] option").allTextContents();
@@ -93,11 +93,8 @@ const nameGpu = () => {
 const stageOf = (page) => page.locator(".answer .stage");
 const isLive = (page) => page.waitForFunction(() => document.querySelector(".stage.turns canvas:not([hidden])"), null, { timeout: 30000 });
 const drag = async (page, way) => {
-  const { x, y, width, height } = await stageOf(page).boundingBox();
-  await page.mouse.move(x + 0.25 * width, y + 0.6 * height);
-  await page.mouse.down();
-  await page.mouse.move(x + 0.25 * width + way, y + 0.6 * height, { steps: 4 });
-  await page.mouse.up();
+  const { width, height } = await stageOf(page).boundingBox();
+  await dragOver(stageOf(page), [0.25 * width, 0.6 * height], [way, 0]);
 };
 const splitOf = (page) => page.locator(".stage input").inputValue();
 
@@ -127,11 +124,8 @@ test("ThePictureOfTheAnswer_IsTheStillOne_UntilItIsTurned", (context) => withBro
     assert.ok((await measureOverflow(page)) <= 0);
     assert.deepEqual(await listViolations(page), []);
     // The line is still the slider's, and the keys too.
-    const { x, y, width, height } = await stageOf(page).boundingBox();
-    await page.mouse.move(x + width / 2, y + height / 2);
-    await page.mouse.down();
-    await page.mouse.move(x + 0.7 * width, y + height / 2, { steps: 3 });
-    await page.mouse.up();
+    const { width, height } = await stageOf(page).boundingBox();
+    await dragOver(stageOf(page), [width / 2, height / 2], [0.2 * width, 0]);
     assert.equal(await splitOf(page), "70");
     await page.locator(".stage input").press("ArrowLeft");
     assert.equal(await splitOf(page), "69");

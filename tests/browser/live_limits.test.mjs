@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
 import { compareShots, keepTime, kMesa, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { folderOf, kNarrow, kWide, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
+import { dragOver, folderOf, kNarrow, kWide, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 const kMostSeconds = 10;
 
@@ -54,11 +54,7 @@ test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa,
   context.diagnostic(`the picture differs from the run's by ${gap.mean} of 255`);
   assert.ok(gap.mean < 0.1, JSON.stringify(gap));
   // View and light stay, and so does the map; its bias and parameters do not.
-  const { x, y } = await page.locator(".live-stage canvas").boundingBox();
-  await page.mouse.move(x + 100, y + 60);
-  await page.mouse.down();
-  await page.mouse.move(x + 160, y + 60, { steps: 3 });
-  await page.mouse.up();
+  await dragOver(page.locator(".live-stage canvas"), [100, 60], [60, 0]);
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("Camera and light stay: the scene has more triangles"));
   assert.equal(await settled(), before);
   const box = page.locator(".live details", { hasText: "Map and bias" });

@@ -1,9 +1,10 @@
 // What the tests of the pages that draw with WebGL 2 share.
+import assert from "node:assert/strict";
 import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { deflateSync, inflateSync } from "node:zlib";
-import { folderOf, launch, open, readPng } from "./support.mjs";
+import { folderOf, launch, open, readPng, runProgram } from "./support.mjs";
 
 // Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
 export const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
@@ -37,8 +38,12 @@ export const withBrowser = async (args, action) => {
     await browser.close();
   }
 };
-// A command's words as a shell has them.
-export const splitWords = (command) => [...command.matchAll(/'((?:[^']|'\\'')*)'|(\S+)/g)].map(([, quoted, plain]) => plain ?? quoted.replaceAll("'\\''", "'"));
+// Has the program measure what some words name, as quickly as it can; gives the cells.
+export const measure = (words, out, cwd, phases = 1) => {
+  const said = runProgram([...words, "--rounds", "1", "--phases", `${phases}`, "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd });
+  assert.equal(said.status, 0, said.stderr);
+  return JSON.parse(readFileSync(join(out, "results.json"), "utf8")).cells;
+};
 // A copy of a run, of whose scripts of frames a function changes the JSON.
 export const changeFrames = (run, name, edit) => {
   const folder = folderOf(run) + "." + name;

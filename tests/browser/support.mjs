@@ -1,5 +1,5 @@
 // What the tests of the pages share. CTest puts into the environment where the program, the runs and the packages are.
-import { spawnSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
@@ -22,6 +22,8 @@ export const folderOf = (run) => join(kFolder, "runs", run);
 export const pageOf = (run, file = "index.html") => join(folderOf(run), file);
 export const readResults = (run) => JSON.parse(readFileSync(pageOf(run, "results.json"), "utf8"));
 export const runProgram = (words, options = {}) => spawnSync(kProgram, words, { encoding: "utf8", ...options });
+// The words of a command of the program as a shell reads them.
+export const splitWords = (command) => execFileSync("sh", ["-c", command.replace("shadowbench", "printf '%s\\n'")], { encoding: "utf8" }).trimEnd().split("\n");
 
 // Opens a page from disk in a profile of its own, and keeps every word that the console gets; `init` runs in it before
 // its own scripts.
@@ -52,6 +54,18 @@ export const showCrops = async (page) => {
 export const settle = (page) => page.waitForTimeout(250);
 export const measureOverflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
 export const readData = (page) => page.evaluate(() => JSON.parse(document.getElementById("run").textContent));
+
+// Drags the mouse over the page, and over what a locator finds: from a place in it, so far.
+export const drag = async (page, from, to) => {
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(...to, { steps: 4 });
+  await page.mouse.up();
+};
+export const dragOver = async (locator, [left, top], [across, down]) => {
+  const { x, y } = await locator.boundingBox();
+  await drag(locator.page(), [x + left, y + top], [x + left + across, y + top + down]);
+};
 
 // The viewer's controls, the names of its panes, and what stands in the address.
 export const pick = (page, title, value, within = ".viewer") =>
