@@ -312,7 +312,8 @@ const startAnswer = (holder) => {
   // A slider's steps are the worst values of the run: each step lets one more configuration through.
   const listSteps = (field) => {
     const { order } = all.advice[shadowbench.cost][""];
-    const values = order.map(({ index }) => worstOf(index, field).limit).filter((limit) => limit !== undefined);
+    const known = order.map(({ index }) => worstOf(index, field).limit).filter((limit) => limit !== undefined);
+    const values = known.map((limit) => Math.max(0, limit)); // a time that is a difference may be below nought
     if (field in state.limits) values.push(state.limits[field]);
     const steps = [...new Set(values)].sort((a, b) => a - b);
     const every = Math.ceil(steps.length / kSteps);

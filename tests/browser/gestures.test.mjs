@@ -3,16 +3,9 @@ import assert from "node:assert/strict";
 import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { changePage, colours, folderOf, hashOf, kNarrow, kWide, labels, measureOverflow, multiply, open, openViewer, pageOf, pick, settle, showCrops } from "./support.mjs";
+import { changePage, colours, drag, folderOf, hashOf, kNarrow, kWide, labels, measureOverflow, multiply, open, openViewer, pageOf, pick, settle, showCrops } from "./support.mjs";
 
 const kPage = pageOf("several");
-
-const drag = async (page, from, to) => {
-  await page.mouse.move(...from);
-  await page.mouse.down();
-  await page.mouse.move(...to, { steps: 4 });
-  await page.mouse.up();
-};
 
 test("Gestures_PanSplitCropAndPinch", async () => {
   const { page, messages, shoot, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,slider,120,67.5,4", hasTouch: true });

@@ -4,14 +4,15 @@ import test from "node:test";
 import { changeFrames, kMesa, kOwn, openLive, press, readTable, withBrowser } from "./live_support.mjs";
 import { pageOf, pick } from "./support.mjs";
 
-for (const [title, args] of [["OnTheRunsOwnRasteriser", kMesa], ["OnAnotherImplementation", kOwn]])
+// On the second every filter is drawn once; the other kinds of map are those of few filters there.
+for (const [title, args, mostScenes] of [["OnTheRunsOwnRasteriser", kMesa, 9], ["OnAnotherImplementation", kOwn, 1]])
   test(`EveryFilterDrawsAsTheRunDid_${title}`, () => withBrowser(args, async (browser) => {
     for (const [run, count, absent] of [["live", 28, { textureGather: 2 }], ["lamps", 4, {}], ["fits", 18, { "geometry shaders": 2 }],
       ["hashed", 3, {}], ["dither", 3, {}]]) {
       const { page, messages, shoot, close } = await openLive(pageOf(run), browser);
       const requests = [], scenes = await page.locator(".live select").first().locator("option").allTextContents();
       page.on("request", (request) => requests.push(request.url()));
-      for (const scene of scenes) {
+      for (const scene of run === "live" ? scenes.slice(0, mostScenes) : scenes) {
         await pick(page, "Scene", { label: scene }, ".live");
         await press(page, "Check against the run");
         const rows = await readTable(page), left = { ...absent };

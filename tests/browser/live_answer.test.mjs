@@ -4,7 +4,7 @@ import { cpSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 import { changeFrames, compareShots, keepContexts, kMesa, withBrowser } from "./live_support.mjs";
-import { changePage, folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
+import { changePage, dragOver, folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
 
 const kMeasure = "this GPU (measure)";
 const listTitles = (page) => page.locator("select[name=cost] option").allTextContents();
@@ -93,11 +93,8 @@ const nameGpu = () => {
 const stageOf = (page) => page.locator(".answer .stage");
 const isLive = (page) => page.waitForFunction(() => document.querySelector(".stage.turns canvas:not([hidden])"), null, { timeout: 30000 });
 const drag = async (page, way) => {
-  const { x, y, width, height } = await stageOf(page).boundingBox();
-  await page.mouse.move(x + 0.25 * width, y + 0.6 * height);
-  await page.mouse.down();
-  await page.mouse.move(x + 0.25 * width + way, y + 0.6 * height, { steps: 4 });
-  await page.mouse.up();
+  const { width, height } = await stageOf(page).boundingBox();
+  await dragOver(stageOf(page), [0.25 * width, 0.6 * height], [way, 0]);
 };
 const splitOf = (page) => page.locator(".stage input").inputValue();
 
@@ -115,30 +112,27 @@ test("ThePictureOfTheAnswer_IsTheStillOne_UntilItIsTurned", (context) => withBro
     await page.locator(".answer").getByRole("button", { name: "Live" }).click();
     await isLive(page);
     assert.equal(await bottom(), before, "nothing moves");
-    const live = await stageOf(page).screenshot(), gap = await compareShots(browser, [still, live]);
+    const live = await stageOf(page).screenshot(), gap = compareShots([still, live]);
     context.diagnostic(`mean gap ${gap.mean} of 255, ${gap.share} of the values farther than 8`);
     assert.ok(gap.mean < 0.5 && gap.share < 0.003, JSON.stringify(gap));
     await drag(page, 60);
     await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("mean of 256 maps"), null, { timeout: 60000 });
     assert.equal(await splitOf(page), "50");
-    const turned = await compareShots(browser, [still, await stageOf(page).screenshot()]);
+    const turned = compareShots([still, await stageOf(page).screenshot()]);
     assert.ok(turned.share > 0.03, JSON.stringify(turned));
     await shoot(`answer.live.${viewport ? "phone" : "wide"}`);
     assert.ok((await measureOverflow(page)) <= 0);
     assert.deepEqual(await listViolations(page), []);
     // The line is still the slider's, and the keys too.
-    const { x, y, width, height } = await stageOf(page).boundingBox();
-    await page.mouse.move(x + width / 2, y + height / 2);
-    await page.mouse.down();
-    await page.mouse.move(x + 0.7 * width, y + height / 2, { steps: 3 });
-    await page.mouse.up();
+    const { width, height } = await stageOf(page).boundingBox();
+    await dragOver(stageOf(page), [width / 2, height / 2], [0.2 * width, 0]);
     assert.equal(await splitOf(page), "70");
     await page.locator(".stage input").press("ArrowLeft");
     assert.equal(await splitOf(page), "69");
     await page.locator(".stage input").fill("50");
     await page.locator(".answer").getByRole("button", { name: "Live" }).click();
     await stageOf(page).locator("input").blur();
-    const ended = await compareShots(browser, [still, await stageOf(page).screenshot()]);
+    const ended = compareShots([still, await stageOf(page).screenshot()]);
     assert.ok(ended.mean < 0.002, JSON.stringify(ended)); // the browser scales a picture not always alike
     assert.deepEqual(messages, []);
     await close();
@@ -153,7 +147,7 @@ test("AGpu_DrawsThePictureOfTheAnswer_WhenAPointerComes", () => withBrowser(kMes
   await page.locator(".answer").getByLabel("A drag turns").selectOption("light");
   await drag(page, 80);
   await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("maps"));
-  assert.ok((await compareShots(browser, [before, await look()])).share > 0.01);
+  assert.ok((compareShots([before, await look()])).share > 0.01);
   // Another filter is drawn with the same light.
   await page.locator(".picks button:not([aria-pressed=true])").first().click();
   await isLive(page);
@@ -172,7 +166,7 @@ test("WhereFramesAreMissing_TheStillPicturesStay", () => withBrowser(kMesa, asyn
     assert.equal(await page.locator(".answer .split p.note").textContent(), "");
     await page.locator(".answer").getByRole("button", { name: "Live" }).click();
     await page.waitForFunction(() => document.querySelector(".answer .split p.note").textContent.includes("not beside this page"));
-    assert.ok((await compareShots(browser, [still, await stageOf(page).screenshot()])).mean < 0.001);
+    assert.ok((compareShots([still, await stageOf(page).screenshot()])).mean < 0.001);
     await close();
   }
 }));

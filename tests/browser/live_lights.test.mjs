@@ -4,11 +4,10 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
-import { compareShots, kMesa, openLive, press, splitWords, withBrowser } from "./live_support.mjs";
-import { pageOf, pick, readData, runProgram } from "./support.mjs";
+import { compareShots, kMesa, measure, openLive, press, withBrowser } from "./live_support.mjs";
+import { pageOf, pick, readData, splitWords } from "./support.mjs";
 
 const kScene = new URL("../../data/scenes/teaching/three_lights.toml", import.meta.url);
-const kFew = ["--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids"];
 // The right side's picture with camera and light turned so, and the page.
 const drawTurned = async (browser, run, place, filter, camera, light) => {
   const fields = [place, filter, filter, 0.5, ...camera, ...light].map(encodeURIComponent).join();
@@ -19,20 +18,15 @@ const drawTurned = async (browser, run, place, filter, camera, light) => {
   const said = await page.locator(".live").textContent(), command = await page.locator(".live code").textContent(), data = await readData(page);
   assert.deepEqual(messages, []);
   await close();
-  return { picture: Buffer.from(picture, "base64"), said, words: splitWords(command).slice(1), data };
+  return { picture: Buffer.from(picture, "base64"), said, words: splitWords(command), data };
 };
-const drawByProgram = (words, out, cwd) => {
-  const said = runProgram([...words, ...kFew, "--out", out], { cwd });
-  assert.equal(said.status, 0, said.stderr);
-  const { cells } = JSON.parse(readFileSync(join(out, "results.json"), "utf8"));
-  return readFileSync(join(out, cells[0].images.picture));
-};
+const drawByProgram = (words, out, cwd) => readFileSync(join(out, measure(words, out, cwd)[0].images.picture));
 const ownPicture = (run, data, place, label) => {
   const [at, who] = [data.places.findIndex(({ title }) => title === place), data.configurations.findIndex((each) => each.label === label)];
   return readFileSync(pageOf(run, decodeURI(data.cells.find((cell) => cell.place === at && cell.configuration === who).picture)));
 };
-const holdAgainst = async (context, browser, name, [shown, drawn, own], most = 0.03) => {
-  const [gap, moved] = [await compareShots(browser, [shown, drawn], 24), await compareShots(browser, [own, drawn], 24)];
+const holdAgainst = (context, name, [shown, drawn, own], most = 0.03) => {
+  const [gap, moved] = [compareShots([shown, drawn], 24), compareShots([own, drawn], 24)];
   context.diagnostic(`${name}: ${gap.share} of the values differ from the program's, and ${moved.share} from those of the run's own light`);
   assert.ok(gap.share < most && gap.share < moved.share / 3, `${name}: ${JSON.stringify([gap, moved])}`);
 };
@@ -50,7 +44,7 @@ test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", (context) => withBrowser
     const place = `three_lights.${light}`, { picture, said, data } = await drawTurned(browser, "lamps", place, "tent3x3", [0, 0], [yaw, 0]);
     assert.match(said, /The lamp that was moved is not in it/);
     const drawn = drawByProgram(["run", "--scene", "moved.toml", "--light-name", light, "--filters", "tent3x3", "--size", "160x90", "--map-size", "128"], join(folder, light), folder);
-    await holdAgainst(context, browser, light, [picture, drawn, ownPicture("lamps", data, place, "tent3x3")]);
+    holdAgainst(context, light, [picture, drawn, ownPicture("lamps", data, place, "tent3x3")]);
   }
   rmSync(folder, { recursive: true });
 }));
@@ -59,8 +53,7 @@ test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", (context) => withBrowser
 test("AReferenceForALamp_IsNearItsTracedTruth", (context) => withBrowser(kMesa, async (browser) => {
   const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), out = join(folder, "out");
   writeFileSync(join(folder, "wide.toml"), readFileSync(kScene, "utf8").replace("radius = 0.04", "radius = 0.4").replace("radius = 0.03", "radius = 0.15"));
-  const ran = runProgram(["run", "--scene", "wide.toml", "--filters", "none", "--size", "240x135", "--map-size", "1024", ...kFew.slice(0, -1), "--out", out], { cwd: folder });
-  assert.equal(ran.status, 0, ran.stderr);
+  measure(["run", "--scene", "wide.toml", "--filters", "none", "--size", "240x135", "--map-size", "1024"], out, folder);
   const { page, messages, close } = await openLive(join(out, "index.html"), browser), found = {};
   for (const light of ["spot", "bulb"]) {
     await pick(page, "Scene", { label: `wide.${light}` }, ".live");
@@ -83,14 +76,14 @@ test("CascadesFollowSunAndCamera_AndAWarpedMapSaysThatItStays", (context) => wit
     const label = labelOf(fit), { picture, words } = await drawTurned(browser, "fits", "avenue", label, [0, 0], [0.4, 0.1]);
     assert.ok(words.includes("--light"));
     const own = ownPicture("fits", data, "avenue", label);
-    await holdAgainst(context, browser, fit, [picture, drawByProgram(words, join(folder, fit), folder), own], most);
+    holdAgainst(context, fit, [picture, drawByProgram(words, join(folder, fit), folder), own], most);
     // A whole turn of the camera fits its windows anew, and shows what was seen before.
-    const whole = await drawTurned(browser, "fits", "avenue", label, [2 * Math.PI, 0], [0, 0]), gap = await compareShots(browser, [whole.picture, own], 24);
+    const whole = await drawTurned(browser, "fits", "avenue", label, [2 * Math.PI, 0], [0, 0]), gap = compareShots([whole.picture, own], 24);
     context.diagnostic(`${fit}: ${gap.share} of the values move with a whole turn`);
     assert.ok(gap.share < most, JSON.stringify(gap));
   }
   const label = labelOf("lispsm"), warped = await drawTurned(browser, "fits", "avenue", label, [0, 0], [0.4, 0.1]);
   assert.match(warped.said, /This light stays: its map is bent/);
-  assert.ok((await compareShots(browser, [warped.picture, ownPicture("fits", data, "avenue", label)])).mean < 0.5);
+  assert.ok((compareShots([warped.picture, ownPicture("fits", data, "avenue", label)])).mean < 0.5);
   rmSync(folder, { recursive: true });
 }));

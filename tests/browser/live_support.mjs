@@ -1,9 +1,10 @@
 // What the tests of the pages that draw with WebGL 2 share.
+import assert from "node:assert/strict";
 import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { deflateSync, inflateSync } from "node:zlib";
-import { folderOf, launch, open } from "./support.mjs";
+import { folderOf, launch, open, readPng, runProgram } from "./support.mjs";
 
 // Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
 export const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
@@ -37,8 +38,12 @@ export const withBrowser = async (args, action) => {
     await browser.close();
   }
 };
-// A command's words as a shell has them.
-export const splitWords = (command) => [...command.matchAll(/'((?:[^']|'\\'')*)'|(\S+)/g)].map(([, quoted, plain]) => plain ?? quoted.replaceAll("'\\''", "'"));
+// Has the program measure what some words name, as quickly as it can; gives the cells.
+export const measure = (words, out, cwd, phases = 1) => {
+  const said = runProgram([...words, "--rounds", "1", "--phases", `${phases}`, "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd });
+  assert.equal(said.status, 0, said.stderr);
+  return JSON.parse(readFileSync(join(out, "results.json"), "utf8")).cells;
+};
 // A copy of a run, of whose scripts of frames a function changes the JSON.
 export const changeFrames = (run, name, edit) => {
   const folder = folderOf(run) + "." + name;
@@ -63,22 +68,33 @@ export const keepContexts = () => {
     return context;
   };
 };
-// How far two screenshots of one size are apart, in steps of 255: the mean, and the share of pixels beyond `far`.
-export const compareShots = async (browser, shots, far = 8) => {
-  const page = await browser.newPage();
-  const found = await page.evaluate(async ([texts, most]) => {
-    const [a, b] = await Promise.all(texts.map(async (text) => {
-      const image = new Image();
-      image.src = "data:image/png;base64," + text;
-      await image.decode();
-      const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
-      context.drawImage(image, 0, 0);
-      return context.getImageData(0, 0, image.width, image.height).data;
-    }));
-    if (a.length !== b.length) throw new Error("the shots have different sizes");
-    const gaps = a.map((value, i) => Math.abs(value - b[i]));
-    return { mean: gaps.reduce((sum, gap) => sum + gap, 0) / gaps.length, share: gaps.filter((gap) => gap > most).length / gaps.length };
-  }, [shots.map((shot) => shot.toString("base64")), far]);
-  await page.close();
-  return found;
+// Runs in a page before its scripts: a GPU whose work is done when something is read back, and takes kMsPerLetter for each
+// letter of the fragment shader that it draws with, by a clock that nothing else moves. It has no timer queries.
+export const kMsPerLetter = 0.01;
+export const keepTime = `(${(msPerLetter) => {
+  const { prototype } = WebGL2RenderingContext, letters = new Map();
+  let now = 0, waiting = 0, drawsWith = null;
+  const before = (name, act) => {
+    const own = prototype[name];
+    prototype[name] = function (...words) {
+      act(...words);
+      return own.apply(this, words);
+    };
+  };
+  before("attachShader", (program, shader) => letters.set(program, letters.get(shader) ?? letters.get(program)));
+  before("shaderSource", (shader, text) => text.includes("gl_Position") || letters.set(shader, text.length));
+  before("useProgram", (program) => (drawsWith = program));
+  for (const name of ["drawArrays", "drawElements"]) before(name, () => (waiting += msPerLetter * letters.get(drawsWith)));
+  before("readPixels", () => [now, waiting] = [now + waiting, 0]);
+  const { getExtension } = prototype;
+  prototype.getExtension = function (name) { return name.startsWith("EXT_disjoint_timer_query") ? null : getExtension.call(this, name); };
+  performance.now = () => (now += 1e-6);
+}})(${kMsPerLetter})`;
+// How far two PNGs of one size are apart, in steps of 255: the mean, and the share of colours beyond `far`.
+export const compareShots = (shots, far = 8) => {
+  const [a, b] = shots.map(readPng), gaps = [];
+  if (a.width !== b.width || a.height !== b.height) throw new Error("the shots have different sizes");
+  for (let pixel = 0; pixel < a.width * a.height; ++pixel)
+    for (let i = 0; i < 3; ++i) gaps.push(Math.abs(a.pixels[pixel * a.channels + Math.min(i, a.channels - 1)] - b.pixels[pixel * b.channels + Math.min(i, b.channels - 1)]));
+  return { mean: gaps.reduce((sum, gap) => sum + gap, 0) / gaps.length, share: gaps.filter((gap) => gap > far).length / gaps.length };
 };

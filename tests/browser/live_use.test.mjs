@@ -2,23 +2,20 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { keepContexts, kMesa, kOwn, loadTimes, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { folderOf, kNarrow, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
+import { changeFrames, keepContexts, keepTime, kMesa, kMsPerLetter, kOwn, loadTimes, openLive, press, readTable, withBrowser } from "./live_support.mjs";
+import { dragOver, folderOf, kNarrow, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
 
 const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
 
-test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts", () => withBrowser(kMesa, async (browser) => {
-  const { page, messages, close } = await openLive(pageOf("odd"), browser);
-  // Other tests run beside this one on a machine of few cores: two rounds in a row that they left alone are enough.
-  const kMostRounds = 8, times = [];
-  const isClear = ({ none, constant, nine_compares: nine }) => nine > none && Math.abs(constant) < nine / 3;
-  const agree = (a, b) => Math.abs(Math.log(a.nine_compares / b.nine_compares)) < Math.log(2);
-  const areLeftAlone = () => times.length >= 2 && times.slice(-2).every(isClear) && agree(...times.slice(-2));
-  while (times.length < kMostRounds && !areLeftAlone()) {
-    await press(page, "Time on this GPU");
-    times.push(Object.fromEntries((await readTable(page)).map((row) => [row[0], row[4] === "" ? NaN : Number(row[4])])));
+test("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => withBrowser(kMesa, async (browser) => {
+  const letters = {};
+  changeFrames("odd", "letters", ({ programs }) => programs.forEach(({ label, fragment }) => (letters[label] = fragment.length)));
+  const { page, messages, close } = await openLive(pageOf("odd"), browser, { init: keepTime });
+  await press(page, "Time on this GPU");
+  for (const [filter, , , , time] of await readTable(page)) {
+    const wanted = kMsPerLetter * (letters[`${filter} lookup`] - letters["empty lookup"]);
+    assert.ok(Math.abs(Number(time) / wanted - 1) < 0.01, `${filter}: ${time}, not ${wanted}`);
   }
-  assert.ok(areLeftAlone(), JSON.stringify(times));
 
   // What was timed is a cost of the answer and the table, can be saved, and is there when the page is opened again.
   await chooseCost(page, "static light, this GPU");
@@ -63,22 +60,22 @@ test("Timing_FindsThatMoreTapsCostMore_AndThatTwoRoundsAgree_AndItsTimesAreCosts
   await close();
 }));
 
-// In a page before its scripts: timer queries that a test makes up, or none.
+// In a page before its scripts: timer queries that a test makes up.
 const haveQueries = (milliseconds) => {
-  const { getExtension, getQueryParameter } = WebGL2RenderingContext.prototype, kName = "EXT_disjoint_timer_query_webgl2";
+  const { getExtension } = WebGL2RenderingContext.prototype, kName = "EXT_disjoint_timer_query_webgl2";
   const fake = (query, name) => { if (name === WebGL2RenderingContext.QUERY_RESULT) return milliseconds * 1e6 * (1 + Math.random()); return true; };
   Object.assign(WebGL2RenderingContext.prototype, {
-    getExtension(name) { return name !== kName ? getExtension.call(this, name) : milliseconds === null ? null : { TIME_ELAPSED_EXT: 1, GPU_DISJOINT_EXT: 0x0c11 }; },
+    getExtension(name) { return name !== kName ? getExtension.call(this, name) : { TIME_ELAPSED_EXT: 1, GPU_DISJOINT_EXT: 0x0c11 }; },
     beginQuery() {},
     endQuery() {},
-    getQueryParameter: milliseconds === null ? getQueryParameter : fake,
+    getQueryParameter: fake,
   });
 };
 test("TimerQueriesAreACrossCheck_ThatNoTimeIsMadeOf", () => withBrowser(kMesa, async (browser) => {
   for (const [init, words, columns] of [
     [null, /Timer queries (agree|differ)/, 8],
-    [`(${haveQueries})(1e9)`, /Timer queries differ from [1-9]\d* of [1-9]\d* times by more than both intervals \(\u2260\)\. A CPU draws here/, 8],
-    [`(${haveQueries})(null)`, /has no timer queries/, 6],
+    [`${keepTime}; (${haveQueries})(1e6)`, /Timer queries differ from [1-9]\d* of [1-9]\d* times by more than both intervals \(\u2260\)\. A CPU draws here/, 8],
+    [keepTime, /has no timer queries/, 6],
   ]) {
     const { page, messages, close } = await openLive(pageOf("untrue"), browser, init ? { init } : {});
     await press(page, "Time on this GPU");
@@ -101,22 +98,18 @@ test("TimerQueriesAreACrossCheck_ThatNoTimeIsMadeOf", () => withBrowser(kMesa, a
 test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () => withBrowser(kMesa, async (browser) => {
   const { page, messages, shoot, close } = await openLive(pageOf("ball"), browser);
   const canvas = page.locator(".live canvas"), look = async () => (await canvas.screenshot()).toString("base64"), note = page.locator(".live p.note").nth(1);
-  const drag = async () => {
-    const { x, y } = await canvas.boundingBox();
-    await page.mouse.move(x + 300, y + 200);
-    await page.mouse.down();
-    await page.mouse.move(x + 380, y + 210, { steps: 3 });
-    await page.mouse.up();
+  const turn = async () => {
+    await dragOver(canvas, [300, 200], [80, 10]);
     await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the mean of 256 maps"), null, { timeout: 60000 });
   };
   await pick(page, "Right", { label: "pcss" }, ".live");
   await page.waitForTimeout(500);
   const before = await look();
-  await drag();
+  await turn();
   const turned = await look();
   await shoot("live.turned");
   await pick(page, "A drag turns", "light", ".live");
-  await drag();
+  await turn();
   assert.ok(before !== turned && turned !== (await look()));
   await shoot("live.sun");
   await page.locator(".live").getByRole("button", { name: "As it was" }).click();
@@ -170,11 +163,7 @@ test("Layers_AreVisibility_ItsErrorAgainstTheTruth_AndTheMap", (context) => with
   assert.equal(await page.locator(".live").getByRole("combobox", { name: "Layer" }).inputValue(), "error");
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("The colours end at errors of"));
   // Where the camera was turned both sides are held against one mean of maps, which is said once.
-  const { x, y } = await page.locator(".live-stage canvas").boundingBox();
-  await page.mouse.move(x + 60, y + 60);
-  await page.mouse.down();
-  await page.mouse.move(x + 90, y + 60, { steps: 3 });
-  await page.mouse.up();
+  await dragOver(page.locator(".live-stage canvas"), [60, 60], [30, 0]);
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("mean of 256 maps"), null, { timeout: 120000 });
   assert.equal((await page.locator(".live > p.note", { hasText: "mean of" }).textContent()).match(/No rays were traced there/g).length, 1);
   assert.deepEqual(messages, []);

@@ -1,10 +1,11 @@
 // What the tests of the pages share. CTest puts into the environment where the program, the runs and the packages are.
-import { spawnSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { pathToFileURL } from "node:url";
+import { inflateSync } from "node:zlib";
 
 const { SHADOWBENCH_PROGRAM: kProgram, SHADOWBENCH_BROWSER: kFolder, SHADOWBENCH_CHROMIUM: kChromium, SHADOWBENCH_SHOTS: kShots } = process.env;
 if (!kProgram || !kFolder || !kChromium) throw new Error("Run these tests with 'ctest -L browser': it names the program, its runs and the browser.");
@@ -21,6 +22,8 @@ export const folderOf = (run) => join(kFolder, "runs", run);
 export const pageOf = (run, file = "index.html") => join(folderOf(run), file);
 export const readResults = (run) => JSON.parse(readFileSync(pageOf(run, "results.json"), "utf8"));
 export const runProgram = (words, options = {}) => spawnSync(kProgram, words, { encoding: "utf8", ...options });
+// The words of a command of the program as a shell reads them.
+export const splitWords = (command) => execFileSync("sh", ["-c", command.replace("shadowbench", "printf '%s\\n'")], { encoding: "utf8" }).trimEnd().split("\n");
 
 // Opens a page from disk in a profile of its own, and keeps every word that the console gets; `init` runs in it before
 // its own scripts.
@@ -52,6 +55,18 @@ export const settle = (page) => page.waitForTimeout(250);
 export const measureOverflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
 export const readData = (page) => page.evaluate(() => JSON.parse(document.getElementById("run").textContent));
 
+// Drags the mouse over the page, and over what a locator finds: from a place in it, so far.
+export const drag = async (page, from, to) => {
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(...to, { steps: 4 });
+  await page.mouse.up();
+};
+export const dragOver = async (locator, [left, top], [across, down]) => {
+  const { x, y } = await locator.boundingBox();
+  await drag(locator.page(), [x + left, y + top], [x + left + across, y + top + down]);
+};
+
 // The viewer's controls, the names of its panes, and what stands in the address.
 export const pick = (page, title, value, within = ".viewer") =>
   page.locator(within).getByRole("combobox", { name: title, exact: true }).selectOption(value);
@@ -64,22 +79,30 @@ export const linkOf = async (page) => {
   return page.evaluate(() => location.hash);
 };
 export const hashOf = async (page) => decodeURIComponent(await linkOf(page));
-// Draws a screenshot of one pane into a canvas of another page, since a page from disk may not read its own pictures.
+// The pixels of a PNG with 8 bits a channel, which screenshots, canvases and the program's pictures are.
+export const readPng = (png) => {
+  const chunks = [], [width, height] = [png.readUInt32BE(16), png.readUInt32BE(20)], channels = { 0: 1, 2: 3, 4: 2, 6: 4 }[png[25]], row = width * channels;
+  if (png[24] !== 8 || !channels || png[28] !== 0) throw new Error("a PNG of another kind");
+  for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at)) if (png.toString("latin1", at + 4, at + 8) === "IDAT") chunks.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
+  const coded = inflateSync(Buffer.concat(chunks)), pixels = new Uint8Array(row * height);
+  for (let y = 0, from = 0, to = 0; y < height; ++y) {
+    const filter = coded[from++];
+    for (let i = 0; i < row; ++i, ++from, ++to) {
+      const left = i < channels ? 0 : pixels[to - channels], up = y === 0 ? 0 : pixels[to - row], corner = i < channels || y === 0 ? 0 : pixels[to - row - channels];
+      const [a, b, c] = [Math.abs(up - corner), Math.abs(left - corner), Math.abs(left + up - 2 * corner)];
+      pixels[to] = coded[from] + [0, left, up, (left + up) >> 1, a <= b && a <= c ? left : b <= c ? up : corner][filter];
+    }
+  }
+  return { width, height, channels, pixels };
+};
+// How often each colour is in one pane.
 export const colours = async (page, index = 0) => {
-  const shot = await page.locator(".viewer .panes canvas").nth(index).screenshot();
-  const reader = await (await common.newContext()).newPage();
-  const all = await reader.evaluate(async (text) => {
-    const image = new Image();
-    image.src = "data:image/png;base64," + text;
-    await image.decode();
-    const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }), context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height), seen = {};
-    for (let i = 0; i < data.length; i += 4) seen[data.slice(i, i + 3).join()] = (seen[data.slice(i, i + 3).join()] || 0) + 1;
-    return seen;
-  }, shot.toString("base64"));
-  await reader.context().close();
-  return all;
+  const { channels, pixels } = readPng(await page.locator(".viewer .panes canvas").nth(index).screenshot()), counts = new Map();
+  for (let i = 0; i < pixels.length; i += channels) {
+    const colour = (pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2];
+    counts.set(colour, (counts.get(colour) ?? 0) + 1);
+  }
+  return Object.fromEntries([...counts].map(([colour, count]) => [[colour >> 16, (colour >> 8) & 255, colour & 255].join(), count]));
 };
 
 // Writes a page beside a run's own, whose data a function has changed.
@@ -105,7 +128,7 @@ export const multiply = (data, count) => {
 // What axe-core finds wrong, in a line each.
 export const listViolations = async (page) => {
   await page.evaluate(kAxe);
-  const { violations } = await page.evaluate(() => axe.run());
+  const { violations } = await page.evaluate(() => axe.run({ resultTypes: ["violations"], preload: false }));
   return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id} at ${target}: ${failureSummary.replaceAll(/\s+/g, " ")}`));
 };
 

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { inflateSync } from "node:zlib";
-import { colours, hashOf, labels, linkOf, openViewer, pageOf, pick, settle, showCrops } from "./support.mjs";
+import { colours, drag, hashOf, labels, linkOf, openViewer, pageOf, pick, settle, showCrops } from "./support.mjs";
 
 const kPage = pageOf("several");
 
@@ -159,10 +159,7 @@ test("Link_RestoresTheView_AndUnknownNamesAreSaid", async () => {
   await first.page.mouse.move(box.x + 100, box.y + 100);
   await first.page.mouse.wheel(0, -600);
   await first.page.getByRole("button", { name: "Crop", exact: true }).click();
-  await first.page.mouse.move(box.x + 50, box.y + 50);
-  await first.page.mouse.down();
-  await first.page.mouse.move(box.x + 200, box.y + 150, { steps: 5 });
-  await first.page.mouse.up();
+  await drag(first.page, [box.x + 50, box.y + 50], [box.x + 200, box.y + 150]);
   await showCrops(first.page);
   await settle(first.page);
   await first.shoot("crop");

@@ -21,13 +21,14 @@ from pathlib import Path
 # Scene and options: a sun, a spot light, a cube's faces, cascades, and the curved maps.
 CASES = [("stack", []), ("lamp", []), ("lantern", []), ("avenue", ["--fit", "cascades"]),
          ("avenue", ["--fit", "lispsm"]), ("avenue", ["--fit", "logpsm"]), ("lantern", ["--fit", "paraboloid"])]
-SETTINGS = ["--filters", "none,pcf2x2", "--size", "160x90", "--map-size", "512", "--rounds", "1"]
+SETTINGS = ["--filters", "none,pcf2x2", "--size", "112x63", "--map-size", "512", "--rounds", "1", "--phases", "1", "--gpu", "none",
+            "--no-attribution", "--all-parts"]
 # A receiver may lie on the border of a texel, or within rounding of the map's depth; more than that is a mistake.
 MOST_DIFFERENT = 0.0005
 
 
 def read_tiff(path):
-    """An uncompressed little-endian TIFF of floats: width, height, channels, values."""
+    """The values of an uncompressed little-endian TIFF of floats."""
     data = path.read_bytes()
     assert data[:4] == b"II*\0", "not a little-endian TIFF"
     tags = {}
@@ -45,7 +46,7 @@ def read_tiff(path):
     values = array("f")
     for offset, count in zip(tags[273], tags[279]):
         values.frombytes(data[offset:offset + count])
-    return tags[256][0], tags[257][0], tags.get(277, (1,))[0], values
+    return values
 
 
 class ExrFile:
@@ -54,11 +55,13 @@ class ExrFile:
         text = subprocess.run(["oiiotool", "--info", "-v", str(path)], check=True, capture_output=True, text=True).stdout
         self.metadata = dict(re.findall(r'^ *(shadowbench:\S.*?): "?(.*?)"?$', text, re.MULTILINE))
 
-    def part(self, name):
-        file = self.folder / "part.tif"
-        subprocess.run(["oiiotool", str(self.path), "--subimage", name, "--fullpixels", "-d", "float", "--compression", "none", "-o",
-                        str(file)], check=True)
-        return read_tiff(file)
+    def parts(self, *names):
+        """Unpacks parts, in one start of oiiotool."""
+        files = [self.folder / f"part{i}.tif" for i in range(len(names))]
+        words = [word for name, file in zip(names, files) for word in (
+            str(self.path), "--subimage", name, "--fullpixels", "-d", "float", "--compression", "none", "-o", str(file), "--pop")]
+        subprocess.run(["oiiotool", *words], check=True)
+        return [read_tiff(file) for file in files]
 
     def layers(self):
         names = re.findall(r"shadowbench:map\.layer(\d+)\.shape", "\n".join(self.metadata))
@@ -177,18 +180,16 @@ def compare(label, layer, place, depth, depth_map, size, layers):
 
 def check(program, scene, options, folder):
     out = folder / "run"
-    subprocess.run([program, "run", "--scene", scene, *options, *SETTINGS, "--all-parts", "--out", str(out), "--fresh"], check=True,
+    subprocess.run([program, "run", "--scene", scene, *options, *SETTINGS, "--out", str(out), "--fresh"], check=True,
                    stdout=subprocess.DEVNULL)
     file = ExrFile(next(out.glob("*.exr")), folder)
     layers = file.layers()
     size = int(file.metadata["shadowbench:map_size"])
-    _, height, _, positions = file.part("receiver.position")
-    _, _, _, normals = file.part("receiver.normal")
-    _, _, _, mask = file.part("truth.mask")
-    _, _, _, depth_map = file.part("depth_map")
+    labels = ("none", "pcf2x2")
+    positions, normals, mask, depth_map, *visibilities = file.parts(
+        "receiver.position", "receiver.normal", "truth.mask", "depth_map", *(f"{label}.visibility" for label in labels))
     wrong = 0
-    for label in ("none", "pcf2x2"):
-        _, _, _, drawn = file.part(f"{label}.visibility")
+    for label, drawn in zip(labels, visibilities):
         compared = different = shadowed = 0
         for i in range(len(mask)):
             if mask[i] == 0.0:
@@ -210,7 +211,7 @@ def check(program, scene, options, folder):
             different += abs(visibility - drawn[i]) > 0.01
         name = " ".join([scene, *options[1:], label])
         print(f"{name}: {compared} receivers, {shadowed} in shadow, {different} differ")
-        if compared < 3000 or shadowed < 100 or different > MOST_DIFFERENT * compared:
+        if compared < 1500 or shadowed < 100 or different > max(1, MOST_DIFFERENT * compared):
             print(f"FAILED: {name}")
             wrong += 1
     return wrong

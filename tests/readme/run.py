@@ -38,11 +38,12 @@ ROOT = Path(__file__).resolve().parents[2]
 
 # What is appended to a command that does not say it itself: (option, value). The value None marks a flag.
 CHEAPER = {
-    "run": [("--size", "96x54"), ("--map-size", "128"), ("--rounds", "6"), ("--scene", "cubes"), ("--filters", "none,vsm")],
+    "run": [("--size", "96x54"), ("--map-size", "128"), ("--rounds", "6"), ("--scene", "cubes"), ("--filters", "none,vsm"),
+            ("--gpu", "none")],
     "submit": [("--size", "96x54"), ("--map-size", "128"), ("--scene", "cubes"), ("--filters", "none,vsm")],
     "bias": [("--size", "96x54"), ("--map-size", "128"), ("--filters", "none")],
     "flicker": [("--size", "96x54"), ("--map-size", "128"), ("--frames", "3"), ("--filters", "none,vsm")],
-    "stress": [("--axes", "taps")],
+    "stress": [("--axes", "vsm-cancellation")],
     "view": [("--size", "96x54"), ("--close-after", "0.5")],
     "tune": [("--size", "96x54"), ("--map-size", "128"), ("--scene", "cubes"), ("--budget", "3")],
 }
