@@ -203,8 +203,8 @@ class BiasSweep {
     shot.point.factor = factor;
     shot.point.setting = setting;
     const std::vector<float>& image = shot.visibility.texels;
-    shot.point.acne = metrics::rate_below(image, masks_.acne, metrics::kArtefactLimits.acne_below);
-    shot.point.contact_gap = metrics::rate_contact_gap(image, find_unbiased(request).texels, masks_.contact_gap);
+    shot.point.acne = metrics::rate_acne(image, assets_.truth(camera()).rays.area.visibility, masks_.acne);
+    shot.point.contact_gap = metrics::rate_contact_gap(image, find_unbiased(request).texels, masks_);
     return shot;
   }
 

@@ -289,17 +289,14 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   cell.visibility = truth.receivers.to_image(checked.visibility.texels);
   cell.picture = shade(task, fill_few(cell.visibility, truth, checked.undefined));
   cell.flip = measure::score(cell.record, cell.visibility, {}, cell.picture, truth);
-  cell.unbiased = drawn.unbiased ? truth.receivers.to_image(drawn.unbiased->texels)
-                                 : images::Image(cell.visibility.width, cell.visibility.height, 1);
+  if (drawn.unbiased) cell.unbiased = truth.receivers.to_image(drawn.unbiased->texels);
   options::RunOptions traced = planned.options;
   traced.attribution = false;
   measure::CellAnalyser(renderer_, traced, task.task, assets_of(task), truth).analyse(cell);
   for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
     cell.record.absent[field] = kAnother;
-  if (!drawn.unbiased) {
-    cell.record.artefact.contact_gap.reset();
+  if (!drawn.unbiased)
     cell.record.absent["artefact.contact_gap"] = "its picture without bias is not known: give --unbiased";
-  }
   if (drawn.shadow_map) attribute(cell, *drawn.shadow_map, meta, task, truth);
   const auto inside = metrics::measure_error(cell.visibility.texels, truth.area.texels, find_inside(own, own.counts));
   if (inside) cell.record.external->inside_rmse = inside->rmse;

@@ -41,7 +41,8 @@ metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<
   return metrics::make_artefact_masks(
       {.counts = truth.mask,
        .area = truth.rays.area.visibility,
-       .area_settled = find_settled(truth.rays.area),
+       .ratio = truth.rays.area.ratio,
+       .area_settled = truth.settled,
        .surroundings = around.visibility,
        .surroundings_settled = around.settled,
        .first_blocker_ws = truth.rays.first_blockers_ws,
@@ -156,10 +157,10 @@ void CellAnalyser::analyse(MeasuredCell& cell) {
 void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
   records::CellRecord& record = cell.record;
   const std::vector<float>& image = cell.visibility.texels;
-  const metrics::ArtefactLimits& limits = metrics::kArtefactLimits;
-  note(record, "artefact.acne", record.artefact.acne, metrics::rate_below(image, masks_->acne, limits.acne_below),
+  note(record, "artefact.acne", record.artefact.acne,
+       metrics::rate_acne(image, truth_.rays.area.visibility, masks_->acne),
        too_few("are wholly lit, with their surroundings"));
-  note(record, "artefact.leak", record.artefact.leak, metrics::rate_above(image, masks_->leak, limits.leak_above),
+  note(record, "artefact.leak", record.artefact.leak, metrics::rate_leak(image, cell.unbiased.texels, masks_->leak),
        too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
   const bool has_cascades = std::holds_alternative<scene::ViewSlice>(light_.frustum().share);
   const std::string no_seam = !has_cascades           ? "the light has no cascades"
@@ -169,9 +170,9 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
        no_seam.empty() ? too_few("lie where a cascade takes over") : no_seam);
   const auto touching = std::ranges::count(masks_->contact_gap, 1);
   note(record, "artefact.contact_gap", record.artefact.contact_gap,
-       metrics::rate_contact_gap(image, cell.unbiased.texels, masks_->contact_gap),
+       metrics::rate_contact_gap(image, cell.unbiased.texels, *masks_),
        touching < metrics::kFewestReceivers
-           ? too_few("are wholly blocked by something that touches them")
+           ? too_few("are wholly blocked by something that touches them, or lit by bias behind something farther")
            : fmt::format("of {} receivers that touch what blocks them fewer than {} are dark without bias: the filter "
                          "lights the others itself, by its blur or by fading at contacts",
                          touching, metrics::kFewestReceivers));

@@ -57,6 +57,23 @@ images::Image draw_visibility(render::FilterPasses& filter, const render::Shadow
   return render::read_image(target.texture(), 1);
 }
 
+void draw_without_bias(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets, LightMap& light,
+                       render::FilterPasses& filter, const std::function<void()>& draw) {
+  const filters::ParamValues values = filter.request().values;
+  const render::LightLayers own = filter.light();
+  render::LightLayers unbiased = own;
+  for (render::LightSetup& layer : unbiased) {
+    layer.bias = {};
+    layer.bias.max_tangent = 0.0;  // the passes may follow the receiver's plane: let it be flat
+  }
+  const bool biased_map = options.bias.map != render::MapBias();
+  if (biased_map) assets.redraw(light, {});
+  filter.retune(renderer.shaders, values, unbiased);
+  draw();
+  filter.retune(renderer.shaders, values, own);
+  if (biased_map) assets.redraw(light);
+}
+
 EmptyLookups make_empty_lookups(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
                                 const LightMap& light, const std::vector<render::FilterPasses*>& filters) {
   EmptyLookups lookups;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -28,6 +29,10 @@ std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, con
 /// Runs a filter's prefilter and lookup, and reads the visibility; `target` is of the G-buffer's size.
 images::Image draw_visibility(render::FilterPasses& filter, const render::ShadowMap& map,
                               const render::GBuffer& gbuffer, render::ImageTarget& target);
+
+/// Calls `draw` with a filter that has no bias, in its receivers and in the map; both are as before afterwards.
+void draw_without_bias(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets, LightMap& light,
+                       render::FilterPasses& filter, const std::function<void()>& draw);
 
 /// Lookups that read what filters read of their receivers, and nothing of the map: what a lookup takes longer than its
 /// empty one is the filter's own time.

@@ -55,7 +55,9 @@ class SceneBench {
       if (options_.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filter);
       if (!options_.truth && !options_.part.is_worker()) continue;
       result.cells.back().cascades = draw_cascades(*filter);
-      result.cells.back().unbiased = draw_unbiased(*filter);
+      draw_without_bias(renderer_, options_, assets_, light_, *filter, [&] {
+        result.cells.back().unbiased = draw_visibility(*filter, light_.map, gbuffer_, target_);
+      });
     }
     time(result, filters);
     draw_phases(result, filters);
@@ -143,24 +145,6 @@ class SceneBench {
     }
     filter.retune(renderer_.shaders, filter.request().values, own);
     return drawn;
-  }
-
-  /// Draws a filter without bias, in the receivers and in the map; its light and the map are as before afterwards.
-  images::Image draw_unbiased(render::FilterPasses& filter) {
-    const filters::ParamValues values = filter.request().values;
-    const render::LightLayers own = filter.light();
-    render::LightLayers unbiased = own;
-    for (render::LightSetup& layer : unbiased) {
-      layer.bias = {};
-      layer.bias.max_tangent = 0.0;  // the passes may follow the receiver's plane: let it be flat
-    }
-    const bool biased_map = options_.bias.map != render::MapBias();
-    if (biased_map) assets_.redraw(light_, {});
-    filter.retune(renderer_.shaders, values, unbiased);
-    images::Image image = draw_visibility(filter, light_.map, gbuffer_, target_);
-    filter.retune(renderer_.shaders, values, own);
-    if (biased_map) assets_.redraw(light_);
-    return image;
   }
 
   /// Measures how far rounding can move each pixel (filters with a scalar model), and how far other seeds move it

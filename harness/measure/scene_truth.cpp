@@ -19,6 +19,25 @@
 namespace shadowbench::measure {
 namespace {
 
+/// Whether no other surface hides any of the light from a pixel and from those of its neighbours that count. Their own
+/// planes may: then their rays do not agree.
+bool is_open(const SceneTruth& truth, int i) {
+  const int width = truth.receivers.image.width, height = truth.receivers.image.height, x = i % width, y = i / width;
+  for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, height - 1); ++ny) {
+    for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, width - 1); ++nx) {
+      const auto n = static_cast<std::size_t>(ny * width + nx);
+      if (truth.mask[n] && truth.rays.area.ratio[n] != 1.0f) return false;
+    }
+  }
+  return true;
+}
+
+void find_settled(SceneTruth& truth) {
+  const std::vector<std::uint32_t>& rays = truth.rays.area.rays;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    truth.settled.push_back(rays[i] == truth::kRaysOfSettledPixel || is_open(truth, static_cast<int>(i)) ? 1 : 0);
+}
+
 void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
   double squares = 0.0, gaps = 0.0, unanimous = 0.0, count = 0.0;
   for (std::size_t i = 0; i < truth.mask.size(); ++i) {
@@ -28,7 +47,7 @@ void summarise_errors(SceneTruth& truth, const truth::TracedVisibility& area) {
     gaps += gap * gap;
     unanimous += area.unanimous[i];
     truth.lit += area.visibility[i] > 0.0f;
-    truth.penumbra += area.rays[i] != truth::kRaysOfSettledPixel;
+    truth.penumbra += truth.settled[i] == 0;
     count += 1.0;
   }
   truth.standard_error = std::sqrt(squares / count);
@@ -86,6 +105,7 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
             : occluder_m);
   }
   truth.standard_errors = is_ratio ? truth.rays.area.ratio_error : truth.rays.area.standard_error;
+  find_settled(truth);
   summarise_errors(truth, truth.rays.area);
   return truth;
 }

@@ -29,13 +29,14 @@ struct SceneTruth {
   images::Image area_picture;                  ///< shaded with `ratio`, linear RGB
   std::optional<metrics::FlipView> area_seen;  ///< that picture, rounded to half as it is saved, as FLIP sees it
   std::vector<std::uint8_t> mask;              ///< 1 where a pixel counts: a surface that faces the light
-  std::vector<float> penumbra_ws;              ///< width, metres: see scene::penumbra_width(); infinity where none is
-  std::vector<float> standard_errors;          ///< of `area`, pixel by pixel
-  double standard_error = 0.0;                 ///< root mean square over the pixels that count
+  std::vector<std::uint8_t> settled;   ///< 1 where all rays above the pixel's own plane agree, and its neighbours'
+  std::vector<float> penumbra_ws;      ///< width, metres: see scene::penumbra_width(); infinity where none is
+  std::vector<float> standard_errors;  ///< of `area`, pixel by pixel
+  double standard_error = 0.0;         ///< root mean square over the pixels that count
   double weight_rmse = 0.0;   ///< between the fraction of the light that is seen and `ratio`, over the same pixels
   double unanimous = 0.0;     ///< share of them whose rays all agree, and which therefore have no standard error
   std::int64_t lit = 0;       ///< of them: those that see any of the light
-  std::int64_t penumbra = 0;  ///< of them: those whose rays disagree with each other or with a neighbour's
+  std::int64_t penumbra = 0;  ///< of them: those that are not settled
 };
 
 /// Traces the receivers of a view; the pictures are left empty.

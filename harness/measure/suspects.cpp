@@ -102,7 +102,7 @@ void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {
   for (std::size_t i = 0; i < truth.mask.size(); ++i) {
     if (!truth.mask[i]) continue;
     span.add(cell.visibility.texels[i]);
-    lit += truth.area.texels[i] == 1.0f;
+    lit += truth.ratio.texels[i] == 1.0f;
     blocked += truth.area.texels[i] == 0.0f;
   }
   if (std::min(lit, blocked) < metrics::kFewestReceivers || span.least > span.most) return;

@@ -49,6 +49,7 @@ void add_truth_parts(std::vector<images::Part>& parts, const measure::SceneTruth
   add_part(parts, "truth.mask.acne", make(masks->acne));
   add_part(parts, "truth.mask.leak", make(masks->leak));
   add_part(parts, "truth.mask.contact_gap", make(masks->contact_gap));
+  add_part(parts, "truth.mask.wide_gap", make(masks->wide_gap));
 }
 
 /// What is kept beside visibility and truth.

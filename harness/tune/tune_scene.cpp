@@ -32,7 +32,8 @@ constexpr TuneMetric kMetrics[] = {
 /// The pictures of one view.
 struct Shot {
   images::Image visibility;
-  images::Image picture;  ///< only for FLIP
+  images::Image picture;   ///< only for FLIP
+  images::Image unbiased;  ///< visibility without any bias; only for leaks
 };
 
 double score_statistic(const TuneMetric& metric, images::Image visibility, const measure::SceneTruth& truth) {
@@ -43,7 +44,6 @@ double score_statistic(const TuneMetric& metric, images::Image visibility, const
 }
 
 double score_shot(const TuneMetric& metric, const Shot& shot, const TuneScene::View& view) {
-  const metrics::ArtefactLimits& limits = metrics::kArtefactLimits;
   const std::vector<float>& image = shot.visibility.texels;
   switch (metric.kind) {
     case TuneMetricKind::kStatistic: return score_statistic(metric, shot.visibility, *view.truth);
@@ -52,9 +52,9 @@ double score_shot(const TuneMetric& metric, const Shot& shot, const TuneScene::V
                                         view.truth->area_seen)
           .value_or(kWorstError);
     case TuneMetricKind::kAcne:
-      return metrics::rate_below(image, view.masks->acne, limits.acne_below).value_or(kWorstError);
+      return metrics::rate_acne(image, view.truth->rays.area.visibility, view.masks->acne).value_or(kWorstError);
     case TuneMetricKind::kLeak:
-      return metrics::rate_above(image, view.masks->leak, limits.leak_above).value_or(kWorstError);
+      return metrics::rate_leak(image, shot.unbiased.texels, view.masks->leak).value_or(kWorstError);
   }
   return kWorstError;
 }
@@ -133,6 +133,17 @@ std::optional<std::vector<double>> TuneScene::score(render::FilterPasses& passes
     shots[i].visibility = render::read_image(target_.texture(), 1);
     if (settings_.metric->kind != TuneMetricKind::kFlip) continue;
     shots[i].picture = render::shade(renderer_.shaders, gbuffer, target_.texture(), scene_, *views_[i].camera);
+  }
+  if (settings_.metric->kind == TuneMetricKind::kLeak) {
+    measure::draw_without_bias(
+        renderer_, *settings_.options, assets_, *light_, passes,
+        [&] {
+          passes.prefilter(light_->map);
+          for (std::size_t i = 0; i < views_.size(); ++i) {
+            passes.lookup(assets_.gbuffer(*views_[i].camera), light_->map, target_);
+            shots[i].unbiased = render::read_image(target_.texture(), 1);
+          }
+        });
   }
   std::vector<double> scores(views_.size());
   tbb::parallel_for(std::size_t{0}, scores.size(),

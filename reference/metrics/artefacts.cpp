@@ -14,10 +14,15 @@ std::optional<double> rate(std::span<const float> image, std::span<const std::ui
   for (std::size_t i = 0; i < image.size(); ++i) {
     if (!mask[i]) continue;
     count += 1.0;
-    if (!std::isfinite(image[i]) || is_fault(image[i])) faults += 1.0;
+    if (!std::isfinite(image[i]) || is_fault(i)) faults += 1.0;
   }
   if (count < kFewestReceivers) return std::nullopt;
   return faults / count;
+}
+
+/// Whether a filter is no brighter than a limit without bias, and brighter by more than that with it.
+bool is_lit_by_bias(float biased, float unbiased, double limit) {
+  return static_cast<double>(unbiased) <= limit && static_cast<double>(biased - unbiased) > limit;
 }
 
 /// Visits the 3 x 3 pixels about one until `visit` says no. False then, and at the image's edge.
@@ -37,38 +42,51 @@ bool visit_window(std::size_t i, int width, int height, Visit visit) {
 ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays) {
   const std::size_t pixels = rays.counts.size();
   const std::vector<std::uint8_t> none(pixels);
-  ArtefactMasks masks{.acne = none, .leak = none, .contact_gap = none};
+  ArtefactMasks masks{.acne = none, .leak = none, .contact_gap = none, .wide_gap = none};
   for (std::size_t i = 0; i < pixels; ++i) {
     if (!rays.counts[i]) continue;
     const bool settled = rays.area_settled[i] && rays.surroundings_settled[i];
     const bool touches = static_cast<double>(rays.first_blocker_ws[i]) <= rays.contact_ws;
-    if (settled && rays.area[i] == 1.0f && rays.surroundings[i] == 1.0f) masks.acne[i] = 1;
+    if (settled && rays.ratio[i] == 1.0f && rays.surroundings[i] == 1.0f) masks.acne[i] = 1;
     if (settled && rays.area[i] == 0.0f && rays.surroundings[i] == 0.0f && !touches) masks.leak[i] = 1;
-    if (rays.area[i] == 0.0f && touches) masks.contact_gap[i] = 1;
+    if (rays.area[i] == 0.0f) (touches ? masks.contact_gap : masks.wide_gap)[i] = 1;
   }
   return masks;
 }
 
-std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, double limit) {
+std::optional<double> rate_acne(std::span<const float> image, std::span<const float> area,
+                                std::span<const std::uint8_t> mask) {
   return rate(
-      image, mask, [&](float value) { return static_cast<double>(value) < limit; });
+      image, mask,
+      [&](std::size_t i) {
+        return static_cast<double>(image[i]) < kArtefactLimits.acne_below * static_cast<double>(area[i]);
+      });
 }
 
-std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, double limit) {
-  return rate(
-      image, mask, [&](float value) { return static_cast<double>(value) > limit; });
+std::optional<double> rate_leak(std::span<const float> image, std::span<const float> unbiased,
+                                std::span<const std::uint8_t> mask) {
+  constexpr double kLimit = kArtefactLimits.leak_above;
+  return rate(image, mask, [&](std::size_t i) {
+    return static_cast<double>(image[i]) > kLimit &&
+           (unbiased.empty() || !is_lit_by_bias(image[i], unbiased[i], kLimit));
+  });
 }
 
 std::optional<double> rate_contact_gap(std::span<const float> image, std::span<const float> unbiased,
-                                       std::span<const std::uint8_t> mask) {
+                                       const ArtefactMasks& masks) {
+  if (unbiased.empty()) return std::nullopt;
   constexpr double kLimit = kArtefactLimits.contact_gap_above;
-  std::vector<float> added(image.size());
-  std::vector<std::uint8_t> dark(mask.begin(), mask.end());
+  const auto is_gap = [&](std::size_t i) { return is_lit_by_bias(image[i], unbiased[i], kLimit); };
+  std::vector<std::uint8_t> counts(image.size());
+  int touched = 0, wide = 0;
   for (std::size_t i = 0; i < image.size(); ++i) {
-    added[i] = image[i] - unbiased[i];
-    if (!(static_cast<double>(unbiased[i]) <= kLimit)) dark[i] = 0;
+    const bool is_dark = masks.contact_gap[i] && static_cast<double>(unbiased[i]) <= kLimit;
+    const bool is_wide = masks.wide_gap[i] && is_gap(i);
+    touched += is_dark;
+    wide += is_wide;
+    counts[i] = is_dark || is_wide ? 1 : 0;
   }
-  return rate_above(added, dark, kLimit);
+  return std::max(touched, wide) < kFewestReceivers ? std::nullopt : rate(image, counts, is_gap);
 }
 
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,

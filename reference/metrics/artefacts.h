@@ -13,8 +13,9 @@ namespace shadowbench::metrics {
 
 /// What rays say of each receiver of a view.
 struct RaysAtReceivers {
-  std::span<const std::uint8_t> counts;        ///< 0: background, or turned away from the light
-  std::span<const float> area;                 ///< fraction of the light that is seen
+  std::span<const std::uint8_t> counts;  ///< 0: background, or turned away from the light
+  std::span<const float> area;           ///< fraction of the light that is seen
+  std::span<const float> ratio;          ///< share of the light that arrives, of what the receiver's plane lets by
   std::span<const std::uint8_t> area_settled;  ///< all rays of the pixel and of its eight neighbours agree
   std::span<const float> surroundings;         ///< fraction of a square, wider than any kernel of the run, that is lit
   std::span<const std::uint8_t> surroundings_settled;  ///< the same for the surroundings
@@ -24,15 +25,16 @@ struct RaysAtReceivers {
 
 /// Where each fault can occur; 1 inside.
 struct ArtefactMasks {
-  std::vector<std::uint8_t> acne;  ///< wholly lit, and so are the surroundings and the neighbouring pixels
+  std::vector<std::uint8_t> acne;  ///< no surface hides any of the light, here, around and at neighbouring pixels
   std::vector<std::uint8_t>
       leak;  ///< wholly blocked, with its neighbours, by something that does not touch the receiver
   std::vector<std::uint8_t> contact_gap;  ///< wholly blocked, by something that touches the receiver
+  std::vector<std::uint8_t> wide_gap;     ///< wholly blocked, by something farther: a gap only where bias lights it
 };
 
 /// The limits from which on an image has a fault that a person sees.
 struct ArtefactLimits {
-  double acne_below = 0.9;         ///< visibility of a wholly lit receiver
+  double acne_below = 0.9;         ///< visibility of a wholly lit receiver, as a share of the truth's
   double guard_texels = 1.0;       ///< the surroundings reach beyond the run's widest kernel by this much
   double leak_above = 0.1;         ///< visibility of a wholly blocked receiver
   double contact_gap_above = 0.5;  ///< what bias adds to a receiver, no brighter without it, that touches its blocker
@@ -47,19 +49,24 @@ inline constexpr int kFewestReceivers = 100;
 
 ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays);
 
-/// The share of a mask's pixels whose value is less than a limit. Pixels that are not finite are at fault.
-/// Gives nothing for a mask of fewer than kFewestReceivers.
-std::optional<double> rate_below(std::span<const float> image, std::span<const std::uint8_t> mask, double limit);
+/// The share of the mask's pixels that are darker than acne_below times `area`, the fraction of the light that is seen.
+/// Pixels that are not finite are at fault. Gives nothing for a mask of fewer than kFewestReceivers.
+std::optional<double> rate_acne(std::span<const float> image, std::span<const float> area,
+                                std::span<const std::uint8_t> mask);
 
-/// The share of a mask's pixels whose value is greater than a limit, under the same rules.
-std::optional<double> rate_above(std::span<const float> image, std::span<const std::uint8_t> mask, double limit);
+/// The share of the mask's pixels that are brighter than leak_above, under the same rules. Pixels that only bias lights
+/// do not count: `unbiased`, the same filter without any bias, is no brighter than leak_above there, and `image` is by
+/// more than that brighter. Where `unbiased` is empty, as little known, all count.
+std::optional<double> rate_leak(std::span<const float> image, std::span<const float> unbiased,
+                                std::span<const std::uint8_t> mask);
 
-/// The share of receivers, blocked by what touches them, that bias lights (peter-panning): of the mask's pixels that
-/// are not brighter than contact_gap_above in `unbiased`, the same filter without any bias, those that are brighter in
-/// `image` by more than that. Blur lights both images alike, and so does a filter that fades towards contacts: neither
-/// counts. Gives nothing where fewer than kFewestReceivers are dark without bias.
+/// The share of wholly blocked receivers that bias lights (peter-panning): of those that something touches, and that
+/// are not brighter than contact_gap_above in `unbiased`, the ones that are brighter in `image` by more than that. A
+/// gap may be wider than contact_texels: receivers with a farther blocker count where bias lights them as much, and not
+/// elsewhere. Blur lights both images alike, and so does a filter that fades towards contacts: neither counts. Gives
+/// nothing where fewer than kFewestReceivers of either kind count, or where `unbiased` is empty.
 std::optional<double> rate_contact_gap(std::span<const float> image, std::span<const float> unbiased,
-                                       std::span<const std::uint8_t> mask);
+                                       const ArtefactMasks& masks);
 
 /// The share of a filter's penumbra that is noisy: the image less the brute-force percentage-closer filter of its
 /// kernel deviates from its own mean over 3 x 3 pixels by more than noise_above. The penumbra is where the ray-traced

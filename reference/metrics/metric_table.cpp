@@ -74,7 +74,7 @@ std::vector<Metric> list_errors() {
       {"truth.penumbra", at<&V::truth, &TruthRecord::penumbra>, "pixels", kPositive, kNeither,
        "receivers at a penumbra",
        "receivers in a penumbra or beside one: those whose rays to the light disagree with each other or with a "
-       "neighbour's"},
+       "neighbour's, those below the receiver's own plane left out"},
       {"receivers", at<&V::receivers>, "pixels", kPositive, kNeither, "receivers",
        "pixels whose surface faces the light: those that count", kCount},
       {"nan", at<&V::nan>, "pixels", kPositive, kLess, "not finite", "pixels whose visibility is not finite", kCount},
@@ -105,23 +105,28 @@ std::vector<Metric> list_artefacts() {
   const ArtefactLimits& limits = kArtefactLimits;
   return {
       {"artefact.acne", at<&V::artefact, &ArtefactRecord::acne>, "share", kZeroToOne, kLess, "acne, first phase",
-       fmt::format("of the receivers whose whole area light and whole guard is lit: those that the image shows darker "
-                   "than {}. Guard: a square on the receiver's tangent plane, of half-width (widest kernel of the run "
+       fmt::format("of the receivers from which no other surface hides any of the area light, nor its centre from the "
+                   "guard: those that the image shows darker than {} of what they see of the light, of which the "
+                   "receiver's own plane may hide a part. Guard: a square on the receiver's tangent plane, of "
+                   "half-width (widest kernel of the run "
                    "+ {} texel), every ray of which is traced to the light's centre",
                    limits.acne_below, limits.guard_texels),
        kRate, kTabled, "--max-acne"},
       {"artefact.leak", at<&V::artefact, &ArtefactRecord::leak>, "share", kZeroToOne, kLess, "leak, first phase",
-       fmt::format("of the receivers whose area light and whole guard (see acne) is blocked, by something farther than "
-                   "{} texels along the light: those that the image shows brighter than {}",
-                   limits.contact_texels, limits.leak_above),
+       fmt::format(
+           "of the receivers whose area light and whole guard (see acne) is blocked, by something farther than "
+           "{} texels along the light: those that the image shows brighter than {}, unless the filter without any bias "
+           "does not, and bias makes them brighter by more than that",
+           limits.contact_texels, limits.leak_above),
        kRate, kTabled, "--max-leak"},
       {"artefact.contact_gap", at<&V::artefact, &ArtefactRecord::contact_gap>, "share", kZeroToOne, kLess,
        "contact gap, first phase",
        fmt::format(
-           "of the receivers whose area light is blocked by a surface within {} texels along the light, and which "
-           "the filter without any bias shows no brighter than {}: those that bias makes brighter by more than "
-           "{}. Blur, and a bound's own fade at contacts, light a receiver without bias too, and do not count",
-           limits.contact_texels, limits.contact_gap_above, limits.contact_gap_above),
+           "of the receivers whose area light is blocked, and which the filter without any bias shows no brighter "
+           "than {}: those that bias makes brighter by more than {}. Receivers whose blocker is farther than {} "
+           "texels along the light count only where bias does. Blur, and a bound's own fade at contacts, light a "
+           "receiver without bias too, and do not count",
+           limits.contact_gap_above, limits.contact_gap_above, limits.contact_texels),
        kRate, kTabled, "--max-contact-gap"},
       {"artefact.noise", at<&V::artefact, &ArtefactRecord::noise>, "share", kZeroToOne, kLess, "noise, first phase",
        fmt::format("of the receivers in the filter's own penumbra (where its ray-traced kernel is strictly between 0 "

@@ -151,14 +151,15 @@ std::vector<std::string> define_bias_terms(const records::BiasSweepRecord& sweep
         receivers < sweep.fewest_receivers ? fmt::format(" Absent: a rate needs {}.", sweep.fewest_receivers) : "");
   };
   return {count("Acne",
-                fmt::format("wholly lit, with their surroundings, the share with visibility below {}", sweep.acne_below)
+                fmt::format("wholly lit, with their surroundings, the share with visibility below {} of the truth's",
+                            sweep.acne_below)
                     .c_str(),
                 sweep.acne_receivers),
           count("Contact gap",
                 fmt::format(
                     "wholly blocked by something that touches them, less those that a filter shows brighter than {0} "
-                    "without bias, the share that bias makes brighter by more than {0}; absent where fewer than "
-                    "{1} are left",
+                    "without bias, the share that bias makes brighter by more than {0}; with those that bias "
+                    "lights as much behind something farther; absent where fewer than {1} are left of either kind",
                     sweep.gap_above, sweep.fewest_receivers)
                     .c_str(),
                 sweep.contact_receivers),

@@ -24,6 +24,10 @@ class TuneCommand : public ProgramTest {
   /// What the filter at its default scores in the view that is the scene's own.
   double default_score(const std::string& metric) const {
     EXPECT_EQ(tune("--filters poisson --budget 1 --metric " + metric).exit_code, 0);
+    return read_default_score();
+  }
+
+  double read_default_score() const {
     const nlohmann::json tuned = read_tuned();
     for (const auto& view : tuned["filters"][0]["views"])
       if (view["view"] == "as it is") return view["score"]["default"].get<double>();
@@ -89,6 +93,18 @@ TEST_F(TuneCommand, Scores_AreThoseOfRun) {
   const nlohmann::json error = read_results()["cells"][0]["error"];
   for (const char* metric : {"rmse", "mae", "p95", "flip"})
     EXPECT_EQ(default_score(metric), error[metric].get<double>()) << metric;
+}
+
+/// The depth bias lights what is blocked: that is a gap, and no leak.
+TEST_F(TuneCommand, Leak_IsThatOfRun_UnderMuchBias) {
+  const std::string same = " --scene cubes --map-size 512 --size 240x135 --filters poisson --bias constant:depth=0.1 ";
+  ASSERT_EQ(run("run --out report --rounds 1 --phases 1 --no-attribution --width own --pad-texels 4" + same).exit_code,
+            0);
+  const nlohmann::json artefact = read_results()["cells"][0]["artefact"];
+  EXPECT_GT(artefact["contact_gap"], 0.9);
+  EXPECT_LT(artefact["leak"], 0.01);
+  ASSERT_EQ(run("tune --out out --budget 1 --metric leak" + same).exit_code, 0);
+  EXPECT_EQ(read_default_score(), artefact["leak"].get<double>());
 }
 
 TEST_F(TuneCommand, Acne_IsTunedOverItsMask) {

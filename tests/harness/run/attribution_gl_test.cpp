@@ -43,19 +43,43 @@ class Attributed : public ::testing::Test {
     return nlohmann::json::parse(file)["cells"];
   }
 
-  /// A square over a floor that lies parallel to it, under a sun of this diameter that stands overhead.
-  std::string write_parallel_planes(double sun_deg) const {
+  /// A floor of this size and another object, both grey, under a light.
+  std::string write_scene(const std::string& light, double floor_m, const std::string& object) const {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / ".shadowbench-folder");  // the scene lies beside what the run writes
-    const std::filesystem::path file = folder_ / fmt::format("planes{}.toml", sun_deg);
+    const std::filesystem::path file = folder_ / "own.toml";
     std::ofstream(file) << fmt::format(
-        "title = 'planes'\n[camera]\nposition = [0, 5, 5]\ntarget = [0, 0, 0]\nvertical_fov_deg = 40\n[light]\n"
-        "direction = [0, -1, 0]\nangular_diameter_deg = {}\n[[material]]\nname = 'grey'\ncolor = [0.5, 0.5, 0.5]\n"
-        "[[object]]\nname = 'floor'\nshape = 'plane'\nsize = [4, 4]\ncenter = [0, 0, 0]\ncells = 22\n"
-        "material = 'grey'\n[[object]]\nname = 'square'\nshape = 'plane'\nsize = [1.5, 1.5]\ncenter = [0, 1, 0]\n"
-        "material = 'grey'\n",
-        sun_deg);
+        "title = 'own'\n[camera]\nposition = [0, 5, 5]\ntarget = [0, 0, 0]\nvertical_fov_deg = 40\n[light]\n{0}\n"
+        "[[material]]\nname = 'grey'\ncolor = [0.5, 0.5, 0.5]\n"
+        "[[object]]\nname = 'floor'\nshape = 'plane'\nsize = [{1}, {1}]\ncenter = [0, 0, 0]\ncells = 22\n"
+        "material = 'grey'\n[[object]]\nname = 'caster'\nmaterial = 'grey'\n{2}\n",
+        light, floor_m, object);
     return file.string();
+  }
+
+  /// A square over a floor that lies parallel to it, under a sun of this diameter that stands overhead.
+  std::string write_parallel_planes(double sun_deg) const {
+    return write_scene(fmt::format("direction = [0, -1, 0]\nangular_diameter_deg = {}", sun_deg), 4.0,
+                       "shape = 'plane'\nsize = [1.5, 1.5]\ncenter = [0, 1, 0]");
+  }
+
+  /// Expects acne on a floor whose own plane hides a part of a light close to it, without a bias and with the default
+  /// one, whose slope is bounded; and no more penumbra than the caster's.
+  void expect_acne_under(const std::string& light) {
+    options_.attribution = false;
+    options_.phases = 1;
+    const std::string scene = write_scene(light, 8.0, "shape = 'box'\nsize = [0.6, 0.6, 0.6]\ncenter = [0, 0.3, -1]");
+    const nlohmann::json cell = run(scene, "none", 512)[0];
+    const std::vector<float> area = part("truth.area"), acne = part("truth.mask.acne");
+    std::size_t cut = 0;
+    for (std::size_t i = 0; i < area.size(); ++i) cut += acne[i] == 1.0f && area[i] < 0.9f;
+    EXPECT_GT(cut, area.size() / 4) << "their own plane hides a part of the light";
+    EXPECT_GT(cell["artefact"]["acne"], 0.005);
+    EXPECT_LT(cell["truth"]["penumbra"], cell["receivers"].get<double>() / 4.0);
+    options_.bias = render::BiasRule::none();
+    EXPECT_GT(run(scene, "none", 512)[0]["artefact"]["acne"], 0.005);
+    options_.bias.constant.depth = 1.0;
+    EXPECT_EQ(run(scene, "none", 512)[0]["artefact"]["acne"], 0.0) << "to show more light than the truth is no acne";
   }
 
   /// Expects the parts of a filter's error to sum to it in every pixel.
@@ -163,6 +187,28 @@ TEST_F(Attributed, WithoutBias_AcneIsSeen_AndIsDiscretisation) {
   }
   options_.bias = {};
   for (const auto& cell : run("steps", "none,pcf2x2")) EXPECT_EQ(cell["artefact"]["acne"], 0.0) << cell["filter"];
+}
+
+TEST_F(Attributed, UnderAGrazingSun_AcneIsSeen) {
+  expect_acne_under("azimuth_deg = 60\nelevation_deg = 0.1\nangular_diameter_deg = 0.53");
+}
+
+TEST_F(Attributed, UnderALampPartlyBelowTheFloor_AcneIsSeen) {
+  expect_acne_under("type = 'point'\nposition = [-3.5, 0.06, 0]\nradius = 0.25");
+}
+
+/// Under a lamp and under the sun: few receivers are within 8 texels of what blocks them.
+TEST_F(Attributed, AGapWiderThanAContact_IsAGap_AndNoLeak) {
+  options_.sizes = {{480, 270}};
+  options_.attribution = false;
+  options_.phases = 1;
+  options_.bias = render::BiasRule::none();
+  options_.bias.constant.depth = 0.1;
+  for (const char* scene : {"lamp", "cubes"}) {
+    const nlohmann::json artefact = run(scene, "pcf2x2")[0]["artefact"];
+    EXPECT_GT(artefact["contact_gap"], 0.9) << scene;
+    EXPECT_LT(artefact["leak"], 0.001) << scene;
+  }
 }
 
 TEST_F(Attributed, TooMuchBias_OpensContactGaps) {

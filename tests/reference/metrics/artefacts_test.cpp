@@ -21,10 +21,20 @@ TEST(ArtefactMasks, FollowTheRays) {
   const std::vector<float> around = {1, 0.9f, 1, 0, 0.5f, 0.5f, 0.2f};
   const std::vector<std::uint8_t> around_settled = {1, 0, 1, 1, 0, 0, 0};
   const std::vector<float> blocker = {kFar, kFar, kFar, 3.0f, 0.1f, 0.1f, 3.0f};
-  const ArtefactMasks masks = make_artefact_masks({counts, area, area_settled, around, around_settled, blocker, 0.2});
+  const ArtefactMasks masks =
+      make_artefact_masks({counts, area, area, area_settled, around, around_settled, blocker, 0.2});
   EXPECT_EQ(masks.acne, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(masks.leak, (std::vector<std::uint8_t>{0, 0, 0, 1, 0, 0, 0}));
   EXPECT_EQ(masks.contact_gap, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0}));
+  EXPECT_EQ(masks.wide_gap, (std::vector<std::uint8_t>{0, 0, 0, 1, 0, 0, 1}));
+}
+
+/// Two receivers see 0.7 of the light: the horizon hides the rest from the first, a caster a part of it from the other.
+TEST(ArtefactMasks, WhatTheReceiversOwnPlaneHides_IsLit) {
+  const std::vector<std::uint8_t> ones(2, 1);
+  const std::vector<float> area(2, 0.7f), ratio = {1.0f, 0.9f}, around(2, 1.0f), blocker(2, kFar);
+  EXPECT_EQ(make_artefact_masks({ones, area, ratio, ones, around, ones, blocker, 0.2}).acne,
+            (std::vector<std::uint8_t>{1, 0}));
 }
 
 TEST(ArtefactMasks, LeaveOutWhatIsNotSettled) {
@@ -36,7 +46,8 @@ TEST(ArtefactMasks, LeaveOutWhatIsNotSettled) {
   const std::vector<float> around = {1, 1, 1, 0, 0, 0, 0, 1};
   const std::vector<std::uint8_t> around_settled = {1, 1, 0, 1, 1, 1, 0, 1};
   const std::vector<float> blocker(8, 3.0f);
-  const ArtefactMasks masks = make_artefact_masks({counts, area, area_settled, around, around_settled, blocker, 0.2});
+  const ArtefactMasks masks =
+      make_artefact_masks({counts, area, area, area_settled, around, around_settled, blocker, 0.2});
   EXPECT_EQ(masks.acne, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(masks.leak, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0}));
 }
@@ -47,19 +58,51 @@ TEST(ArtefactRates, CountFaultsOverTheMask) {
   for (std::size_t i = 0; i < 200; ++i) mask[i] = 1;
   for (std::size_t i = 0; i < 10; ++i) image[i] = 0.2f;
   for (std::size_t i = 300; i < 350; ++i) image[i] = 0.0f;  // outside the mask
-  EXPECT_EQ(rate_below(image, mask, kArtefactLimits.acne_below), 10.0 / 200.0);
-  EXPECT_EQ(rate_above(image, mask, kArtefactLimits.leak_above), 1.0);
+  const std::vector<float> lit(400, 1.0f);
+  EXPECT_EQ(rate_acne(image, lit, mask), 10.0 / 200.0);
+  EXPECT_EQ(rate_leak(image, {}, mask), 1.0);
   image[20] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(rate_below(image, mask, kArtefactLimits.acne_below), 11.0 / 200.0) << "what is not finite is at fault";
+  EXPECT_EQ(rate_acne(image, lit, mask), 11.0 / 200.0) << "what is not finite is at fault";
+}
+
+TEST(ArtefactRates, AcneIsDarkerThanTheTruth_NotWhatIsRight) {
+  const std::vector<float> area(400, 0.7f);
+  const std::vector<std::uint8_t> all(400, 1);
+  for (const float right : {0.7f, 1.0f}) EXPECT_EQ(rate_acne(std::vector<float>(400, right), area, all), 0.0) << right;
+  EXPECT_EQ(rate_acne(std::vector<float>(400, 0.6f), area, all), 1.0);
+}
+
+/// Of 400 receivers: 100 lit by bias alone, 100 a little brighter by it than the limit, 100 lit without it, 100 dark.
+TEST(ArtefactRates, WhatOnlyBiasLights_IsNoLeak) {
+  std::vector<float> unbiased(400, 0.0f), image(400, 0.0f);
+  for (std::size_t i = 0; i < 300; ++i) {
+    unbiased[i] = i < 100 ? 0.0f : i < 200 ? 0.08f : 0.2f;
+    image[i] = i < 100 ? 0.8f : i < 200 ? 0.12f : 0.8f;
+  }
+  const std::vector<std::uint8_t> all(400, 1);
+  EXPECT_EQ(rate_leak(image, unbiased, all), 200.0 / 400.0);
+  EXPECT_EQ(rate_leak(image, {}, all), 300.0 / 400.0) << "without bias it is not known";
+  image[399] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(rate_leak(image, unbiased, all), 201.0 / 400.0);
 }
 
 TEST(ArtefactRates, OverTooFewReceivers_AreAbsent) {
   std::vector<std::uint8_t> mask(400, 0);
-  EXPECT_FALSE(rate_below(std::vector<float>(400), mask, kArtefactLimits.acne_below));
+  EXPECT_FALSE(rate_leak(std::vector<float>(400), {}, mask));
   for (std::size_t i = 0; i + 1 < kFewestReceivers; ++i) mask[i] = 1;
-  EXPECT_FALSE(rate_below(std::vector<float>(400), mask, kArtefactLimits.acne_below));
+  EXPECT_FALSE(rate_leak(std::vector<float>(400), {}, mask));
   mask[399] = 1;
-  EXPECT_TRUE(rate_below(std::vector<float>(400), mask, kArtefactLimits.acne_below));
+  EXPECT_TRUE(rate_leak(std::vector<float>(400), {}, mask));
+}
+
+/// Receivers that something touches, the first `touched` of all; the others have a farther blocker.
+ArtefactMasks make_gap_masks(std::size_t touched, std::size_t all) {
+  ArtefactMasks masks;
+  for (std::size_t i = 0; i < all; ++i) {
+    masks.contact_gap.push_back(i < touched ? 1 : 0);
+    masks.wide_gap.push_back(i < touched ? 0 : 1);
+  }
+  return masks;
 }
 
 /// Of 400 receivers at a contact: 100 lit without bias, 100 lit by it, 100 dark either way, 100 a little brighter.
@@ -70,12 +113,25 @@ TEST(ContactGap, IsWhatBiasLights_NotWhatIsLitWithoutIt) {
     if (i >= 100 && i < 200) image[i] = 1.0f;
     if (i >= 300) image[i] = 0.3f;
   }
-  const std::vector<std::uint8_t> all(400, 1);
+  const ArtefactMasks all = make_gap_masks(400, 400);
   EXPECT_EQ(rate_contact_gap(image, unbiased, all), 100.0 / 300.0);
   EXPECT_EQ(rate_contact_gap(unbiased, unbiased, all), 0.0) << "a blur is no gap";
   image[399] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(rate_contact_gap(image, unbiased, all), 101.0 / 300.0);
   EXPECT_FALSE(rate_contact_gap(image, std::vector<float>(400, 0.6f), all)) << "nothing is dark without bias";
+  EXPECT_FALSE(rate_contact_gap(image, {}, all)) << "what bias lights is not known";
+}
+
+TEST(ContactGap, WiderThanAContact_IsCountedWhereBiasLights) {
+  const std::vector<float> unbiased(400, 0.0f);
+  std::vector<float> image(400, 0.0f);
+  std::fill(image.begin() + 150, image.begin() + 250, 1.0f);
+  EXPECT_EQ(rate_contact_gap(image, unbiased, make_gap_masks(200, 400)), 100.0 / 250.0);
+  EXPECT_EQ(rate_contact_gap(image, unbiased, make_gap_masks(150, 400)), 100.0 / 250.0);
+  EXPECT_EQ(rate_contact_gap(image, unbiased, make_gap_masks(0, 400)), 1.0) << "nothing touches, all gaps are wide";
+  image[150] = 0.0f;
+  EXPECT_FALSE(rate_contact_gap(image, unbiased, make_gap_masks(99, 400))) << "99 of either kind";
+  EXPECT_FALSE(rate_contact_gap(unbiased, unbiased, make_gap_masks(0, 400))) << "nor is the absence of wide gaps known";
 }
 
 /// A penumbra of 40 x 40 pixels whose percentage-closer filter is a ramp, and an image that differs by `noise(x, y)`.
