@@ -114,13 +114,14 @@ TEST_F(BiasCommand, BadInput_IsRefused) {
   expect_refusal("bias --out out --scene no/such.toml", 3, {"no/such.toml"});
   expect_refusal("bias --out out --filters tent3", 2, {"'tent3'", "tent3x3"});
   expect_refusal("bias --out out --filters none,none", 2, {"names 'none' twice"});
-  expect_refusal("bias --out out --filter-file " + user_filter("broken_glsl.glsl"), 5, {"broken_glsl.glsl"});
+  expect_refusal("bias --size 240x135 --map-size 128 --out out --filter-file " + user_filter("broken_glsl.glsl"), 5,
+                 {"broken_glsl.glsl"});
   expect_refusal("bias --out out --map-size 0", 2, {"--map-size", "'0'"});
   expect_refusal("bias --out out --size 12", 2, {"--size", "'12'"});
   expect_refusal("bias --out out --size 8x8 --map-size 64 --filters none", 3,
                  {"wholly lit", "100 are needed", "--size"});
   write("file", "");
-  expect_refusal("bias --out file/out --size 64x36 --map-size 64", 6, {"file"});
+  expect_refusal("bias --scene steps --filters none --out file/out --size 64x36 --map-size 64", 6, {"file"});
 }
 
 }  // namespace

@@ -66,7 +66,8 @@ TEST_F(LayersRun, UsersFilter_WithParametersInAnyOrder_IsScored) {
 }
 
 TEST_F(LayersRun, FitsAreAnAxis) {
-  const json cells = run_cells("--grids --scene avenue --filters none --fit tight --fit view --fit cascades");
+  const json cells = run_cells(
+      "--grids --no-attribution --phases 1 --scene avenue --filters none --fit tight --fit view --fit cascades");
   std::set<std::string> fits, keys;
   for (const json& cell : cells) {
     fits.insert(cell["fit"]);
@@ -79,7 +80,8 @@ TEST_F(LayersRun, FitsAreAnAxis) {
 
 TEST_F(LayersRun, EachOfSeveralLights_IsMeasuredByItself_UsersFiltersToo) {
   write("mine.glsl", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/pcf2x2.glsl"));
-  const std::string filters = " --filters pcf2x2,mine --filter-file " + (folder() / "mine.glsl").string();
+  const std::string filters =
+      " --no-attribution --filters pcf2x2,mine --filter-file " + (folder() / "mine.glsl").string();
   const json cells = run_cells("--scene three_lights" + filters);
   ASSERT_EQ(cells.size(), 6u);
   std::set<double> errors;
@@ -100,7 +102,8 @@ TEST_F(LayersRun, EachOfSeveralLights_IsMeasuredByItself_UsersFiltersToo) {
 
 TEST_F(LayersRun, AllLightsAtOnce_AreDrawnWhereAllAreMeasured) {
   const std::string settings =
-      "run --grids --out out --size 160x90 --map-size 128 --rounds 1 --scene three_lights --filters none";
+      "run --grids --no-attribution --phases 1 --out out --size 96x54 --map-size 128 --rounds 1 --scene three_lights "
+      "--filters none";
   ASSERT_EQ(run(settings + " --light-name bulb").exit_code, 0);
   EXPECT_EQ(all()["cells"][0]["images"]["all_lights"], nullptr);
   ASSERT_EQ(run(settings).exit_code, 0) << "two lights more";

@@ -16,9 +16,10 @@ class Suspects : public ProgramTest {
  protected:
   /// Runs a file of the folder of wrong filters beside three others, and gives its cell.
   nlohmann::json measure(const std::string& filter) const {
-    const Outcome outcome = run(
-        "run --grids --out out --scene cubes --size 160x90 --map-size 256 --rounds 1 --filters none,pcf2x2,tent3x3," +
-        filter + " --filter-file " + user_filter("wrong/" + filter + ".glsl"));
+    const Outcome outcome =
+        run("run --grids --no-attribution --out out --scene cubes --size 160x90 --map-size 256 --rounds 1 --filters "
+            "none,pcf2x2,tent3x3," +
+            filter + " --filter-file " + user_filter("wrong/" + filter + ".glsl"));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(filter + " is suspect: "));
     EXPECT_THAT(read_text(folder() / "out" / "index.html"), HasSubstr(filter + " is suspect: "));
@@ -99,7 +100,8 @@ TEST_F(Suspects, AFilterThatReadsAsFarAsItDeclares_IsNone) {
 /// Every built-in filter on every scene, with parameters too that change what is read.
 TEST_F(Suspects, BuiltInFilters_AreNone) {
   const Outcome outcome =
-      run("run --out out --size 160x90 --map-size 512 --rounds 1 --no-attribution --no-truth --no-grids --filters "
+      run("run --out out --size 160x90 --map-size 512 --rounds 1 --phases 1 --no-attribution --no-truth --no-grids "
+          "--filters "
           "all,teaching,vsm:radius=0,esm:radius=8,esm:combine=log,poisson:radius=0,gather_pcf:radius=3,"
           "pcss:max_radius=20,dpcf:max_radius=20,poisson:radius=20,rotation=interleaved-gradient");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

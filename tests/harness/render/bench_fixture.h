@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,20 @@ inline scene::FitMode fit_of(const scene::Scene& scene) {
   return scene.name == "avenue" ? scene::FitMode::kCascades : scene::FitMode::kTight;
 }
 
+/// One context for all tests of a program, made current: a test before this one may have had one of its own.
+inline gl::Context& shared_context() {
+  static gl::ContextChoice choice = gl::create_context(gl::Backend::kAuto);
+  choice.context->make_current();
+  return *choice.context;
+}
+
+/// The programs of that context that do not depend on a filter: compiled by the first test that draws with them.
+inline render::ShaderLibrary& shared_shaders() {
+  shared_context();  // is made first, and so outlives them
+  static render::ShaderLibrary shaders(options::find_resources().shaders);
+  return shaders;
+}
+
 /// A scene drawn with one filter, everything at hand that the harness itself uses.
 class Bench {
  public:
@@ -35,7 +50,6 @@ class Bench {
         const render::MapSettings& map = {}, double pad_texels = 6.0)
       : context_(context),
         scene_(scene),
-        shaders_(options::find_resources().shaders),
         geometry_(scene),
         layers_(scene::fit_layers(scene, {.mode = fit_of(scene),
                                           .map_size = map_size,
@@ -98,6 +112,7 @@ class Bench {
            static_cast<std::size_t>(r.pixel.x);
   }
 
+  const scene::Scene& scene() const { return scene_; }
   render::ShaderLibrary& shaders() { return shaders_; }
   render::GBuffer& gbuffer() { return gbuffer_; }
   render::ShadowMap& map() { return map_; }
@@ -107,7 +122,7 @@ class Bench {
  private:
   gl::Context& context_;
   const scene::Scene& scene_;
-  render::ShaderLibrary shaders_;
+  render::ShaderLibrary& shaders_ = shared_shaders();
   render::Geometry geometry_;
   std::vector<scene::LightFrustum> layers_;
   filters::RangeRule range_;
@@ -116,13 +131,6 @@ class Bench {
   render::GBuffer gbuffer_;
   render::ImageTarget target_;
 };
-
-/// One context for all tests of a program, made current: a test before this one may have had one of its own.
-inline gl::Context& shared_context() {
-  static gl::ContextChoice choice = gl::create_context(gl::Backend::kAuto);
-  choice.context->make_current();
-  return *choice.context;
-}
 
 /// A camera that looks straight down.
 inline scene::Camera look_down(const glm::vec3& from) {
@@ -137,6 +145,22 @@ inline scene::Scene load_builtin(const std::string& name) {
   scene::Scene scene = scene::load(name.substr(0, name.find(kBy)), {.scenes_folder = options::find_resources().scenes});
   scene.name = name;
   return scene;
+}
+
+/// A built-in scene drawn with all defaults, kept until another is asked for: the tests of one scene follow each other.
+/// Who changes what it draws makes a bench of its own.
+inline Bench& keep_bench(const std::string& scene_name, int map_size, int width, int height) {
+  struct Kept {
+    scene::Scene scene;
+    std::array<int, 3> sizes;
+    Bench bench{shared_context(), scene, sizes[0], sizes[1], sizes[2]};
+  };
+  shared_shaders();
+  static std::unique_ptr<Kept> kept;
+  const std::array sizes{map_size, width, height};
+  if (!kept || kept->scene.name != scene_name || kept->sizes != sizes)
+    kept.reset(new Kept{load_builtin(scene_name), sizes});
+  return kept->bench;
 }
 
 inline std::vector<std::string> builtin_scenes() {

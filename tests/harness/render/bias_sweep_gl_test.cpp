@@ -77,7 +77,7 @@ struct Sweep {
 };
 
 constexpr double kAngles[] = {1.0, 20.0, 60.0, 85.0, 89.0};
-constexpr int kSizes[] = {64, 512, 4096};
+constexpr int kSizes[] = {64, 2048};
 
 class PlaneSweep : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
 

@@ -1,5 +1,5 @@
-// The camera moves, and the visibility of places in the world stays what it was, whichever filter asks: on every
-// built-in scene.
+// The camera moves, and the visibility of places in the world stays what it was, whichever filter asks: for every kind
+// of light, and for bars as thin as texels.
 
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
@@ -13,8 +13,8 @@ namespace {
 using filters::FilterRequest;
 using filters::Receiver;
 
-constexpr int kMapSize = 384;  // texels larger than pixels: few lit or dark places fall between the pixels of a view
-constexpr int kViewWidth = 640, kViewHeight = 360;
+constexpr int kMapSize = 288;  // texels larger than pixels: few lit or dark places fall between the pixels of a view
+constexpr int kViewWidth = 480, kViewHeight = 270;
 constexpr std::uint32_t kSeeds = 24;
 constexpr double kShaded = 0.9;     // wide kernels leave much light behind thin casters
 constexpr double kTurn = 0.45;      // of the camera around the scene, rad
@@ -143,7 +143,7 @@ TEST_P(CameraIndependence, OtherCamera_SeesTheSameVisibilityInTheWorld) {
   }
   std::printf("%s %s: %d places in both views, %d shaded, %d seen otherwise\n", scene_name.c_str(), filter.c_str(),
               matched, shaded, other);
-  EXPECT_GT(matched, 10000);
+  EXPECT_GT(matched, 5000);
   EXPECT_GT(shaded, matched / 100);
   // Where shadows harden at contacts, they are as sharp as the map, and pixels miss more: 251 of 85 681 were measured.
   const bool hardens = !request_of(filter).spec.claims.empty();
@@ -151,7 +151,7 @@ TEST_P(CameraIndependence, OtherCamera_SeesTheSameVisibilityInTheWorld) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFilters, CameraIndependence,
-                         ::testing::Combine(::testing::ValuesIn(scenes_of_all_lights()),
+                         ::testing::Combine(::testing::Values("cubes", "fence", "lamp", "lantern"),
                                             ::testing::ValuesIn(filter_ids())),
                          [](const auto& each) { return std::get<0>(each.param) + "_" + std::get<1>(each.param); });
 

@@ -77,7 +77,7 @@ class CookieLight {
     return {metres(pixel % kSide), 0.0, metres(pixel / kSide)};
   }
 
-  int compiled() { return bench_.shaders().compiled(); }
+  int compiled() { return shaders_.compiled(); }
 
  private:
   static constexpr int kSide = 160;
@@ -85,13 +85,14 @@ class CookieLight {
   images::Image shade(float visibility) {
     images::Image image(kSide, kSide, 1);
     for (float& value : image.texels) value = visibility;
-    return render::shade(bench_.shaders(), bench_.gbuffer(), render::upload_image(image), scene_,
-                         scene_.cameras.front(), range_);
+    return render::shade(shaders_, bench_.gbuffer(), render::upload_image(image), scene_, scene_.cameras.front(),
+                         range_);
   }
 
   scene::Scene scene_;
   filters::RangeRule range_;
   Bench bench_;
+  render::ShaderLibrary shaders_{options::find_resources().shaders};  ///< of its own: its variants are counted
 };
 
 /// A lamp with the axes that its right and its top must be.

@@ -29,6 +29,8 @@ class Attributed : public ::testing::Test {
     options_.out = folder_;
     options_.command = {"test"};
     options_.all_parts = true;
+    options_.phases = 1;
+    options_.pictures = false;
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -111,6 +113,8 @@ class Attributed : public ::testing::Test {
 };
 
 TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
+  options_.pictures = true;
+  options_.sizes = {{120, 68}};
   const nlohmann::json cells = run("cubes", "none,pcf2x2,tent3x3,poisson,vsm,esm");
   ASSERT_EQ(cells.size(), 6u);
   for (const auto& cell : cells) {
