@@ -20,11 +20,12 @@ struct OcclusionContext : EmbreeContext {
 
 #if SHADOWBENCH_EMBREE_MAJOR == 3
 /// Sets `tfar` of every active ray that something blocks to minus infinity. Filter functions find `dimming` in their
-/// context. The rays of a packet visit the same parts of the scene: Embree is told so, and blocks the same rays.
+/// context. The rays of a packet visit the same parts of the scene: Embree is told so, and blocks the same rays; but it
+/// would report hits of surfaces that dim in any order and as often as it likes, so not where there are any.
 inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays, Dimming* dimming = nullptr) {
   OcclusionContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (!dimming) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   context.dimming = dimming;
   rtcOccluded16(active, scene, &context, rays);
 }
@@ -42,7 +43,7 @@ inline void occlude_packet(const int* active, RTCScene scene, RTCRay16* rays, Di
   context.dimming = dimming;
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  if (!dimming) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   arguments.context = &context;
   rtcOccluded16(active, scene, rays, &arguments);
 }

@@ -123,6 +123,7 @@ struct Occluders::Impl {
   glm::vec3 largest{0.0f};  ///< largest coordinate per axis, by magnitude
   std::int64_t triangles = 0;
   std::int64_t degenerate = 0;
+  bool any_dims = false;  ///< whether a surface only dims rays
   std::vector<std::unique_ptr<HoleTest>> hole_tests;
 
   Impl() = default;
@@ -163,6 +164,7 @@ struct Occluders::Impl {
       hole_tests.push_back(std::make_unique<HoleTest>(HoleTest{*mesh.cut_out, std::move(indices)}));
       rtcSetGeometryUserData(geometry, hole_tests.back().get());
       const bool dims = mesh.cut_out->dims;  // such a surface is met where its first hit is
+      any_dims = any_dims || dims;
       rtcSetGeometryOccludedFilterFunction(geometry, dims ? &dim_rays : &forgive_holes);
       if (!dims) rtcSetGeometryIntersectFilterFunction(geometry, &forgive_holes);
     }
@@ -190,7 +192,8 @@ void Occluders::find_blocked(RayPacket& packet) const {
   const float largest = std::max({impl_->largest.x, impl_->largest.y, impl_->largest.z});
   packet.transmittance.fill(1.0f);
   Dimming dimming(packet.transmittance, origin_offset(largest, largest));
-  occlude_packet(packet.active.data(), impl_->scene, reinterpret_cast<RTCRay16*>(&packet), &dimming);
+  occlude_packet(packet.active.data(), impl_->scene, reinterpret_cast<RTCRay16*>(&packet),
+                 impl_->any_dims ? &dimming : nullptr);
   for (std::size_t i = 0; i < packet.transmittance.size(); ++i)
     packet.transmittance[i] = packet.reach[i] < 0.0f ? 0.0f : packet.transmittance[i];
 }
