@@ -30,9 +30,13 @@ class FaultCache : public FaultTest {
 
   std::vector<std::filesystem::path> files() const {
     std::vector<std::filesystem::path> found = list_files("cache");
-    // The one of a single layer is of the supersampled picture, which the run's work does not count.
-    std::erase_if(
-        found, [](const auto& path) { return path.extension() != ".truth" || count_layers(path).starts_with("1x"); });
+    // That of a single layer is of the supersampled picture, which the run's work does not count; one of none says that
+    // a view was traced.
+    const auto counts = [](const std::filesystem::path& path) {
+      const std::string layers = path.extension() == ".truth" ? count_layers(path) : "";
+      return !layers.empty() && !layers.starts_with("0x") && !layers.starts_with("1x");
+    };
+    std::erase_if(found, [&](const auto& path) { return !counts(path); });
     std::sort(found.begin(), found.end());
     return found;
   }
