@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 
 namespace shadowbench::metrics {
 namespace {
@@ -77,16 +78,15 @@ std::optional<double> rate_contact_gap(std::span<const float> image, std::span<c
   if (unbiased.empty()) return std::nullopt;
   constexpr double kLimit = kArtefactLimits.contact_gap_above;
   const auto is_gap = [&](std::size_t i) { return is_lit_by_bias(image[i], unbiased[i], kLimit); };
-  std::vector<std::uint8_t> counts(image.size());
-  int touched = 0, wide = 0;
+  std::vector<std::uint8_t> touched(image.size()), wide(image.size());
   for (std::size_t i = 0; i < image.size(); ++i) {
-    const bool is_dark = masks.contact_gap[i] && static_cast<double>(unbiased[i]) <= kLimit;
-    const bool is_wide = masks.wide_gap[i] && is_gap(i);
-    touched += is_dark;
-    wide += is_wide;
-    counts[i] = is_dark || is_wide ? 1 : 0;
+    touched[i] = masks.contact_gap[i] && static_cast<double>(unbiased[i]) <= kLimit ? 1 : 0;
+    wide[i] = masks.wide_gap[i] && is_gap(i) ? 1 : 0;
   }
-  return std::max(touched, wide) < kFewestReceivers ? std::nullopt : rate(image, counts, is_gap);
+  // A few are texels that miss the blocker, which acne hides without bias.
+  if (std::ranges::count(wide, 1) >= kFewestReceivers)
+    std::ranges::transform(touched, wide, touched.begin(), std::bit_or());
+  return rate(image, touched, is_gap);
 }
 
 std::optional<double> rate_noise(std::span<const float> image, std::span<const double> closer,

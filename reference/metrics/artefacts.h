@@ -62,9 +62,9 @@ std::optional<double> rate_leak(std::span<const float> image, std::span<const fl
 
 /// The share of wholly blocked receivers that bias lights (peter-panning): of those that something touches, and that
 /// are not brighter than contact_gap_above in `unbiased`, the ones that are brighter in `image` by more than that. A
-/// gap may be wider than contact_texels: receivers with a farther blocker count where bias lights them as much, and not
-/// elsewhere. Blur lights both images alike, and so does a filter that fades towards contacts: neither counts. Gives
-/// nothing where fewer than kFewestReceivers of either kind count, or where `unbiased` is empty.
+/// gap may be wider than contact_texels: receivers with a farther blocker count where bias lights kFewestReceivers of
+/// them as much, and those alone. Blur lights both images alike, and so does a filter that fades towards contacts:
+/// neither counts. Gives nothing where fewer than kFewestReceivers count, or where `unbiased` is empty.
 std::optional<double> rate_contact_gap(std::span<const float> image, std::span<const float> unbiased,
                                        const ArtefactMasks& masks);
 

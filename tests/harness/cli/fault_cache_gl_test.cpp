@@ -82,7 +82,8 @@ TEST_F(FaultCache, TruncatedFiles_AreTracedAgain_AndKept) {
 }
 
 TEST_F(FaultCache, FlippedBits_AreNoticed) {
-  for (const auto& path : files()) flip_bit(path, std::filesystem::file_size(path) / 2);
+  // In the middle of a file of equal values a bit may change nothing.
+  for (const auto& path : files()) flip_bit(path, split_file(path).first.size() + 1);
   expect_traced_again(files().size());
   expect_traced_again(0);
 }

@@ -126,7 +126,7 @@ TEST(ContactGap, WiderThanAContact_IsCountedWhereBiasLights) {
   const std::vector<float> unbiased(400, 0.0f);
   std::vector<float> image(400, 0.0f);
   std::fill(image.begin() + 150, image.begin() + 250, 1.0f);
-  EXPECT_EQ(rate_contact_gap(image, unbiased, make_gap_masks(200, 400)), 100.0 / 250.0);
+  EXPECT_EQ(rate_contact_gap(image, unbiased, make_gap_masks(200, 400)), 50.0 / 200.0) << "50 are too few for a gap";
   EXPECT_EQ(rate_contact_gap(image, unbiased, make_gap_masks(150, 400)), 100.0 / 250.0);
   EXPECT_EQ(rate_contact_gap(image, unbiased, make_gap_masks(0, 400)), 1.0) << "nothing touches, all gaps are wide";
   image[150] = 0.0f;
