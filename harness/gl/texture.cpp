@@ -10,19 +10,6 @@
 namespace shadowbench::gl {
 namespace {
 
-void require_size(std::string_view label, int width, int height) {
-  GLint limit = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
-  if (width < 1 || height < 1) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("{}: a size of {}x{} was asked for; both sides must be 1 or more", label, width, height));
-  }
-  if (width > limit || height > limit) {
-    throw Error(ErrorKind::kUsage, fmt::format("{}: a size of {}x{} was asked for; this GL gives at most {}x{}", label,
-                                               width, height, limit, limit));
-  }
-}
-
 // Transfers depend on global state that other code may have changed.
 void reset_transfer_state() {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
@@ -35,9 +22,22 @@ void reset_transfer_state() {
 
 }  // namespace
 
+void require_texture_size(std::string_view label, int width, int height) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+  if (width < 1 || height < 1) {
+    throw Error(ErrorKind::kUsage,
+                fmt::format("{}: a size of {}x{} was asked for; both sides must be 1 or more", label, width, height));
+  }
+  if (width > limit || height > limit) {
+    throw Error(ErrorKind::kUsage, fmt::format("{}: a size of {}x{} was asked for; this GL gives at most {}x{}", label,
+                                               width, height, limit, limit));
+  }
+}
+
 Texture::Texture(std::string_view label, GLenum internal_format, int width, int height, int levels, int samples)
     : format_(&pixel_format(internal_format)), width_(width), height_(height), levels_(levels), samples_(samples) {
-  require_size(label, width, height);
+  require_texture_size(label, width, height);
   handle_ = Handle<GL_TEXTURE>(label, samples > 0 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D);
   if (samples > 0)
     glTextureStorage2DMultisample(id(), samples, internal_format, width, height, GL_TRUE);

@@ -11,6 +11,9 @@
 
 namespace shadowbench::gl {
 
+/// Throws Error(kUsage) for a size below 1 or above what this GL gives a texture; `label` says of what.
+void require_texture_size(std::string_view label, int width, int height);
+
 /// Owns a 2D texture of immutable size and format; new ones filter nearest and clamp to the edge.
 /// Rows of all transfers run bottom to top, as GL's window coordinates do, and are not padded.
 class Texture {

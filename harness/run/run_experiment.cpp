@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/content_hash.h"
 #include "base/error.h"
+#include "harness/gl/texture.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
@@ -86,6 +87,8 @@ class Experiment {
     require_no_sweep();
     RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
     for (PlannedTask& task : plan.tasks) task.is_traced = cache_.has(name_traces(plan.scenes[task.scene], task));
+    for (const PlannedTask& task : plan.tasks)
+      gl::require_texture_size("--map-size", task.task.map_size, task.task.map_size);
     announce(plan);
     if (!options_.part.is_task()) lock_.emplace(options_.out, options_.force || options_.part.is_worker());
     require_writable(options_.out);

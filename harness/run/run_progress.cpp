@@ -1,5 +1,6 @@
 #include "harness/run/run_progress.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "harness/run/time_forecast.h"
@@ -11,6 +12,8 @@ using options::Work;
 
 /// Each image that a step traces takes it so much of the rest of its way.
 constexpr double kShareOfTrace = 0.8;
+/// Until all is done, whatever was presumed of it.
+constexpr double kMostShare = 0.999;
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
@@ -70,13 +73,15 @@ void RunProgress::count(int cells) {
 void RunProgress::finish() {
   const std::scoped_lock lock(mutex_);
   meter_.finish();
+  finished_ = true;
   what_ = "done";
   last_share_ = -1.0;
   show();
 }
 
 void RunProgress::show() {
-  const options::WorkAhead ahead = meter_.ahead();
+  options::WorkAhead ahead = meter_.ahead();
+  if (!finished_) ahead.share = std::min(ahead.share, kMostShare);
   if (ahead.share - last_share_ < 1e-3) return;
   last_share_ = ahead.share;
   shown_.show(done_, what_, ahead);

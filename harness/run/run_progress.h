@@ -43,6 +43,7 @@ class RunProgress {
   double report_cost_ = 0.0;
   std::string what_;
   double last_share_ = -1.0;
+  bool finished_ = false;
   double traced_ = 0.0;  ///< of the step, by the images that are traced
 
   void begin_step(options::Work kind, double cost, const std::string& what);
