@@ -121,7 +121,10 @@ std::optional<double> measure_seam(std::span<const LayerImage> layers, int width
     return change;
   };
   const auto add = [&](std::size_t a, std::size_t b) {
-    if (std::ranges::all_of(layers, [&](const LayerImage& each) { return each.shares[a] == each.shares[b]; })) return;
+    const auto shares_alike = [&](const LayerImage& each) {
+      return std::abs(each.shares[a] - each.shares[b]) < kArtefactLimits.seam_share;
+    };
+    if (std::ranges::all_of(layers, shares_alike)) return;
     if (!is_one_surface(a, b)) return;
     for (const std::size_t at : {a, b}) {
       const double change = find_change(a, b, at);
@@ -131,9 +134,10 @@ std::optional<double> measure_seam(std::span<const LayerImage> layers, int width
     }
   };
   const auto across = static_cast<std::size_t>(width), pixels = layers.front().shares.size();
+  const auto step = static_cast<std::size_t>(std::max(1.0, std::round(kArtefactLimits.seam_step * width)));
   for (std::size_t i = 0; i < pixels; ++i) {
-    if ((i + 1) % across != 0) add(i, i + 1);
-    if (i + across < pixels) add(i, i + across);
+    if (i % across + step < across) add(i, i + step);
+    if (i + step * across < pixels) add(i, i + step * across);
   }
   if (pairs < kFewestReceivers) return std::nullopt;
   return std::sqrt(squares / pairs);

@@ -40,7 +40,9 @@ struct ArtefactLimits {
   double contact_gap_above = 0.5;  ///< what bias adds to a receiver, no brighter without it, that touches its blocker
   double contact_texels =
       8.0;  ///< a blocker that is nearer along the light touches the receiver; leaks have farther ones
-  double noise_above = 0.05;  ///< how far image less percentage-closer filter is from its own 3 x 3 mean
+  double seam_step = 1.0 / 160.0;     ///< of the picture's width: how far apart pixels are across which a seam is seen
+  float seam_share = 1.0f / 4096.0f;  ///< shares of a layer that differ by less are the same
+  double noise_above = 0.05;          ///< how far image less percentage-closer filter is from its own 3 x 3 mean
 };
 inline constexpr ArtefactLimits kArtefactLimits;
 
@@ -83,11 +85,11 @@ struct LayerImage {
   std::span<const float> shares;
 };
 
-/// How much an image changes from pixel to pixel because layers of a map, such as cascades, take over from each other:
-/// the root mean square, over neighbours on one surface that layers share differently, of the sum of what each of these
-/// layers shows at one of the two times the change of its share. 0 where layers agree; where they do not, the wider
-/// they are blended the smaller it is. Gives nothing where there are fewer than kFewestReceivers such places, all of
-/// whose layers reach them.
+/// How much an image changes because layers of a map, such as cascades, take over from each other: the root mean
+/// square, over pixels on one surface that layers share differently, seam_step of the picture's width apart (so that a
+/// larger picture changes nothing), of the sum of what each of these layers shows at one of the two times the change of
+/// its share. 0 where layers agree; where they do not, the wider they are blended the smaller it is. Gives nothing
+/// where there are fewer than kFewestReceivers such places, all of whose layers reach them.
 std::optional<double> measure_seam(std::span<const LayerImage> layers, int width,
                                    const std::function<bool(std::size_t, std::size_t)>& is_one_surface);
 

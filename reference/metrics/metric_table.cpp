@@ -135,10 +135,13 @@ std::vector<Metric> list_artefacts() {
                    limits.noise_above),
        kRate, kTabled},
       {"artefact.seam", at<&V::artefact, &ArtefactRecord::seam>, "visibility", kPositive, kLess, "seam, first phase",
-       "how much the image changes from pixel to pixel because cascades take over from each other: root mean square, "
-       "over neighbours on one surface that cascades share differently, of the sum of what each cascade alone "
-       "shows there times the change of its share",
-       kNotKept},
+       fmt::format(
+           "how much the image changes because cascades take over from each other: root mean square, over pixels on "
+           "one surface, {:.2g} % of the picture's width apart, that cascades share differently, of the sum of what "
+           "each "
+           "cascade alone shows there times the change of its share",
+           100.0 * limits.seam_step),
+       kNotKept, kUntabled, "--max-seam"},
       {"penumbra.growth", at<&V::penumbra, &PenumbraRecord::growth>, "ratio", kAny, kNeither, "growth of penumbrae",
        fmt::format(
            "by how much the width of the image's penumbrae grows where the truth's grows by 1: 1 as the truth, 0 "

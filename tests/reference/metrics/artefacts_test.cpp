@@ -177,25 +177,33 @@ TEST(NoiseRate, WithoutPenumbra_IsAbsent) {
   EXPECT_FALSE(rate_noise(lit, std::vector<double>(1600, 1.0), lit, std::vector<std::uint8_t>(1600, 1), 40));
 }
 
-/// Two layers that show 0.75 and `second`, of which the second takes over from column 16 on, over so many columns.
-std::optional<double> measure_two_layers(float second, int columns) {
-  constexpr int kWidth = 64, kHeight = 128;
+/// Two layers that show 0.75 and `second`, of which the second takes over from column 16 on, over so many columns, in a
+/// picture of 64 columns drawn `scale` times as wide.
+std::optional<double> measure_two_layers(float second, int columns, int scale = 1) {
+  const int width = 64 * scale, height = 128;
   std::vector<float> shares[2];
-  for (int i = 0; i < kWidth * kHeight; ++i) {
-    const int x = i % kWidth;
-    shares[1].push_back(std::clamp(static_cast<float>(x - 15) / static_cast<float>(columns), 0.0f, 1.0f));
+  for (int i = 0; i < width * height; ++i) {
+    const double x = (i % width + 0.5) / scale;
+    shares[1].push_back(static_cast<float>(std::clamp((x - 16.0) / columns, 0.0, 1.0)));
     shares[0].push_back(1.0f - shares[1].back());
   }
-  const std::vector<float> images[] = {std::vector<float>(kWidth * kHeight, 0.75f),
-                                       std::vector<float>(kWidth * kHeight, second)};
+  const std::vector<float> images[] = {std::vector<float>(shares[0].size(), 0.75f),
+                                       std::vector<float>(shares[0].size(), second)};
   const LayerImage layers[] = {{images[0], shares[0]}, {images[1], shares[1]}};
-  return measure_seam(layers, kWidth, [](std::size_t, std::size_t) { return true; });
+  return measure_seam(layers, width, [](std::size_t, std::size_t) { return true; });
 }
 
 TEST(Seam, IsTheStepBetweenLayers_SmallerTheWiderTheyAreBlended) {
-  EXPECT_NEAR(measure_two_layers(0.25f, 1).value(), 0.5, 1e-6);
-  EXPECT_NEAR(measure_two_layers(0.25f, 20).value(), 0.5 / 20.0, 1e-6);
+  EXPECT_NEAR(measure_two_layers(0.25f, 20).value(), 0.5 / 20.0, 2e-3);
+  EXPECT_LT(measure_two_layers(0.25f, 20).value(), 0.6 * measure_two_layers(0.25f, 10).value());
   EXPECT_NEAR(measure_two_layers(0.75f, 1).value(), 0.0, 1e-6) << "layers that agree have no seam";
+}
+
+TEST(Seam, IsTheSameInALargerPicture) {
+  for (const int columns : {1, 4, 20})
+    EXPECT_NEAR(measure_two_layers(0.25f, columns, 10).value() / measure_two_layers(0.25f, columns, 30).value(), 1.0,
+                0.02)
+        << columns;
 }
 
 TEST(Seam, IsAbsent_WhereNoLayerTakesOver) {
