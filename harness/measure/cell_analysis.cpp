@@ -38,15 +38,16 @@ std::string too_few(const char* which) {
 
 metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<TracedLayer>& layers,
                                   const SceneTruth& truth) {
-  return metrics::make_artefact_masks(
-      {.counts = truth.mask,
-       .area = truth.rays.area.visibility,
-       .ratio = truth.rays.area.ratio,
-       .area_settled = truth.settled,
-       .surroundings = around.visibility,
-       .surroundings_settled = around.settled,
-       .first_blocker_ws = truth.rays.first_blockers_ws,
-       .contact_ws = metrics::kArtefactLimits.contact_texels * layers.front().frustum.texel_size_ws});
+  std::vector<float> blockers(truth.rays.first_blockers_ws);
+  for (std::size_t i = 0; i < blockers.size(); ++i)
+    blockers[i] /= static_cast<float>(layers[choose_layer(layers, i)].frustum.texel_size_ws);
+  return metrics::make_artefact_masks({.counts = truth.mask,
+                                       .area = truth.rays.area.visibility,
+                                       .ratio = truth.rays.area.ratio,
+                                       .area_settled = truth.settled,
+                                       .surroundings = around.visibility,
+                                       .surroundings_settled = around.settled,
+                                       .first_blocker_texels = blockers});
 }
 
 /// Whether a point falls into the map of a cascade.
@@ -143,6 +144,56 @@ KernelTruth CellAnalyser::disks_truth(const std::vector<std::vector<float>>& rad
                          });
 }
 
+bool CellAnalyser::has_cascades() const { return std::holds_alternative<scene::ViewSlice>(light_.frustum().share); }
+
+/// The mean RMSE of all phases over a mask, if it has enough receivers to tell.
+std::optional<double> CellAnalyser::measure_phases(const MeasuredCell& cell,
+                                                   const std::vector<std::uint8_t>& mask) const {
+  if (std::ranges::count(mask, 1) < metrics::kFewestReceivers) return std::nullopt;
+  double sum = 0.0, count = 0.0;
+  const auto add = [&](const images::Image& phase) {
+    if (phase.empty()) return;
+    const auto stats = metrics::measure_error(phase.texels, truth_.area.texels, mask);
+    if (!stats) return;
+    sum += stats->rmse;
+    count += 1.0;
+  };
+  add(cell.visibility);
+  std::ranges::for_each(cell.phases, add);
+  return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+}
+
+void CellAnalyser::note_cascades(MeasuredCell& cell) const {
+  records::CellRecord& record = cell.record;
+  if (!has_cascades() || !masks_ || cell.visibility.empty()) {
+    record.absent["error.rmse_cascade"] = !has_cascades() ? "the light has no cascades" : "nothing of them is known";
+    return;
+  }
+  const std::vector<float>& image = cell.visibility.texels;
+  const auto receivers = static_cast<double>(std::ranges::count(truth_.mask, 1));
+  record.cascades.emplace();
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    const auto keep = [&](std::vector<std::uint8_t> mask) {
+      for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+        if (mask[pixel] && choose_layer(layers_, pixel) != i) mask[pixel] = 0;
+      return mask;
+    };
+    const std::vector<std::uint8_t> own = keep(truth_.mask);
+    records::CascadeRecord& cascade = record.cascades->emplace_back();
+    cascade.end_m = std::get<scene::ViewSlice>(light_.layers[i].share).end_m;
+    cascade.texels_per_m = 1.0 / light_.layers[i].texel_size_ws;
+    cascade.share = receivers > 0.0 ? static_cast<double>(std::ranges::count(own, 1)) / receivers : 0.0;
+    cascade.rmse = measure_phases(cell, own);
+    const metrics::ArtefactMasks masks{keep(masks_->acne), keep(masks_->leak), keep(masks_->contact_gap),
+                                       keep(masks_->wide_gap)};
+    cascade.acne = metrics::rate_acne(image, truth_.rays.area.visibility, masks.acne);
+    cascade.leak = metrics::rate_leak(image, cell.unbiased.texels, masks.leak);
+    cascade.contact_gap = metrics::rate_contact_gap(image, cell.unbiased.texels, masks);
+    if (cascade.rmse) record.error.rmse_cascade = std::max(record.error.rmse_cascade.value_or(0.0), *cascade.rmse);
+  }
+  if (!record.error.rmse_cascade) record.absent["error.rmse_cascade"] = too_few("are in any cascade");
+}
+
 void CellAnalyser::analyse(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   if (!masks_ || cell.visibility.empty()) {
@@ -162,8 +213,7 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
        too_few("are wholly lit, with their surroundings"));
   note(record, "artefact.leak", record.artefact.leak, metrics::rate_leak(image, cell.unbiased.texels, masks_->leak),
        too_few("are wholly blocked, with their surroundings, by something that does not touch them"));
-  const bool has_cascades = std::holds_alternative<scene::ViewSlice>(light_.frustum().share);
-  const std::string no_seam = !has_cascades           ? "the light has no cascades"
+  const std::string no_seam = !has_cascades()         ? "the light has no cascades"
                               : cell.cascades.empty() ? "what the renderer makes of each cascade is not known"
                                                       : "";
   note(record, "artefact.seam", record.artefact.seam, no_seam.empty() ? measure_seam(cell) : std::nullopt,

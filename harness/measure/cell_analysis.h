@@ -53,6 +53,10 @@ class CellAnalyser {
   /// receiver, and its kernel traced once for all cells that share it.
   void analyse(MeasuredCell& cell);
 
+  /// Notes how wrong each cascade of the cell is, over all phases of the map's grid, which are not needed any more
+  /// then; nothing of a light without cascades. Safe to call from many threads, each with its own cell.
+  void note_cascades(MeasuredCell& cell) const;
+
   /// The masks of the artefacts; nothing where there is no truth.
   const std::optional<metrics::ArtefactMasks>& masks() const { return masks_; }
 
@@ -83,6 +87,8 @@ class CellAnalyser {
   std::vector<ModelLayer> read_layers(const std::vector<render::Bias>& biases) const;
   const std::vector<double>& compare(const filters::Kernel& kernel, const std::vector<render::Bias>& biases,
                                      const std::vector<ModelLayer>* layers);
+  bool has_cascades() const;
+  std::optional<double> measure_phases(const MeasuredCell& cell, const std::vector<std::uint8_t>& mask) const;
   void count_artefacts(MeasuredCell& cell) const;
   std::optional<double> measure_seam(MeasuredCell& cell) const;
   ModelImages evaluate(const MeasuredCell& cell);

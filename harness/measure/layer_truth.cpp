@@ -71,6 +71,12 @@ std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, cons
   return layers;
 }
 
+std::size_t choose_layer(const std::vector<TracedLayer>& layers, std::size_t pixel) {
+  if (layers.size() == 1) return 0;
+  const auto most = std::ranges::max_element(layers, {}, [&](const TracedLayer& each) { return each.shares[pixel]; });
+  return static_cast<std::size_t>(most - layers.begin());
+}
+
 truth::TracedVisibility trace_layers(const std::vector<TracedLayer>& layers, const truth::ReceiverImage& receivers,
                                      const LayerTrace& trace) {
   if (layers.front().shares.empty()) return trace(receivers, scene::make_map_grid(layers.front().frustum), 0);

@@ -24,6 +24,9 @@ using LayerTrace =
 std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
                                             const render::LightLayers& light);
 
+/// The layer that serves most of a pixel.
+std::size_t choose_layer(const std::vector<TracedLayer>& layers, std::size_t pixel);
+
 /// Traces receivers through the grid of the layer that serves them; where several share a pixel, their traces are added
 /// by their shares, and agree where all rays of all of them do.
 truth::TracedVisibility trace_layers(const std::vector<TracedLayer>& layers, const truth::ReceiverImage& receivers,

@@ -101,24 +101,23 @@ class CoverageCells {
   }
 };
 
+/// Leaves the densities in another order.
+std::optional<double> find_median(std::vector<float>& densities) {
+  if (densities.empty()) return std::nullopt;
+  const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
+  std::nth_element(densities.begin(), middle, densities.end());
+  return static_cast<double>(*middle);
+}
+
 records::CoverageRecord summarise_coverage(std::vector<float> densities, const std::vector<CoverageCells>& layers) {
   records::CoverageRecord record;
   if (densities.empty()) return record;
   record.fewest_texels_per_pixel = static_cast<double>(std::ranges::min(densities));
-  const auto middle = densities.begin() + static_cast<std::ptrdiff_t>(densities.size() / 2);
-  std::nth_element(densities.begin(), middle, densities.end());
-  record.texels_per_pixel = static_cast<double>(*middle);
+  record.texels_per_pixel = find_median(densities);
   double used = 0.0;
   for (const CoverageCells& cells : layers) used += cells.share() / static_cast<double>(layers.size());
   record.map_used = used;
   return record;
-}
-
-/// The layer that serves most of a pixel.
-std::size_t choose_layer(const std::vector<TracedLayer>& layers, std::size_t pixel) {
-  if (layers.size() == 1) return 0;
-  const auto most = std::ranges::max_element(layers, {}, [&](const TracedLayer& each) { return each.shares[pixel]; });
-  return static_cast<std::size_t>(most - layers.begin());
 }
 
 }  // namespace
@@ -129,8 +128,8 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
   std::vector<PixelProjector> projectors;
   for (const TracedLayer& each : layers) projectors.emplace_back(camera, each.frustum, height, map_size);
   std::vector<CoverageCells> cells(layers.size(), CoverageCells(map_size));
-  MapCoverage coverage{images::Image(width, height, 1), images::Image(width, height, 2), {}};
-  std::vector<float> densities;
+  MapCoverage coverage{images::Image(width, height, 1), images::Image(width, height, 2), {}, {}};
+  std::vector<std::vector<float>> of_layers(layers.size());
   for (std::size_t i = 0; i < receivers.image.points.size(); ++i) {
     const truth::ReceiverPoint& point = receivers.image.points[i];
     if (!point.counts) {
@@ -144,7 +143,12 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
     coverage.density.texels[i] = static_cast<float>(footprint.area());
     coverage.texel.texels[2 * i] = static_cast<float>(footprint.centre.x + static_cast<double>(layer) * map_size);
     coverage.texel.texels[2 * i + 1] = static_cast<float>(footprint.centre.y);
-    densities.push_back(coverage.density.texels[i]);
+    of_layers[layer].push_back(coverage.density.texels[i]);
+  }
+  std::vector<float> densities;
+  for (std::vector<float>& own : of_layers) {
+    densities.insert(densities.end(), own.begin(), own.end());
+    coverage.texels_per_pixel.push_back(find_median(own));
   }
   coverage.record = summarise_coverage(std::move(densities), cells);
   const auto filled = std::ranges::count_if(depth_map.texels, [](float depth) { return depth < 1.0f; });

@@ -16,7 +16,8 @@ struct MapCoverage {
   images::Image density;
   /// Place of each receiver in the map, two channels, in texels from its first row and column; 0 elsewhere.
   images::Image texel;
-  records::CoverageRecord record;  ///< empty fields where no receiver in the map faces the light
+  std::vector<std::optional<double>> texels_per_pixel;  ///< median of each layer
+  records::CoverageRecord record;                       ///< empty fields where no receiver in the map faces the light
 };
 
 /// Lays the pixels of a view out in the map.

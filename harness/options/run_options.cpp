@@ -209,7 +209,8 @@ std::vector<RunOption> list_run_options() {
   t.add("--fit",
         "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; 'view', "
         "around what the camera sees and the casters before it; 'cascades', which give slices of that a map each: "
-        "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen; 'focused', 'lispsm', "
+        "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen, or in metres "
+        "cascades:splits=5/20,near=0.1,far=80; 'focused', 'lispsm', "
         "'psm', 'tsm' or 'logpsm', which warp it; of a point light 'paraboloid'; may be repeated (default: tight)",
         &RunOptions::fits)
       .such_as(scene::list_fit_names());

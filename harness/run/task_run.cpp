@@ -177,18 +177,19 @@ class TaskRun {
     Stopwatch watch;
     const measure::SceneTruth& truth = assets_.truth(*task_.camera);
     measured.truth_s = watch.read_s();
-    begin(options::Work::kScores, cells, "errors");
-    std::atomic<std::size_t> scored = 0;
-    tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
-      cell.flip = measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
-      cell.phases.clear();
-      measure::check_against_truth(cell, truth);
-      steps_.advance(static_cast<double>(++scored) / static_cast<double>(cells));
-    });
     begin(options::Work::kSurroundings, cells, "artefacts");
     watch = {};
     if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
     measured.truth_s += watch.read_s();
+    begin(options::Work::kScores, cells, "errors");
+    std::atomic<std::size_t> scored = 0;
+    tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
+      cell.flip = measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
+      analyser_->note_cascades(cell);
+      cell.phases.clear();
+      measure::check_against_truth(cell, truth);
+      steps_.advance(static_cast<double>(++scored) / static_cast<double>(cells));
+    });
     for (measure::MeasuredCell& cell : measured.cells) {
       begin(options::Work::kAttribution, 1, "attribution of " + cell.label);
       watch = {};
@@ -241,6 +242,8 @@ class TaskRun {
     }
     for (measure::MeasuredCell& cell : measured.cells) {
       cell.record.coverage = coverage_->record;
+      for (std::size_t i = 0; cell.record.cascades && i < cell.record.cascades->size(); ++i)
+        (*cell.record.cascades)[i].texels_per_pixel = coverage_->texels_per_pixel[i];
       if (!coverage_->record.texels_per_pixel) cell.record.absent["coverage"] = "no surface in view faces the light";
     }
   }

@@ -47,7 +47,7 @@ ArtefactMasks make_artefact_masks(const RaysAtReceivers& rays) {
   for (std::size_t i = 0; i < pixels; ++i) {
     if (!rays.counts[i]) continue;
     const bool settled = rays.area_settled[i] && rays.surroundings_settled[i];
-    const bool touches = static_cast<double>(rays.first_blocker_ws[i]) <= rays.contact_ws;
+    const bool touches = static_cast<double>(rays.first_blocker_texels[i]) <= kArtefactLimits.contact_texels;
     if (settled && rays.ratio[i] == 1.0f && rays.surroundings[i] == 1.0f) masks.acne[i] = 1;
     if (settled && rays.area[i] == 0.0f && rays.surroundings[i] == 0.0f && !touches) masks.leak[i] = 1;
     if (rays.area[i] == 0.0f) (touches ? masks.contact_gap : masks.wide_gap)[i] = 1;

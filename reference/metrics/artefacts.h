@@ -19,8 +19,7 @@ struct RaysAtReceivers {
   std::span<const std::uint8_t> area_settled;  ///< all rays of the pixel and of its eight neighbours agree
   std::span<const float> surroundings;         ///< fraction of a square, wider than any kernel of the run, that is lit
   std::span<const std::uint8_t> surroundings_settled;  ///< the same for the surroundings
-  std::span<const float> first_blocker_ws;             ///< metres along the light to the first surface that it meets
-  double contact_ws = 0.0;                             ///< metres: nearer blockers touch the receiver
+  std::span<const float> first_blocker_texels;  ///< of the receiver's map, along the light to the first surface there
 };
 
 /// Where each fault can occur; 1 inside.
@@ -38,9 +37,8 @@ struct ArtefactLimits {
   double guard_texels = 1.0;       ///< the surroundings reach beyond the run's widest kernel by this much
   double leak_above = 0.1;         ///< visibility of a wholly blocked receiver
   double contact_gap_above = 0.5;  ///< what bias adds to a receiver, no brighter without it, that touches its blocker
-  double contact_texels =
-      8.0;  ///< a blocker that is nearer along the light touches the receiver; leaks have farther ones
-  double seam_step = 1.0 / 160.0;     ///< of the picture's width: how far apart pixels are across which a seam is seen
+  double contact_texels = 8.0;     ///< a blocker nearer along the light touches the receiver; texels of its own map
+  double seam_step = 1.0 / 160.0;  ///< of the picture's width: how far apart pixels are across which a seam is seen
   float seam_share = 1.0f / 4096.0f;  ///< shares of a layer that differ by less are the same
   double noise_above = 0.05;          ///< how far image less percentage-closer filter is from its own 3 x 3 mean
 };

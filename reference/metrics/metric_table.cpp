@@ -51,6 +51,12 @@ std::vector<Metric> list_errors() {
                    "at {} pixels per degree (Andersson et al. 2020)",
                    kDefaultPixelsPerDegree),
        kError, kUntabled, "--max-flip", kPictures},
+      {"error.rmse_cascade", at<&V::error, &ErrorRecord::rmse_cascade>, "visibility", kPositive, kLess,
+       "RMSE of the worst cascade",
+       fmt::format("largest error.rmse of a cascade, over the receivers of which it serves the most; those with fewer "
+                   "than {} are left out",
+                   kFewestReceivers),
+       kNotKept, kUntabled, "--max-rmse-cascade"},
       {"error.kernel_rmse", at<&V::error, &ErrorRecord::kernel_rmse>, "visibility", kPositive, kLess,
        "RMSE to the kernel truth, first phase",
        "root mean square of image less ray-traced kernel, over receivers, without the rays' sampling variance; that is "

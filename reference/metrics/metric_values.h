@@ -31,6 +31,7 @@ struct ErrorRecord {
   std::optional<double> max;
   std::optional<double> mean;
   std::optional<double> flip;
+  std::optional<double> rmse_cascade;
   std::optional<double> kernel_rmse;
   std::optional<double> flicker;
 };

@@ -148,6 +148,8 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
   if (std::string gap = find_missing_cell(configuration, advice.places); !gap.empty())
     return Unjudged{configuration, std::move(gap), {}};
   Candidate candidate{configuration, {}, {}, combine_rmse(configuration.cells)};
+  for (const records::CellRecord* cell : configuration.cells)
+    candidate.seam = std::max(candidate.seam, cell->artefact.seam.value_or(0.0));
   for (const Demand& demand : request.demands) {
     Verdict verdict = demand.spec ? judge_limit(configuration, demand, request.light, advice.places)
                                   : judge_claim(configuration, demand.claim, request);
@@ -206,15 +208,17 @@ std::vector<Candidate> take_out(std::vector<Candidate>& from, Test test) {
   return taken;
 }
 
-// Keeps the front, of candidates that are sorted by cost and then RMSE: each must have less RMSE than all before it.
+// Keeps the front, of candidates that are sorted by cost and then RMSE: each must have less RMSE, or a smaller seam,
+// than each before it that is kept.
 void take_out_beaten(Advice& advice) {
-  double least = kInfinity;
+  std::vector<std::pair<double, double>> kept;
   advice.beaten = take_out(advice.keeping, [&](const Candidate& each) {
-    if (!each.rmse || each.rmse->value < least) {
-      if (each.rmse) least = each.rmse->value;
-      return false;
-    }
-    return true;
+    if (!each.rmse) return false;
+    const std::pair own(each.rmse->value, each.seam);
+    const auto covers = [&](const auto& other) { return other.first <= own.first && other.second <= own.second; };
+    if (std::ranges::any_of(kept, covers)) return true;
+    kept.push_back(own);
+    return false;
   });
 }
 
@@ -281,7 +285,7 @@ void require_gpu(const std::vector<records::CellRecord>& cells, const std::strin
 }  // namespace
 
 bool beats(const Candidate& a, const Candidate& b) {
-  if (!a.rmse || !b.rmse || a.cost.mean > b.cost.mean || a.rmse->value > b.rmse->value) return false;
+  if (!a.rmse || !b.rmse || a.cost.mean > b.cost.mean || a.rmse->value > b.rmse->value || a.seam > b.seam) return false;
   return a.cost.mean < b.cost.mean || a.rmse->value < b.rmse->value;
 }
 

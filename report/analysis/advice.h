@@ -62,11 +62,12 @@ struct Candidate {
   Cost cost;
   std::vector<Verdict> verdicts;  ///< one per demand
   std::optional<Estimate> rmse;   ///< over the places; empty where none of the run has one everywhere
+  double seam = 0.0;              ///< the worst between cascades; 0 where there is none
   bool gains = false;             ///< its RMSE is clearly less than that of the cheapest without a filter
 };
 
-/// Does `a` beat `b`: is it no dearer and no more wrong, and less of one of the two? By the means alone, so that what
-/// is beaten by something that is beaten is beaten too.
+/// Does `a` beat `b`: is it no dearer, no more wrong and without a larger seam, and less of one of the first two? By
+/// the means alone, so that what is beaten by something that is beaten is beaten too.
 bool beats(const Candidate& a, const Candidate& b);
 
 /// Whether a limit is set on an error or on a fault that people see.
@@ -122,9 +123,9 @@ struct Advice {
 };
 
 /// Finds the configurations that keep every demand in every place, the worst place deciding, and that no other which
-/// does so beats: the Pareto front of cost and RMSE over all filters, `none` among them, maps and fits. The cheapest of
-/// them is advised. Where nothing that is seen is limited, they must be clearly better than the cheapest configuration
-/// without a filter, unless none is: that stands in for the limit that is missing.
+/// does so beats: the Pareto front of cost, RMSE and seam over all filters, `none` among them, maps and fits. The
+/// cheapest of them is advised. Where nothing that is seen is limited, they must be clearly better than the cheapest
+/// configuration without a filter, unless none is: that stands in for the limit that is missing.
 ///
 /// Costs that are equal are ordered by RMSE, then time. Filters for teaching are left out, and with a class of width
 /// those of others. A configuration that was not measured in a place, did not finish there, or lacks a value there is

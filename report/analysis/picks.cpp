@@ -48,6 +48,20 @@ std::optional<std::size_t> find_knee(const std::vector<Candidate>& keeping, std:
   return knee;
 }
 
+// Of those whose cost and RMSE cannot be told from a pick's, the one with the smallest seam.
+std::size_t avoid_seam(const std::vector<Candidate>& keeping, std::size_t pick, const CostKind& kind) {
+  const Candidate& own = keeping[pick];
+  std::size_t least = pick;
+  for (std::size_t i = 0; own.rmse && i < keeping.size(); ++i) {
+    const Candidate& other = keeping[i];
+    if (other.seam >= keeping[least].seam || !other.rmse) continue;
+    const bool apart = are_costs_told_apart(i < pick ? other : own, i < pick ? own : other, kind);
+    if (!apart && !is_clearly_less_error(*other.rmse, *own.rmse) && !is_clearly_less_error(*own.rmse, *other.rmse))
+      least = i;
+  }
+  return least;
+}
+
 std::string explain_fast(const Advice& advice) {
   const bool gains = advice.keeping.front().gains && !limits_what_is_seen(advice.request);
   return fmt::format("the cheapest{}", gains                            ? " clearly better than " + advice.unfiltered
@@ -79,15 +93,19 @@ std::vector<Pick> choose_picks(const Advice& advice) {
   const CostKind& kind = advice.request.cheapest;
   std::vector<Pick> picks = {{{kFast}, 0, explain_fast(advice)}};
   const bool has_others = keeping.size() + advice.beaten.size() + advice.no_gain.size() > 1;
-  const auto best = has_others ? find_best(keeping) : std::nullopt;
-  if (!best) return picks;
-  if (*best == 0) {
+  const auto least = has_others ? find_best(keeping) : std::nullopt;
+  if (!least) return picks;
+  const std::size_t best = avoid_seam(keeping, *least, kind);
+  if (best == 0) {
     picks.front().names.emplace_back(kBest);
     return picks;
   }
-  if (const auto knee = find_knee(keeping, *best, kind))
-    picks.push_back({{kBalanced}, *knee, explain_balanced(keeping[0], keeping[*knee], keeping[*best])});
-  picks.push_back({{kBest}, *best, explain_best(keeping[0], keeping[*best], kind)});
+  if (const auto found = find_knee(keeping, *least, kind)) {
+    const std::size_t knee = avoid_seam(keeping, *found, kind);
+    if (knee != best)
+      picks.push_back({{kBalanced}, knee, explain_balanced(keeping[0], keeping[knee], keeping[*least])});
+  }
+  picks.push_back({{kBest}, best, explain_best(keeping[0], keeping[best], kind)});
   return picks;
 }
 
@@ -101,6 +119,8 @@ std::vector<Pick> list_picks(const Advice& advice) {
     assert(!is_beaten(candidate, advice));
     if (const std::string beaten = describe_larger_map(candidate, advice.beaten); !beaten.empty())
       pick.why += "; " + beaten;
+    if (candidate.seam >= kVisibleSeam)
+      pick.why += fmt::format("; its cascades show a seam of {}", records::format_number(candidate.seam));
   }
   return picks;
 }

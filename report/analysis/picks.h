@@ -8,6 +8,9 @@
 
 namespace shadowbench::analysis {
 
+/// A seam from here on is seen: a step of brightness of 2 %, about Weber's fraction of the eye.
+inline constexpr double kVisibleSeam = 0.02;
+
 /// What an answer may be called, the cheapest first.
 inline constexpr const char *kFast = "fast", *kBalanced = "balanced", *kBest = "best";
 
@@ -23,7 +26,8 @@ struct Pick {
 /// RMSE is known. *Balanced* is, of those between the two, the one furthest below the straight line from fast to best
 /// in the plane of cost and RMSE (the knee; Satopaa et al. 2011, Finding a "Kneedle" in a Haystack); its RMSE is
 /// clearly less than that of the fast one, and its cost clearly less than that of the best. Costs that cannot be
-/// compared leave it out. Requires one that keeps the demands.
+/// compared leave it out. Where the cost and RMSE of another cannot be told from a pick's, that with the smaller seam
+/// between cascades is picked; a seam that is seen is said. Requires one that keeps the demands.
 std::vector<Pick> list_picks(const Advice& advice);
 
 /// Says which filters on smaller maps a candidate beats: "its larger map beats pcss, map 1024"; empty where it is none.

@@ -5,6 +5,7 @@ const startAnswer = (holder) => {
   const kSteps = 60;
   const kTime = "time_ms";
   const kSeen = 0.001;
+  const kVisibleSeam = 0.02;
   const kClaim = "contact-hardening";
   const places = run.places.map(({ title }) => title);
   const state = { wide: "", soft: false, limits: {} };
@@ -20,6 +21,7 @@ const startAnswer = (holder) => {
 
   // The worst value of a configuration in a scope, or a text that says why there is none.
   const worstOf = (index, field, scope = all) => scope.rows[index].worst[fieldOf(field)];
+  const seamOf = (index, scope) => worstOf(index, "artefact.seam", scope)?.value ?? 0;
   const costOf = (index, scope = all) => scope.rows[index][costChoice().field];
   // Whether the cost of one cannot be told from that of another, which ranks behind it.
   const areTied = ({ tied }, { rank }) => tied.some(([from, end]) => from <= rank && rank < end);
@@ -28,7 +30,9 @@ const startAnswer = (holder) => {
   // clearly better than the cheapest without a filter.
   const takeFront = (kept, scope) => {
     const rmseOf = ({ index }) => scope.rows[index].rmse;
-    const isBeaten = (each, i) => kept.slice(0, i).some((other) => rmseOf(other)?.value <= rmseOf(each)?.value);
+    const seam = ({ index }) => seamOf(index, scope);
+    const isBeaten = (each, i) =>
+      kept.slice(0, i).some((other) => rmseOf(other)?.value <= rmseOf(each)?.value && seam(other) <= seam(each));
     const [front, beaten] = [kept.filter((...each) => !isBeaten(...each)), kept.filter(isBeaten)];
     const any = scope.advice[shadowbench.cost][""]?.order ?? [];
     const unfiltered = any.find(({ index }) => run.configurations[index].filter === "none");
@@ -80,13 +84,17 @@ const startAnswer = (holder) => {
       rmseOf: ({ index }) => scope.rows[index].rmse,
       costOf: ({ index }) => costOf(index, scope),
       areTied,
+      seamOf: ({ index }) => seamOf(index, scope),
       why: gained
         ? `cheapest clearly better than ${labelOf(unfiltered.index)}`
         : limited
           ? "cheapest within the limits"
           : "cheapest",
     });
-    return picks.map((each) => ({ ...each, why: each.why + describeLargerMap(each, beaten, scope) }));
+    const describeSeam = ({ index }) =>
+      seamOf(index, scope) >= kVisibleSeam ? `; its cascades show a seam of ${format(seamOf(index, scope))}` : "";
+    const describe = (each) => each.why + describeLargerMap(each, beaten, scope) + describeSeam(each);
+    return picks.map((each) => ({ ...each, why: describe(each) }));
   };
 
   // How the worst of what can be limited differs between the choice and the runner-up.

@@ -1,25 +1,37 @@
 // Fast, balanced and best of the configurations that keep the limits, as name_picks() of the program has them: each with
 // the columns of the answer where it stands. `keeping` has the cheapest first.
-const pickThree = (keeping, { hasOthers, rmseOf, costOf, areTied, why }) => {
+const pickThree = (keeping, { hasOthers, rmseOf, costOf, areTied, seamOf, why }) => {
   const share = (part) => `${Math.round(100 * part)} %`;
   const [fast] = keeping;
-  const known = keeping.every((each) => rmseOf(each));
+  const known = hasOthers && keeping.every((each) => rmseOf(each));
   const least = known && keeping.reduce((a, b) => (rmseOf(b).value < rmseOf(a).value ? b : a));
-  const best = known && keeping.find((each) => !isErrorLess(rmseOf(least), rmseOf(each)));
-  if (!best || best === fast) return [{ columns: best && hasOthers ? [0, 2] : [0], ...fast, why }];
-  const isDearer = !areTied(fast, best);
-  const times = isDearer && costOf(fast) > 0 ? `, ${format(costOf(best) / costOf(fast))} × fast's cost` : "";
-  const ofCost = (each) => (costOf(each) - costOf(fast)) / (costOf(best) - costOf(fast));
-  const ofGain = (each) => (rmseOf(fast).value - rmseOf(each).value) / (rmseOf(fast).value - rmseOf(best).value);
+  const cheapest = known && keeping.find((each) => !isErrorLess(rmseOf(least), rmseOf(each)));
+  if (!cheapest) return [{ columns: [0], ...fast, why }];
+  const areAlike = (a, b) =>
+    a === b ||
+    (!isErrorLess(rmseOf(a), rmseOf(b)) &&
+      !isErrorLess(rmseOf(b), rmseOf(a)) &&
+      (a.rank < b.rank ? areTied(a, b) : areTied(b, a)));
+  // Of those whose cost and RMSE cannot be told from a pick's, the one with the smallest seam.
+  const avoidSeam = (own) =>
+    keeping.filter((each) => areAlike(own, each)).reduce((a, b) => (seamOf(b) < seamOf(a) ? b : a), own);
+  const best = avoidSeam(cheapest);
+  if (best === fast) return [{ columns: [0, 2], ...fast, why }];
+  const isDearer = !areTied(fast, cheapest);
+  const times =
+    !areTied(fast, best) && costOf(fast) > 0 ? `, ${format(costOf(best) / costOf(fast))} × fast's cost` : "";
+  const ofCost = (each) => (costOf(each) - costOf(fast)) / (costOf(cheapest) - costOf(fast));
+  const ofGain = (each) => (rmseOf(fast).value - rmseOf(each).value) / (rmseOf(fast).value - rmseOf(cheapest).value);
   const below = (each) => ofGain(each) - ofCost(each); // the straight line from fast to best
   const between = keeping
-    .slice(1, keeping.indexOf(best))
-    .filter((each) => !areTied(each, best) && isErrorLess(rmseOf(each), rmseOf(fast)));
-  const knee = isDearer && between.reduce((a, b) => (below(b) > (a ? below(a) : 0) ? b : a), null);
+    .slice(1, Math.max(1, keeping.indexOf(cheapest)))
+    .filter((each) => !areTied(each, cheapest) && isErrorLess(rmseOf(each), rmseOf(fast)));
+  const found = isDearer && between.reduce((a, b) => (below(b) > (a ? below(a) : 0) ? b : a), null);
+  const knee = found && avoidSeam(found);
   const gain = knee && `${share(ofGain(knee))} of the quality gain for ${share(ofCost(knee))} of the extra cost`;
   return [
     { columns: [0], ...fast, why },
-    ...(knee ? [{ columns: [1], ...knee, why: gain }] : []),
+    ...(knee && knee !== best ? [{ columns: [1], ...knee, why: gain }] : []),
     { columns: [2], ...best, why: `least RMSE${times}` },
   ];
 };

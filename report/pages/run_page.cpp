@@ -17,6 +17,7 @@
 #include "report/analysis/trade_measures.h"
 #include "report/images/attribution_bar.h"
 #include "report/pages/answer/answer.h"
+#include "report/pages/cascade_section.h"
 #include "report/pages/external_section.h"
 #include "report/pages/run_data.h"
 #include "report/pages/text_tables.h"
@@ -343,6 +344,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   }
   if (auto external = make_external_section(cells)) add(std::move(*external));
   if (trade) add(make_trade_section(run, own, *trade));
+  if (auto cascades = make_cascade_section(own)) add(std::move(*cascades));
   if (auto gpus = make_gpu_section(own)) add(std::move(*gpus));
   add(make_evidence_section(run, cells, so_far.empty()));
   return page;

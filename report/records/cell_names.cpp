@@ -64,6 +64,7 @@ std::string make_fit_stem(const std::string& fit, const std::set<std::string>& f
   std::string stem = name_fit(fit, fits);
   std::erase(stem, ',');
   std::ranges::replace(stem, ' ', '-');
+  std::ranges::replace(stem, '/', '+');
   return stem;
 }
 

@@ -47,6 +47,17 @@ void visit_fields(Is<LightCountRecord> auto& lights, auto&& visit) {
   visit("maps_bytes", lights.maps_bytes, {.text = "of the maps that the lookups read"});
 }
 
+void visit_fields(Is<CascadeRecord> auto& cascade, auto&& visit) {
+  visit("end_m", cascade.end_m, {.text = "depth along the camera's axis at which it ends"});
+  visit("texels_per_m", cascade.texels_per_m, kPositive);
+  visit("texels_per_pixel", cascade.texels_per_pixel, {.text = "median over its receivers", .least = 0});
+  visit("share", cascade.share, {.text = "of all receivers", .least = 0, .most = 1});
+  visit("rmse", cascade.rmse, {.text = "as error.rmse, over its receivers; null where they are too few", .least = 0});
+  visit("acne", cascade.acne, {.text = "as artefact.acne", .least = 0, .most = 1});
+  visit("leak", cascade.leak, {.text = "as artefact.leak", .least = 0, .most = 1});
+  visit("contact_gap", cascade.contact_gap, {.text = "as artefact.contact_gap", .least = 0, .most = 1});
+}
+
 void visit_fields(Is<BiasRecord> auto& bias, auto&& visit) {
   visit("constant_depth", bias.constant.depth, {.column = "constant bias, depth in [0,1]"});
   visit("constant_texels", bias.constant.texels, {.column = "constant bias, texels; adds to the one before"});
@@ -267,7 +278,8 @@ void visit_settings(Is<CellRecord> auto& cell, auto&& visit) {
   visit("fit", cell.fit,
         {.text = "of the light's frustum",
          .pattern = "^(sphere|tight|view|focused|lispsm|psm|tsm|logpsm|paraboloid|"
-                    "cascades:count=[2-4],split=[0-9.e-]+,blend=[0-9.e-]+,depths=(all|seen))( snapped)?$",
+                    "cascades:count=[2-4],(split=[0-9.e-]+|splits=[0-9.e+/-]+),blend=[0-9.e-]+,depths=(all|seen)"
+                    "(,near=[0-9.e+-]+)?(,far=[0-9.e+-]+)?)( snapped)?$",
          .column = "how the light's frustum is fitted; snapped: to whole texels"});
   visit("light", cell.light,
         {.text = "as the scene says, or azimuth and elevation in degrees",
@@ -312,6 +324,10 @@ void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
         {.text = "frames lit by several suns, each with a map of its own: the scene's light, turned about the vertical "
                  "by i * 360 / count degrees; null or missing where that was not measured",
          .least = 1,
+         .later = true});
+  visit("cascades", cell.cascades,
+        {.text = "of a map of cascades: each with the receivers of which it serves the most, from near to far",
+         .may_lack = true,
          .later = true});
   visit("accumulation", cell.accumulation,
         {.text = "visibility accumulated over frames; missing where the run has one", .may_lack = true, .later = true});

@@ -120,6 +120,18 @@ struct LightCountRecord {
   std::int64_t maps_bytes = 0;  ///< bytes of the maps that the lookups read
 };
 
+/// What a cascade shows: the receivers of which it serves the most, and how wrong they are.
+struct CascadeRecord {
+  double end_m = 0.0;                      ///< depth along the camera's axis at which it ends
+  double texels_per_m = 0.0;               ///< of its map
+  std::optional<double> texels_per_pixel;  ///< median over its receivers
+  double share = 0.0;                      ///< of all receivers
+  std::optional<double> rmse;              ///< these four are empty where too few receivers could tell
+  std::optional<double> acne;
+  std::optional<double> leak;
+  std::optional<double> contact_gap;
+};
+
 /// A part of a picture, pixels.
 struct TileRecord {
   int left = 0;
@@ -288,6 +300,7 @@ struct CellRecord : metrics::MetricValues {
   TimeRecord time_ms;
   RatioRecord ratio_to_none;
   std::optional<std::vector<LightCountRecord>> lights;  ///< by ascending count
+  std::optional<std::vector<CascadeRecord>> cascades;   ///< from near to far; empty without cascades, or a truth
   std::optional<AccumulationRecord> accumulation;       ///< over frames
   std::optional<GpuRecords> gpu;                        ///< what the cell costs on GPUs that were not there
   std::optional<ExternalRecord> external;               ///< of a row that another renderer drew

@@ -26,6 +26,7 @@ constexpr Definition find_definition() {
     return {"light_count",
             "static: maps and prefilters cached, a lookup per light; moving: a depth map, a prefilter and a lookup per "
             "light"};
+  if (std::is_same_v<T, CascadeRecord>) return {"cascade"};
   if (std::is_same_v<T, GpuRecord>)
     return {"gpu", "facts of the compiler, and an estimate made of them; or why there are none"};
   if (std::is_same_v<T, GpuPassRecord>)

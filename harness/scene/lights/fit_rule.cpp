@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <functional>
+#include <iterator>
 
 #include "base/error.h"
 #include "base/split_list.h"
@@ -15,6 +17,9 @@ namespace {
 
 constexpr std::array<std::string_view, 10> kFitNames = {"sphere", "tight", "view",   "cascades",  "focused", "lispsm",
                                                         "psm",    "tsm",   "logpsm", "paraboloid"};  // as FitMode
+
+constexpr int kMostCascades = 4;
+constexpr double kLeastMetres = 1e-3, kMostMetres = 1e6;
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, "--fit: " + message); }
 
@@ -32,13 +37,32 @@ double read_split(std::string_view text) {
   return read_number("split", text, 0.0, 1.0, ", or uniform (0), practical (0.5) or logarithmic (1)");
 }
 
+double read_metres(std::string_view key, std::string_view text) {
+  return read_number(key, text, kLeastMetres, kMostMetres, " metres");
+}
+
+std::vector<double> read_splits(std::string_view text) {
+  std::vector<double> splits;
+  for (const std::string& each : split_list(std::string(text), "/")) splits.push_back(read_metres("splits", each));
+  if (splits.empty() || splits.size() + 1 > kMostCascades)
+    refuse(
+        fmt::format("splits is '{}' and must be 1 to {} depths in metres, as in splits=5/20", text, kMostCascades - 1));
+  return splits;
+}
+
 void set_key(CascadeRule& rule, std::string_view key, std::string_view value) {
   if (key == "count") {
-    const double count = read_number(key, value, 2.0, 4.0);
+    const double count = read_number(key, value, 2.0, kMostCascades);
     rule.count = static_cast<int>(count);
     if (rule.count != count) refuse(fmt::format("count is '{}' and must be a whole number", value));
   } else if (key == "split") {
     rule.split = read_split(value);
+  } else if (key == "splits") {
+    rule.splits = read_splits(value);
+  } else if (key == "near") {
+    rule.near_m = read_metres(key, value);
+  } else if (key == "far") {
+    rule.far_m = read_metres(key, value);
   } else if (key == "blend") {
     rule.blend = read_number(key, value, 0.0, 0.5);
   } else if (key == "depths") {
@@ -46,15 +70,40 @@ void set_key(CascadeRule& rule, std::string_view key, std::string_view value) {
     rule.seen = value == "seen";
   } else {
     refuse(
-        fmt::format("cascades have no '{}'; they have count, split, blend and depths, e.g. "
-                    "cascades:count=3,split=logarithmic",
+        fmt::format("cascades have no '{}'; they have count, split, splits, near, far, blend and depths, e.g. "
+                    "cascades:count=3,split=logarithmic or cascades:splits=5/20,far=80",
                     key));
   }
 }
 
+void require_ascent(const std::vector<double>& depths) {
+  const auto fall = std::ranges::adjacent_find(depths, std::greater_equal());
+  if (fall != depths.end())
+    refuse(fmt::format("{} m follows {} m: near, splits and far must ascend", *std::next(fall), *fall));
+}
+
+/// Holds splits in metres against the other keys, which say how many slices there are and where they lie.
+void take_splits(CascadeRule& rule, const std::set<std::string>& keys) {
+  if (keys.contains("split")) refuse("split and splits are both given: splits are metres, and leave nothing to split");
+  const int count = static_cast<int>(rule.splits.size()) + 1;
+  if (keys.contains("count") && rule.count != count)
+    refuse(fmt::format("{} splits make {} cascades, not {}: leave count out", count - 1, count, rule.count));
+  rule.count = count;
+  std::vector<double> depths = rule.splits;
+  if (rule.near_m > 0.0) depths.insert(depths.begin(), rule.near_m);
+  if (rule.far_m > 0.0) depths.push_back(rule.far_m);
+  require_ascent(depths);
+}
+
 CascadeRule parse_cascades(std::string_view text) {
   CascadeRule rule;
-  for (const auto& [key, value] : split_assignments(text, "--fit")) set_key(rule, key, value);
+  std::set<std::string> keys;
+  for (const auto& [key, value] : split_assignments(text, "--fit")) {
+    set_key(rule, key, value);
+    keys.insert(key);
+  }
+  if (!rule.splits.empty()) take_splits(rule, keys);
+  if (rule.near_m > 0.0 && rule.far_m > 0.0) require_ascent({rule.near_m, rule.far_m});
   return rule;
 }
 
@@ -67,8 +116,13 @@ std::string_view name_of(FitMode mode) { return kFitNames[static_cast<std::size_
 std::string describe_fit(const FitRule& rule) {
   if (rule.mode != FitMode::kCascades) return std::string(name_of(rule.mode));
   const CascadeRule& cascades = rule.cascades;
-  return fmt::format("cascades:count={},split={},blend={},depths={}", cascades.count, cascades.split, cascades.blend,
-                     cascades.seen ? "seen" : "all");
+  const std::string split = cascades.splits.empty() ? fmt::format("split={}", cascades.split)
+                                                    : fmt::format("splits={}", fmt::join(cascades.splits, "/"));
+  std::string text = fmt::format("cascades:count={},{},blend={},depths={}", cascades.count, split, cascades.blend,
+                                 cascades.seen ? "seen" : "all");
+  if (cascades.near_m > 0.0) text += fmt::format(",near={}", cascades.near_m);
+  if (cascades.far_m > 0.0) text += fmt::format(",far={}", cascades.far_m);
+  return text;
 }
 
 std::set<std::string> describe_fits(const std::vector<FitRule>& rules) {

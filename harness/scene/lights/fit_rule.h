@@ -29,8 +29,11 @@ constexpr bool is_warped(FitMode mode) { return mode >= FitMode::kFocused && mod
 struct CascadeRule {
   int count = 4;       ///< 2 .. 4
   double split = 0.5;  ///< 0: slices of equal depth, 1: of equal ratios of depth; between them: a mean of both
-  double blend = 0.1;  ///< the last share of a slice, over which it fades into the next
-  bool seen = false;   ///< split the depths that pixels show, and not those of all geometry in view
+  std::vector<double> splits = {};  ///< metres, ascending: where all slices but the last end, in place of `split`
+  double blend = 0.1;               ///< the last share of a slice, over which it fades into the next
+  bool seen = false;                ///< split the depths that pixels show, and not those of all geometry in view
+  double near_m = 0.0;              ///< where the first slice begins; 0: with what is in view
+  double far_m = 0.0;               ///< where the last slice ends; 0: with what is in view
 
   bool operator==(const CascadeRule&) const = default;
 };
@@ -50,7 +53,8 @@ std::vector<std::string> list_fit_names();
 /// The fit's name on the command line and in records.
 std::string_view name_of(FitMode mode);
 
-/// The rule as parse_fit_rule() reads it: "tight", "cascades:count=4,split=0.5,blend=0.1,depths=all".
+/// The rule as parse_fit_rule() reads it: "tight", "cascades:count=4,split=0.5,blend=0.1,depths=all",
+/// "cascades:count=3,splits=5/20,blend=0.1,depths=all,far=80".
 std::string describe_fit(const FitRule& rule);
 
 /// All of these, as describe_fit() has each.

@@ -287,13 +287,29 @@ std::vector<double> split_depths(const CascadeRule& rule, double near_m, double 
 
 namespace {
 
+/// Where slices begin and end, of what is in view between two depths. Throws kUsage where that ends before a split.
+std::vector<double> find_borders(const CascadeRule& rule, const DepthSpan& seen) {
+  const double seen_far = seen.far_m > 0.0 ? seen.far_m * (1.0 + 1e-6) : 1.0;
+  const double far_m = rule.far_m > 0.0 ? rule.far_m : seen_far;
+  const double last = !rule.splits.empty() ? rule.splits.back() : rule.near_m;
+  if (last >= far_m)
+    throw Error(ErrorKind::kUsage, fmt::format("--fit: cascades are to reach beyond {} m, but what is in view ends at "
+                                               "{:.4g} m: lower near and splits, or set far",
+                                               last, far_m));
+  const double first = rule.splits.empty() ? far_m : rule.splits.front();
+  const double near_m = rule.near_m > 0.0 ? rule.near_m : std::clamp(seen.near_m, kNearestSplit * far_m, 0.999 * first);
+  if (rule.splits.empty()) return split_depths(rule, near_m, far_m);
+  std::vector<double> borders = rule.splits;
+  borders.insert(borders.begin(), std::min(near_m, 0.999 * first));
+  borders.push_back(far_m);
+  return borders;
+}
+
 /// Fits a layer of the sun's map to each slice of what the camera sees; see fit_layers().
 std::vector<LightFrustum> fit_cascades(const Sun& sun, const Scene& scene, const FitRequest& request) {
   assert(request.camera);
   const DepthSpan depths = find_depths(scene, request);
-  const double far_m = depths.far_m > 0.0 ? depths.far_m * (1.0 + 1e-6) : 1.0;
-  const double near_m = std::clamp(depths.near_m, kNearestSplit * far_m, 0.999 * far_m);
-  const std::vector<double> borders = split_depths(request.cascades, near_m, far_m);
+  const std::vector<double> borders = find_borders(request.cascades, depths);
   const glm::dmat3 rotation = light_rotation(glm::normalize(glm::dvec3(sun.direction_ws)));
   std::vector<LightFrustum> layers;
   for (std::size_t slice = 0; slice + 1 < borders.size(); ++slice) {

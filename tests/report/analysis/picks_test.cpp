@@ -86,6 +86,19 @@ TEST(Picks, ALargerMapWithoutAFilter_MayWin_AndIsSaidTo) {
   EXPECT_EQ(picks[0].why, "the cheapest clearly better than none, map 0; its larger map beats pcss, map 0");
 }
 
+TEST(Picks, OfErrorsAndCostsThatCannotBeToldApart_TheSmallerSeamIsBest_AndASeamThatIsSeenIsSaid) {
+  auto cells = make_cells({{"none", 1, 0.10}, {"pcf", 5, 0.0447}, {"blended", 5, 0.0449}});
+  for (auto& cell : cells) cell.artefact.seam = cell.filter == std::string("blended") ? 0.0132 : 0.0485;
+  EXPECT_THAT(list_picks(cells), ElementsAre("fast: pcf", "best: blended"));
+  EXPECT_EQ(analysis::list_picks(advise(cells, {})).at(0).why,
+            "the cheapest clearly better than none; its cascades show a seam of 0.0485");
+  cells[2] = make_picked({"blended", 5, 0.06});
+  cells[2].artefact.seam = 0.0132;
+  EXPECT_THAT(list_picks(cells), ElementsAre("fast and best: pcf")) << "the errors differ";
+  const Advice advice = advise(cells, {});
+  EXPECT_THAT(list_names(advice.keeping), ElementsAre("pcf", "blended")) << "its seam is smaller: nothing beats it";
+}
+
 TEST(Picks, NoneAlone_IsWhatThereIs) {
   EXPECT_THAT(list_picks(make_cells({{"none", 1, 0.08}})), ElementsAre("fast: none"));
 }

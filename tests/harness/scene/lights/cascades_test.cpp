@@ -15,7 +15,9 @@ using testing::HasSubstr;
 
 TEST(FitRule, ReadsWhatItWrites) {
   for (const char* text : {"tight", "sphere", "view", "cascades:count=2,split=0.25,blend=0,depths=seen",
-                           "cascades:count=4,split=1,blend=0.1,depths=all"})
+                           "cascades:count=4,split=1,blend=0.1,depths=all",
+                           "cascades:count=3,splits=5/20.5,blend=0.1,depths=all,near=0.1,far=80",
+                           "cascades:count=2,split=0.5,blend=0.1,depths=all,far=80"})
     EXPECT_EQ(describe_fit(parse_fit_rule(text)), text);
   EXPECT_EQ(describe_fit(parse_fit_rule("cascades")), "cascades:count=4,split=0.5,blend=0.1,depths=all");
   EXPECT_EQ(parse_fit_rule("cascades:split=logarithmic").cascades.split, 1.0);
@@ -34,6 +36,14 @@ TEST(FitRule, SaysWhatIsWrong) {
       {"cascades:depths=some", "must be all or seen"},
       {"cascades:count=2,count=3", "'count' is given twice"},
       {"cascades:size=3", "cascades have no 'size'"},
+      {"cascades:splits=20/5", "5 m follows 20 m"},
+      {"cascades:splits=5/-20", "splits is '-20' and must be 0.001"},
+      {"cascades:splits=5/20/40/60", "must be 1 to 3 depths in metres"},
+      {"cascades:splits=5/20,far=15", "15 m follows 20 m"},
+      {"cascades:splits=5/20,near=5", "5 m follows 5 m"},
+      {"cascades:splits=5/20,count=2", "2 splits make 3 cascades, not 2"},
+      {"cascades:splits=5,split=1", "split and splits are both given"},
+      {"cascades:near=9,far=8", "8 m follows 9 m"},
   };
   for (const auto& [text, message] : wrong) {
     try {
@@ -103,6 +113,30 @@ TEST(Cascades, NearOnesHaveSmallerTexels_AndTheirSlicesMeet) {
     EXPECT_LT(near.fade_out_begin, near.fade_out_end);
     EXPECT_EQ(layers[i].layer, static_cast<int>(i));
   }
+}
+
+std::vector<double> list_ends(const Scene& scene, const CascadeRule& rule) {
+  std::vector<double> ends;
+  for (const LightFrustum& layer : fit(scene, scene.cameras.front(), rule))
+    ends.push_back(std::get<ViewSlice>(layer.share).end_m);
+  return ends;
+}
+
+TEST(Cascades, EndWhereSplitsInMetresSay) {
+  const Scene scene = load_avenue();
+  EXPECT_EQ(list_ends(scene, {.count = 3, .splits = {5.0, 20.0}, .near_m = 0.1, .far_m = 80.0}),
+            (std::vector<double>{5.0, 20.0, 80.0}));
+  const double in_view = list_ends(scene, {}).back();
+  EXPECT_EQ(list_ends(scene, {.count = 2, .splits = {5.0}}), (std::vector<double>{5.0, in_view}));
+  EXPECT_EQ(list_ends(scene, {.count = 2, .split = 1.0, .near_m = 1.0, .far_m = 64.0}),
+            (std::vector<double>{8.0, 64.0}));
+}
+
+TEST(Cascades, BeyondWhatIsInView_AreRefused_UnlessAFarIsGiven) {
+  const Scene scene = load_avenue();
+  const CascadeRule beyond{.count = 2, .splits = {1e4}};
+  EXPECT_THROW(list_ends(scene, beyond), Error);
+  EXPECT_EQ(list_ends(scene, {.count = 2, .splits = {1e4}, .far_m = 2e4}), (std::vector<double>{1e4, 2e4}));
 }
 
 /// Places of the grid, in its own texels: whole numbers where two grids are one.
