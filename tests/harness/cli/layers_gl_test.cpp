@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -63,6 +65,32 @@ TEST_F(LayersRun, UsersFilter_WithParametersInAnyOrder_IsScored) {
   const json cells =
       run_cells("--scene cubes --filters mine:taps=4,bail=agree --filter-file " + (folder() / "mine.glsl").string());
   EXPECT_TRUE(cells[0]["error"]["rmse"].is_number()) << cells[0]["absent"];
+}
+
+TEST_F(LayersRun, CascadesShareTheErrorOfTheirCell_AndEndWhereTheyAreAskedTo) {
+  const json cells =
+      run_cells("--scene avenue --filters none,tent3x3 --size 192x108 --phases 1 --fit cascades:splits=40,far=200");
+  for (const json& cell : cells) {
+    double shares = 0.0, squares = 0.0, worst = 0.0;
+    std::vector<double> ends;
+    for (const json& cascade : cell["cascades"]) {
+      const double rmse = cascade["rmse"].get<double>();
+      ends.push_back(cascade["end_m"]);
+      shares += cascade["share"].get<double>();
+      squares += cascade["share"].get<double>() * rmse * rmse;
+      worst = std::max(worst, rmse);
+      EXPECT_GT(cascade["texels_per_pixel"], 0.0);
+    }
+    EXPECT_THAT(ends, testing::ElementsAre(40.0, 200.0));
+    EXPECT_NEAR(shares, 1.0, 1e-12);
+    EXPECT_NEAR(std::sqrt(squares), cell["error"]["rmse"].get<double>(), 1e-9);
+    EXPECT_EQ(cell["error"]["rmse_cascade"], worst);
+  }
+  EXPECT_THAT(read_text(folder() / "out" / "index.html"),
+              HasSubstr("directional_shadow_max_distance 200, splits 0.2000"));
+  EXPECT_EQ(run("advise out --max-rmse-cascade 0").exit_code, 1);
+  EXPECT_EQ(run("advise out --max-rmse-cascade 1 --max-seam 1").exit_code, 0);
+  EXPECT_TRUE(run_cells("--fresh --scene avenue --filters none --fit tight")[0]["error"]["rmse_cascade"].is_null());
 }
 
 TEST_F(LayersRun, FitsAreAnAxis) {
