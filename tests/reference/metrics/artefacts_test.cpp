@@ -20,9 +20,8 @@ TEST(ArtefactMasks, FollowTheRays) {
   const std::vector<std::uint8_t> area_settled = {1, 1, 1, 1, 0, 0, 0};
   const std::vector<float> around = {1, 0.9f, 1, 0, 0.5f, 0.5f, 0.2f};
   const std::vector<std::uint8_t> around_settled = {1, 0, 1, 1, 0, 0, 0};
-  const std::vector<float> blocker = {kFar, kFar, kFar, 3.0f, 0.1f, 0.1f, 3.0f};
-  const ArtefactMasks masks =
-      make_artefact_masks({counts, area, area, area_settled, around, around_settled, blocker, 0.2});
+  const std::vector<float> blocker = {kFar, kFar, kFar, 30.0f, 1.0f, 1.0f, 30.0f};
+  const ArtefactMasks masks = make_artefact_masks({counts, area, area, area_settled, around, around_settled, blocker});
   EXPECT_EQ(masks.acne, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(masks.leak, (std::vector<std::uint8_t>{0, 0, 0, 1, 0, 0, 0}));
   EXPECT_EQ(masks.contact_gap, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0}));
@@ -33,7 +32,7 @@ TEST(ArtefactMasks, FollowTheRays) {
 TEST(ArtefactMasks, WhatTheReceiversOwnPlaneHides_IsLit) {
   const std::vector<std::uint8_t> ones(2, 1);
   const std::vector<float> area(2, 0.7f), ratio = {1.0f, 0.9f}, around(2, 1.0f), blocker(2, kFar);
-  EXPECT_EQ(make_artefact_masks({ones, area, ratio, ones, around, ones, blocker, 0.2}).acne,
+  EXPECT_EQ(make_artefact_masks({ones, area, ratio, ones, around, ones, blocker}).acne,
             (std::vector<std::uint8_t>{1, 0}));
 }
 
@@ -45,9 +44,8 @@ TEST(ArtefactMasks, LeaveOutWhatIsNotSettled) {
   const std::vector<std::uint8_t> area_settled = {1, 0, 1, 1, 1, 0, 1, 1};
   const std::vector<float> around = {1, 1, 1, 0, 0, 0, 0, 1};
   const std::vector<std::uint8_t> around_settled = {1, 1, 0, 1, 1, 1, 0, 1};
-  const std::vector<float> blocker(8, 3.0f);
-  const ArtefactMasks masks =
-      make_artefact_masks({counts, area, area, area_settled, around, around_settled, blocker, 0.2});
+  const std::vector<float> blocker(8, 30.0f);
+  const ArtefactMasks masks = make_artefact_masks({counts, area, area, area_settled, around, around_settled, blocker});
   EXPECT_EQ(masks.acne, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(masks.leak, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0}));
 }
