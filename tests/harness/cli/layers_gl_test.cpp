@@ -68,8 +68,7 @@ TEST_F(LayersRun, UsersFilter_WithParametersInAnyOrder_IsScored) {
 }
 
 TEST_F(LayersRun, CascadesShareTheErrorOfTheirCell_AndEndWhereTheyAreAskedTo) {
-  const json cells =
-      run_cells("--scene avenue --filters none,tent3x3 --size 192x108 --phases 1 --fit cascades:splits=40,far=200");
+  const json cells = run_cells("--scene avenue --filters none,tent3x3 --phases 1 --fit cascades:splits=40,far=200");
   for (const json& cell : cells) {
     double shares = 0.0, squares = 0.0, worst = 0.0;
     std::vector<double> ends;
