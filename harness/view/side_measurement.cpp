@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "harness/run/float_images.h"
 #include "harness/view/save.h"
+#include "report/images/image_library.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
 
@@ -71,6 +72,14 @@ MeasuredSides list_cells(const ViewState& state) {
   return sides;
 }
 
+/// Opens what reads images, which takes longer than an image. Where it is not there, reading says so.
+void open_for_reading() {
+  try {
+    images::open_image_library(ErrorKind::kInput);
+  } catch (const Error&) {
+  }
+}
+
 /// Reads what a finished run left. Once it is cancelled, what it gives is worth nothing.
 MeasuredSides read_results(MeasuredSides sides, const fs::path& report, const std::atomic<bool>& is_cancelled) {
   records::Results results = records::read_results(report / "results.json");
@@ -115,6 +124,7 @@ void SideMeasurement::start(const ViewState& state) {
   write_text_file(experiment, write_experiment(state, make_quick(state.options), experiment));
   results_ = list_cells(state);
   worker_.emplace(list_arguments(state.options, folder_->path()), run::WorkerSetup{program_, kLowestPriority});
+  if (!opening_.valid()) opening_ = std::async(std::launch::async, open_for_reading);
   text_ = "starting";
   state_ = State::kRunning;
 }

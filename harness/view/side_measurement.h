@@ -65,6 +65,7 @@ class SideMeasurement {
   std::optional<ScratchFolder> folder_;
   std::optional<run::WorkerProcess> worker_;
   std::future<MeasuredSides> reading_;
+  std::future<void> opening_;               ///< of what reads images, meanwhile
   std::atomic<bool> is_cancelled_ = false;  ///< nobody waits for what is read
 
   void end_worker();

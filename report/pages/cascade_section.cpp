@@ -18,13 +18,17 @@ std::string head_cascade(const records::CascadeRecord& cascade) {
   return fmt::format("to {} m", records::format_number(cascade.end_m));
 }
 
+std::string say_share(const records::CascadeRecord& cascade) {
+  return cascade.share > 0.0 && cascade.share < 0.005 ? "under 1 %" : records::format_share(cascade.share);
+}
+
 /// What all filters share: one row for each cascade.
 document::Table make_facts(const Cascades& cascades) {
   records::TextTable table;
   table.header = {"cascade", "texels per metre", "texels per pixel", "receivers"};
   for (const records::CascadeRecord& each : cascades)
     table.rows.push_back({head_cascade(each), records::format_number(each.texels_per_m),
-                          records::format_number(each.texels_per_pixel), records::format_share(each.share)});
+                          records::format_number(each.texels_per_pixel), say_share(each)});
   return {"Where each cascade ends along the camera's axis, and what it has to draw", std::move(table)};
 }
 
@@ -74,7 +78,7 @@ document::Chart make_chart(const analysis::CellGroup& group, std::size_t number)
       errors.push_back(*each.rmse);
       document::ChartPoint& point = line.points.emplace_back(document::exact_point(each.end_m, *each.rmse));
       point.details = {line.title, head_cascade(each), fmt::format("RMSE {}", records::format_number(*each.rmse)),
-                       records::format_share(each.share) + " of the receivers"};
+                       say_share(each) + " of the receivers"};
       point.opens = cell.key;
     }
   }
