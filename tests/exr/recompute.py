@@ -28,7 +28,7 @@ MOST_DIFFERENT = 0.0005
 
 
 def read_tiff(path):
-    """The values of an uncompressed little-endian TIFF of floats."""
+    """Width, height, channels and values of an uncompressed little-endian TIFF of floats."""
     data = path.read_bytes()
     assert data[:4] == b"II*\0", "not a little-endian TIFF"
     tags = {}
@@ -46,7 +46,7 @@ def read_tiff(path):
     values = array("f")
     for offset, count in zip(tags[273], tags[279]):
         values.frombytes(data[offset:offset + count])
-    return values
+    return tags[256][0], tags[257][0], tags[277][0], values
 
 
 class ExrFile:
@@ -56,7 +56,11 @@ class ExrFile:
         self.metadata = dict(re.findall(r'^ *(shadowbench:\S.*?): "?(.*?)"?$', text, re.MULTILINE))
 
     def parts(self, *names):
-        """Unpacks parts, in one start of oiiotool."""
+        """The values of parts."""
+        return [values for *_, values in self.unpack(*names)]
+
+    def unpack(self, *names):
+        """Width, height, channels and values of parts, in one start of oiiotool."""
         files = [self.folder / f"part{i}.tif" for i in range(len(names))]
         words = [word for name, file in zip(names, files) for word in (
             str(self.path), "--subimage", name, "--fullpixels", "-d", "float", "--compression", "none", "-o", str(file), "--pop")]

@@ -39,7 +39,7 @@ float visibility(Receiver r) { return factor * compare_nearest(r, vec2(0.0), r.d
 
 
 def read_part(path, name, folder):
-    ((width, height, channels, values),) = ExrFile(Path(path), folder).parts(name)
+    ((width, height, channels, values),) = ExrFile(Path(path), folder).unpack(name)
     return width, height, list(values)[::channels] if channels > 1 else list(values)
 
 

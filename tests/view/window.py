@@ -1,5 +1,6 @@
 """Drives `shadowbench view` with real key and mouse events (xdotool), and reads what it says in its log."""
 
+import atexit
 import json
 import os
 import subprocess
@@ -18,6 +19,7 @@ class Window:
         # A cache of its own, or a truth that an earlier test traced would be there at once.
         environment = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"), **(more_environment or {}))
         self.process = subprocess.Popen(command, env=environment, stdout=self.errors.open("w"), stderr=subprocess.STDOUT)
+        atexit.register(self.process.kill)  # where a test fails
         self.wait("the first frame", lambda frame: True, 60.0)
         # Nobody else on this display gives a window the keyboard.
         self.send("search", "--sync", "--name", "^shadowbench: ", "windowfocus", "--sync")
