@@ -56,6 +56,12 @@ bool reaches(const scene::LightFrustum& cascade, const glm::vec3& point_ws) {
   return std::max(std::abs(clip.x), std::abs(clip.y)) <= clip.w;
 }
 
+std::optional<double> find_mean_rmse(const std::vector<metrics::ErrorStats>& phases) {
+  double sum = 0.0;
+  for (const metrics::ErrorStats& each : phases) sum += each.rmse;
+  return phases.empty() ? std::nullopt : std::optional(sum / static_cast<double>(phases.size()));
+}
+
 }  // namespace
 
 Surroundings trace_surroundings(truth::CachedTracer& tracer, const std::vector<TracedLayer>& layers,
@@ -106,6 +112,7 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
                                make_unbiased_light(options, task.scene->light, light_.layers));
   around_ = trace_surroundings(assets_.tracer(), layers_, truth_, widest_kernel_texels(options_));
   masks_ = make_masks(around_, layers_, truth_);
+  for (std::size_t i = 0; has_cascades() && i < layers_.size(); ++i) cascades_.push_back(mask_cascade(i));
 }
 
 /// Where all rays of a receiver's surroundings agree, those of a kernel within them are taken to agree with them.
@@ -146,46 +153,34 @@ KernelTruth CellAnalyser::disks_truth(const std::vector<std::vector<float>>& rad
 
 bool CellAnalyser::has_cascades() const { return std::holds_alternative<scene::ViewSlice>(light_.frustum().share); }
 
-/// The mean RMSE of all phases over a mask, if it has enough receivers to tell.
-std::optional<double> CellAnalyser::measure_phases(const MeasuredCell& cell,
-                                                   const std::vector<std::uint8_t>& mask) const {
-  if (std::ranges::count(mask, 1) < metrics::kFewestReceivers) return std::nullopt;
-  double sum = 0.0, count = 0.0;
-  const auto add = [&](const images::Image& phase) {
-    if (phase.empty()) return;
-    const auto stats = metrics::measure_error(phase.texels, truth_.area.texels, mask);
-    if (!stats) return;
-    sum += stats->rmse;
-    count += 1.0;
+CellAnalyser::CascadeMasks CellAnalyser::mask_cascade(std::size_t cascade) const {
+  const auto keep = [&](std::vector<std::uint8_t> mask) {
+    for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+      if (mask[pixel] && choose_layer(layers_, pixel) != cascade) mask[pixel] = 0;
+    return mask;
   };
-  add(cell.visibility);
-  std::ranges::for_each(cell.phases, add);
-  return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+  return {keep(truth_.mask),
+          {keep(masks_->acne), keep(masks_->leak), keep(masks_->contact_gap), keep(masks_->wide_gap)}};
 }
 
 void CellAnalyser::note_cascades(MeasuredCell& cell) const {
   records::CellRecord& record = cell.record;
-  if (!has_cascades() || !masks_ || cell.visibility.empty()) {
+  if (cascades_.empty() || cell.visibility.empty()) {
     record.absent["error.rmse_cascade"] = !has_cascades() ? "the light has no cascades" : "nothing of them is known";
     return;
   }
   const std::vector<float>& image = cell.visibility.texels;
   const auto receivers = static_cast<double>(std::ranges::count(truth_.mask, 1));
   record.cascades.emplace();
-  for (std::size_t i = 0; i < layers_.size(); ++i) {
-    const auto keep = [&](std::vector<std::uint8_t> mask) {
-      for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
-        if (mask[pixel] && choose_layer(layers_, pixel) != i) mask[pixel] = 0;
-      return mask;
-    };
-    const std::vector<std::uint8_t> own = keep(truth_.mask);
+  for (std::size_t i = 0; i < cascades_.size(); ++i) {
+    const auto& [own, masks] = cascades_[i];
+    const auto count = std::ranges::count(own, 1);
     records::CascadeRecord& cascade = record.cascades->emplace_back();
     cascade.end_m = std::get<scene::ViewSlice>(light_.layers[i].share).end_m;
     cascade.texels_per_m = 1.0 / light_.layers[i].texel_size_ws;
-    cascade.share = receivers > 0.0 ? static_cast<double>(std::ranges::count(own, 1)) / receivers : 0.0;
-    cascade.rmse = measure_phases(cell, own);
-    const metrics::ArtefactMasks masks{keep(masks_->acne), keep(masks_->leak), keep(masks_->contact_gap),
-                                       keep(masks_->wide_gap)};
+    cascade.share = receivers > 0.0 ? static_cast<double>(count) / receivers : 0.0;
+    if (count >= metrics::kFewestReceivers)
+      cascade.rmse = find_mean_rmse(measure_phases(cell.visibility, cell.phases, truth_, own));
     cascade.acne = metrics::rate_acne(image, truth_.rays.area.visibility, masks.acne);
     cascade.leak = metrics::rate_leak(image, cell.unbiased.texels, masks.leak);
     cascade.contact_gap = metrics::rate_contact_gap(image, cell.unbiased.texels, masks);

@@ -71,6 +71,12 @@ class CellAnalyser {
   std::vector<TracedLayer> layers_;
   Surroundings around_;
   std::optional<metrics::ArtefactMasks> masks_;
+  /// What a cascade serves the most of.
+  struct CascadeMasks {
+    std::vector<std::uint8_t> receivers;
+    metrics::ArtefactMasks artefacts;
+  };
+  std::vector<CascadeMasks> cascades_;          ///< none without cascades, or without a truth
   std::map<std::string, KernelTruth> kernels_;  ///< by name
 
   /// What many filters are compared with.
@@ -88,7 +94,7 @@ class CellAnalyser {
   const std::vector<double>& compare(const filters::Kernel& kernel, const std::vector<render::Bias>& biases,
                                      const std::vector<ModelLayer>* layers);
   bool has_cascades() const;
-  std::optional<double> measure_phases(const MeasuredCell& cell, const std::vector<std::uint8_t>& mask) const;
+  CascadeMasks mask_cascade(std::size_t cascade) const;
   void count_artefacts(MeasuredCell& cell) const;
   std::optional<double> measure_seam(MeasuredCell& cell) const;
   ModelImages evaluate(const MeasuredCell& cell);

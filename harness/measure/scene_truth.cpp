@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtx/component_wise.hpp>
+#include <iterator>
 
 #include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
@@ -123,16 +124,24 @@ images::Image make_error_image(const images::Image& visibility, const images::Im
   return error;
 }
 
+std::vector<metrics::ErrorStats> measure_phases(const images::Image& visibility,
+                                                std::span<const images::Image> other_phases, const SceneTruth& truth,
+                                                const std::vector<std::uint8_t>& mask) {
+  std::vector<metrics::ErrorStats> phases;
+  const auto measure = [&](const images::Image& phase) {
+    if (phase.empty()) return;
+    if (const auto stats = metrics::measure_error(phase.texels, truth.area.texels, mask)) phases.push_back(*stats);
+  };
+  measure(visibility);
+  std::ranges::for_each(other_phases, measure);
+  return phases;
+}
+
 images::Image score(records::CellRecord& record, const images::Image& visibility,
                     std::span<const images::Image> other_phases, const images::Image& picture,
                     const SceneTruth& truth) {
   std::vector<metrics::ErrorStats> phases;
-  const auto measure_phase = [&](const images::Image& phase) {
-    if (!truth.absent.empty() || phase.empty()) return;
-    if (const auto stats = metrics::measure_error(phase.texels, truth.area.texels, truth.mask))
-      phases.push_back(*stats);
-  };
-  measure_phase(visibility);
+  if (truth.absent.empty()) phases = measure_phases(visibility, {}, truth, truth.mask);
   if (phases.empty()) {
     const std::string reason = !truth.absent.empty() ? truth.absent
                                : visibility.empty()  ? record.message
@@ -140,7 +149,7 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
     for (const char* group : {"error", "truth", "penumbra"}) record.absent[group] = reason;
     return {};
   }
-  std::ranges::for_each(other_phases, measure_phase);
+  std::ranges::move(measure_phases({}, other_phases, truth, truth.mask), std::back_inserter(phases));
   // Without a phase of which nothing is finite, those that are left make no groups.
   const bool is_whole = phases.size() == other_phases.size() + 1;
   const std::size_t group = is_whole ? count_phases_of_group(phases.size()) : 1;

@@ -10,6 +10,7 @@
 #include "harness/options/options.h"
 #include "harness/scene/lights/light.h"
 #include "harness/scene/scene.h"
+#include "reference/metrics/error_stats.h"
 #include "reference/metrics/flip.h"
 #include "reference/truth/cached_tracer.h"
 #include "report/images/image.h"
@@ -42,6 +43,12 @@ struct SceneTruth {
 /// Traces the receivers of a view; the pictures are left empty.
 SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, ViewReceivers receivers,
                        options::TruthWeight weight = options::TruthWeight::kArea);
+
+/// Measures the errors of visibility over a mask, of the first phase of the map's grid and then the others; one that is
+/// empty, or of which nothing is finite, is left out. Requires a truth.
+std::vector<metrics::ErrorStats> measure_phases(const images::Image& visibility,
+                                                std::span<const images::Image> other_phases, const SceneTruth& truth,
+                                                const std::vector<std::uint8_t>& mask);
 
 /// Scores a cell's images against the truth and notes the errors, or why there are none, in its record: visibility over
 /// the pixels that count, as the mean over the phases of the map's grid, of which `visibility` is the first and

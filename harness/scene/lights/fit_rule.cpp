@@ -76,23 +76,22 @@ void set_key(CascadeRule& rule, std::string_view key, std::string_view value) {
   }
 }
 
-void require_ascent(const std::vector<double>& depths) {
+void require_ascent(const CascadeRule& rule) {
+  std::vector<double> depths = rule.splits;
+  if (rule.near_m > 0.0) depths.insert(depths.begin(), rule.near_m);
+  if (rule.far_m > 0.0) depths.push_back(rule.far_m);
   const auto fall = std::ranges::adjacent_find(depths, std::greater_equal());
   if (fall != depths.end())
     refuse(fmt::format("{} m follows {} m: near, splits and far must ascend", *std::next(fall), *fall));
 }
 
-/// Holds splits in metres against the other keys, which say how many slices there are and where they lie.
+/// Holds splits in metres against the keys that say how many slices there are, and in which ratio.
 void take_splits(CascadeRule& rule, const std::set<std::string>& keys) {
   if (keys.contains("split")) refuse("split and splits are both given: splits are metres, and leave nothing to split");
   const int count = static_cast<int>(rule.splits.size()) + 1;
   if (keys.contains("count") && rule.count != count)
     refuse(fmt::format("{} splits make {} cascades, not {}: leave count out", count - 1, count, rule.count));
   rule.count = count;
-  std::vector<double> depths = rule.splits;
-  if (rule.near_m > 0.0) depths.insert(depths.begin(), rule.near_m);
-  if (rule.far_m > 0.0) depths.push_back(rule.far_m);
-  require_ascent(depths);
 }
 
 CascadeRule parse_cascades(std::string_view text) {
@@ -103,7 +102,7 @@ CascadeRule parse_cascades(std::string_view text) {
     keys.insert(key);
   }
   if (!rule.splits.empty()) take_splits(rule, keys);
-  if (rule.near_m > 0.0 && rule.far_m > 0.0) require_ascent({rule.near_m, rule.far_m});
+  require_ascent(rule);
   return rule;
 }
 

@@ -297,10 +297,11 @@ std::vector<double> find_borders(const CascadeRule& rule, const DepthSpan& seen)
                                                "{:.4g} m: lower near and splits, or set far",
                                                last, far_m));
   const double first = rule.splits.empty() ? far_m : rule.splits.front();
-  const double near_m = rule.near_m > 0.0 ? rule.near_m : std::clamp(seen.near_m, kNearestSplit * far_m, 0.999 * first);
+  const double near_m =
+      rule.near_m > 0.0 ? rule.near_m : std::min(std::max(seen.near_m, kNearestSplit * far_m), 0.999 * first);
   if (rule.splits.empty()) return split_depths(rule, near_m, far_m);
   std::vector<double> borders = rule.splits;
-  borders.insert(borders.begin(), std::min(near_m, 0.999 * first));
+  borders.insert(borders.begin(), near_m);
   borders.push_back(far_m);
   return borders;
 }
