@@ -32,7 +32,7 @@ const listLines = (chart, { point, series }) => {
   return [series.title, say(chart.x, point.x), say(chart.y, point.y)].filter(Boolean);
 };
 
-// Shows what is said of the point nearest to the pointer, and opens the cell behind it.
+// Shows what is said of the point nearest to the pointer; a click opens the cell behind the point that is shown.
 const followPointer = (holder, tip, chart, { svg, hits }) => {
   const openerOf = (hit) => (hit?.point.opens ? window.shadowbench.openCell : undefined);
   const find = ({ clientX, clientY }) => {
@@ -41,8 +41,9 @@ const followPointer = (holder, tip, chart, { svg, hits }) => {
     const away = ({ at: [x, y] }) => Math.hypot(x * scale - (clientX - box.left), y * scale - (clientY - box.top));
     return hits.reduce((best, hit) => (away(hit) < (best ? away(best) : kReach) ? hit : best), null);
   };
+  let hit = null;
   const show = (event) => {
-    const hit = find(event);
+    hit = find(event);
     tip.hidden = !hit;
     svg.style.cursor = openerOf(hit) ? "pointer" : "default";
     if (!hit) return;
@@ -55,10 +56,7 @@ const followPointer = (holder, tip, chart, { svg, hits }) => {
   svg.addEventListener("pointermove", show);
   svg.addEventListener("pointerdown", show);
   svg.addEventListener("pointerleave", () => (tip.hidden = true));
-  svg.addEventListener("click", (event) => {
-    const hit = find(event);
-    openerOf(hit)?.(hit.point.opens);
-  });
+  svg.addEventListener("click", () => openerOf(hit)?.(hit.point.opens));
 };
 
 // Texts and points are packed: see the writer. Left are the points of one group, and those that belong to none.
