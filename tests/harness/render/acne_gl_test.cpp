@@ -98,9 +98,10 @@ struct Traced {
   Bench bench;
   std::vector<int> lit;
 
-  explicit Traced(const std::string& name, const render::MapSettings& map = {}, const std::vector<int>& traced = {})
+  explicit Traced(const std::string& name, const render::MapSettings& map = {}, const std::vector<int>& traced = {},
+                  int map_size = 1024)
       : scene(load_builtin(name)),
-        bench(shared_context(), scene, 1024, kWidth, kHeight, map),
+        bench(shared_context(), scene, map_size, kWidth, kHeight, map),
         lit(traced.empty() ? trace(bench, scene, bench.receivers(catalogue().parse_requests("none").front()))
                            : traced) {}
 
@@ -127,12 +128,12 @@ TEST_P(DefaultBias, LeavesNoVisibleAcne) {
 INSTANTIATE_TEST_SUITE_P(BuiltIn, DefaultBias, ::testing::ValuesIn(scenes_of_all_maps()),
                          [](const auto& each) { return each.param; });
 
-/// The default constant covers half a step of the coarsest format.
+/// The default bias covers half a step of the coarsest format.
 TEST(DefaultBias, LeavesNoVisibleAcne_InAnyFormat) {
   std::vector<int> lit;
   for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
     for (const bool reversed : {false, true}) {
-      Traced traced("steps", {format, {reversed}}, lit);
+      Traced traced("ball", {format, {reversed}}, lit, 512);
       lit = traced.lit;
       for (const std::string& filter : filter_ids()) {
         const Rates rates = traced.measure(filter, {});
