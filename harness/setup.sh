@@ -11,8 +11,8 @@ packages="
   libtomlplusplus-dev libvulkan-dev libxxhash-dev nlohmann-json3-dev openimageio-tools
   fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri mesa-vulkan-drivers
 "
-tests="chromium clang-format faketime gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev munge parallel
-  python3-jsonschema slurm-wlm xauth xdotool xvfb"
+tests="chromium clang-format gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev python3-jsonschema
+  slurm-wlm xauth xdotool xvfb"
 # What runs the tests of the pages may have come from elsewhere, and Debian's packages would then be in its way.
 command -v node >/dev/null || tests="$tests nodejs"
 command -v npm >/dev/null || tests="$tests npm"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <sstream>
 #include <type_traits>
 
@@ -88,6 +89,11 @@ void add_command(CLI::App& app, const Command& command, Chosen& chosen) {
   if (command.action) app.callback([&] { chosen = {&command, &app}; });
 }
 
+/// What does the work of a command that is gone, for one version.
+const std::map<std::string, std::string> kInstead = {
+    {"submit", "harness/slurm.sh (share/doc/shadowbench/slurm.sh where it is installed)"},
+    {"status", "squeue, which shows the jobs of harness/slurm.sh"}};
+
 /// Finds the command that the words name. Throws Error(kUsage) for a word that is none, where a command must come.
 const Command& find_command(const Command& program, const std::vector<std::string>& words) {
   const Command* command = &program;
@@ -95,6 +101,8 @@ const Command& find_command(const Command& program, const std::vector<std::strin
   for (std::size_t i = 1; i < words.size() && !command->commands.empty() && !words[i].starts_with('-'); ++i) {
     const auto found = std::ranges::find(command->commands, words[i], &Command::name);
     if (found == command->commands.end()) {
+      if (const auto gone = kInstead.find(words[i]); gone != kInstead.end())
+        throw Error(ErrorKind::kUsage, fmt::format("'{} {}' is gone: use {}", path, words[i], gone->second));
       std::vector<std::string> known;
       for (const Command& each : command->commands)
         if (!each.hidden) known.push_back(each.name);
@@ -107,12 +115,10 @@ const Command& find_command(const Command& program, const std::vector<std::strin
   return *command;
 }
 
-/// Puts the options' own names in place of their other spellings, so that nothing else knows of these, and gives the
-/// command what is meant for another program. The parser takes the words in reverse order, without the program's name.
+/// Puts the options' own names in place of their other spellings, so that nothing else knows of these. The parser takes
+/// the words in reverse order, without the program's name.
 std::vector<std::string> list_parser_words(const Command& command, const std::vector<std::string>& words) {
-  const auto end = command.rest ? std::ranges::find(words, "--") : words.end();
-  if (end != words.end()) command.rest->assign(std::next(end), words.end());
-  std::vector<std::string> own(std::make_reverse_iterator(end), std::prev(words.rend()));
+  std::vector<std::string> own(words.rbegin(), std::prev(words.rend()));
   for (std::string& word : own)
     for (const Option& option : command.options)
       if (!option.other_name.empty() && word.substr(0, word.find('=')) == option.other_name)

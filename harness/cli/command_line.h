@@ -42,7 +42,6 @@ struct Command {
   std::string about = {};
   bool hidden = false;
   std::vector<Option> options = {};
-  std::vector<std::string>* rest = nullptr;            ///< takes the words after `--`; null: there may be none
   std::vector<Command> commands = {};                  ///< one of them must be given, where there are any
   std::function<int(const CommandLine&)> action = {};  ///< what the command does; gives the exit code
 

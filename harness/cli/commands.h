@@ -8,8 +8,6 @@ namespace shadowbench::cli {
 
 Command make_run_command();
 Command make_merge_command();
-Command make_submit_command();
-Command make_status_command();
 Command make_list_command();
 Command make_diff_command();
 Command make_bias_command();

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <exception>
 #include <system_error>
 #include <utility>
 
@@ -43,8 +42,8 @@ const char* name_of(int signal) { return signal == SIGINT ? "SIGINT" : signal ==
 
 }  // namespace
 
-Interruption::Interruption(std::filesystem::path out, std::string advice, std::function<void(int)> at_end)
-    : out_(std::move(out)), advice_(std::move(advice)), at_end_(std::move(at_end)) {
+Interruption::Interruption(std::filesystem::path out, std::string advice)
+    : out_(std::move(out)), advice_(std::move(advice)) {
   if (pipe2(g_pipe, O_CLOEXEC) != 0) return;  // without a pipe, a signal ends the program at once, as it ends others
   try {
     thread_ = std::thread([this] { wait(); });
@@ -72,11 +71,6 @@ void Interruption::wait() const {
 }
 
 void Interruption::end(int signal) const {
-  try {
-    at_end_(signal);
-  } catch (const std::exception&) {
-    // The program ends all the same.
-  }
   remove_temporary_files(out_, [](const Writer& writer) { return writer == this_writer(); });
   flockfile(stderr);  // and never given back: what other threads are about to say must not follow this line
   fmt::print(stderr, "{}shadowbench: stopped by {}; {}\n", isatty(STDERR_FILENO) ? "\n" : "", name_of(signal), advice_);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <thread>
 
@@ -14,9 +13,8 @@ constexpr const char* kStoppedAdvice = "nothing half-written is left; run the sa
 /// program by that same signal. A signal that the program was started to ignore stays ignored. One at a time.
 class Interruption {
  public:
-  /// `advice` ends the line: what stays, and what to do. `at_end` is called before, with the signal.
-  Interruption(
-      std::filesystem::path out, std::string advice, std::function<void(int signal)> at_end = [](int) {});
+  /// `advice` ends the line: what stays, and what to do.
+  Interruption(std::filesystem::path out, std::string advice);
   ~Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
@@ -24,7 +22,6 @@ class Interruption {
  private:
   std::filesystem::path out_;
   std::string advice_;
-  std::function<void(int)> at_end_;
   std::thread thread_;
 
   void wait() const;

@@ -7,8 +7,6 @@
 #include "harness/cli/interruption.h"
 #include "harness/cli/print.h"
 #include "harness/run/merge.h"
-#include "harness/submit/sweep_folder.h"
-#include "harness/submit/sweep_jobs.h"
 
 namespace shadowbench::cli {
 
@@ -18,16 +16,14 @@ Command make_merge_command() {
     std::string out;
     bool force = false;
   };
-  Command command{"merge",
-                  "Write one report of the shards of 'run', of the tasks of 'submit', or of times from other machines"};
+  Command command{"merge", "Write one report of the shards of 'run', or of times from other machines"};
   command.about =
-      "Of several folders, which 'run --shard 1/N' to 'N/N' wrote, it makes a new one. Of the folder of a sweep that "
-      "'submit' made, it writes the report into that folder, once all cells are measured; the last job of the sweep "
-      "does so by itself. With --times, times that readers' browsers saved become costs of a report that there is: its "
-      "page, its fronts.csv and its answer then have a choice for each machine.";
+      "Of several folders, which 'run --shard 1/N' to 'N/N' wrote, it makes a new one. With --times, times that "
+      "readers' browsers saved become costs of a report that there is: its page, its fronts.csv and its answer then "
+      "have a "
+      "choice for each machine.";
   auto a = std::make_shared<Arguments>();
-  command
-      .add("DIR", &a->folders, "the report folders of all shards of one experiment, or the folder of a sweep or a run")
+  command.add("DIR", &a->folders, "the report folders of all shards of one experiment, or the folder of a run")
       .names(ValueKind::kFolder)
       .require();
   command.add("--out", &a->out, "folder of the whole report of shards; new or empty").names(ValueKind::kFolder);
@@ -35,21 +31,15 @@ Command make_merge_command() {
   command.add("--times", &a->times, "a gpu-times.json that a report's page saved, of the run in DIR; may be repeated")
       .names(ValueKind::kFile);
   command.action = [a](const CommandLine&) {
-    const bool has_times = !a->times.empty(), is_sweep = !has_times && a->out.empty();
+    const bool has_times = !a->times.empty();
     if (has_times && (!a->out.empty() || a->folders.size() > 1))
       fail("--times joins times to one report: name its folder alone, without --out");
-    if (is_sweep && (a->folders.size() > 1 || !submit::is_sweep(a->folders.front())))
-      fail(
-          fmt::format("'{}' is not the folder of a sweep that 'submit' made; to join shards, name the folder of the "
-                      "whole report with --out",
-                      a->folders.front()));
+    if (!has_times && a->out.empty()) fail("--out is required: name the folder of the whole report");
     const std::filesystem::path out = a->out.empty() ? a->folders.front() : a->out;
     {
       const Interruption interruption(out, kStoppedAdvice);
       if (has_times)
         run::merge_times(out, {a->times.begin(), a->times.end()});
-      else if (is_sweep)
-        submit::merge_sweep(out);
       else
         run::merge_runs({a->folders.begin(), a->folders.end()}, out, a->force);
     }

@@ -39,6 +39,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters C
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/ DESTINATION ${_share}/shaders COMPONENT program PATTERN "*.md" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/ DESTINATION ${_share}/data COMPONENT program PATTERN "*.md" EXCLUDE)
 install(DIRECTORY ${_manual}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program FILES_MATCHING PATTERN "*.1.gz")
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/harness/slurm.sh DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES ${_manual}/pages/shadowbench.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME shadowbench
         COMPONENT program)
 install(FILES ${_manual}/pages/_shadowbench DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)

@@ -27,7 +27,7 @@ std::vector<filters::FilterRequest> parse_pair(const filters::Catalogue& catalog
       fail(fmt::format("--until-different: {} is not measured in this run; its filters are {}", each.label(),
                        fmt::join(labels, ", ")));
   if (!options.truth) fail("--until-different compares errors, which --no-truth leaves out: leave one of them out");
-  if (options.part.shards() > 1) fail("--until-different needs all cells, of which --shard leaves some out");
+  if (options.part.shards > 1) fail("--until-different needs all cells, of which --shard leaves some out");
   return pair;
 }
 
@@ -80,7 +80,6 @@ void add_run_options(Command& command, RunArguments& a) {
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");
   command.add("--worker", &a.worker, "").hide();
   command.add("--check", &a.check, "").hide();
-  command.add("--task", &a.task, "").hide();
   command.add("--every-step", &a.every_step, "").hide();
 }
 

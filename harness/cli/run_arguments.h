@@ -24,7 +24,6 @@ struct RunArguments : DrawingArguments {
   std::string until_different;           ///< two filters; empty: phases are as they are told
   bool worker = false;
   bool check = false;       ///< as a worker: only compile the filters
-  std::string task;         ///< folder of the task of a sweep that is to be done
   bool every_step = false;  ///< show a line for each step, as the window reads them
 
   /// 1: grids are drawn, -1: they are not, 0: where there are few filters.

@@ -15,7 +15,6 @@
 #include "harness/gpu/facts_request.h"
 #include "harness/run/run_experiment.h"
 #include "harness/run/until_different.h"
-#include "harness/submit/sweep_jobs.h"
 #include "report/files/folder_lock.h"
 #include "report/records/filter_mistakes.h"
 #include "report/records/json_io.h"
@@ -71,7 +70,7 @@ void require_sound_report(const std::filesystem::path& out) {
 void note_filter_mistakes(const RunArguments& arguments, const std::exception& caught) {
   const std::filesystem::path out = arguments.out;
   const auto* error = dynamic_cast<const Error*>(&caught);
-  if (!error || error->kind() != ErrorKind::kFilter || std::filesystem::exists(out / run::kSweepFile)) return;
+  if (!error || error->kind() != ErrorKind::kFilter) return;
   std::vector<filters::FilterMistake> mistakes;
   if (const auto* all = dynamic_cast<const filters::FilterErrors*>(error)) {
     mistakes = all->mistakes();
@@ -87,14 +86,6 @@ void note_filter_mistakes(const RunArguments& arguments, const std::exception& c
   }
 }
 
-/// Does a task of a sweep, in its folder.
-int run_as_task(const options::RunOptions& options, const std::filesystem::path& task) {
-  const Interruption interruption(options.out, "what was finished stays, and the task goes on from there",
-                                  [&task](int signal) { submit::note_stopped_task(task, signal); });
-  submit::run_task(options, task, *make_progress());
-  return 0;
-}
-
 int run_experiment(const CommandLine& line, RunArguments& arguments) {
   const auto is_on = [&](const char* flag) { return options::find_told<bool>(arguments.told, flag); };
   if (!is_on("--truth") && is_on("--attribution") && line.has("--attribution"))
@@ -104,12 +95,11 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
   const std::string title = apply_experiment(line, arguments);
   options::RunOptions options = make_run_options(arguments, line.words());
   options.title = title;
-  if (!arguments.engines.empty() && options.part.shards() > 1)
+  if (!arguments.engines.empty() && options.part.shards > 1)
     fail(
         "--shard: the experiment's [[engine]] tables would be drawn by each shard; leave them out, and score the "
         "whole");
   require_allowed(arguments.engines, arguments.allow_commands);
-  if (!arguments.task.empty()) return run_as_task(options, arguments.task);
   if (options.part.is_worker()) {
     run_with_notes(options, *make_progress());
     return 0;
@@ -130,10 +120,7 @@ int run(const CommandLine& line, RunArguments& arguments) {
   try {
     return run_experiment(line, arguments);
   } catch (const std::exception& error) {
-    if (!arguments.task.empty())
-      submit::note_failed_task(arguments.task, error);
-    else if (!arguments.worker && !arguments.check)
-      note_filter_mistakes(arguments, error);
+    if (!arguments.worker && !arguments.check) note_filter_mistakes(arguments, error);
     throw;
   }
 }

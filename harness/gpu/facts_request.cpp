@@ -102,10 +102,6 @@ void answer_request(const std::filesystem::path& request_file, const std::filesy
       throw Error(ErrorKind::kOutput, "the file cannot be written; check the free space", answers.string());
 }
 
-void write_answer(const std::filesystem::path& file, const FactsAnswer& answer) {
-  write_text_file(file, dump(to_json(answer)));
-}
-
 std::vector<FactsAnswer> read_answers(const std::filesystem::path& answers) {
   std::vector<FactsAnswer> read;
   std::ifstream stream(answers);

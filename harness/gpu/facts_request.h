@@ -39,7 +39,4 @@ void answer_request(const std::filesystem::path& request, const std::filesystem:
 /// Reads what a process wrote until it ended, be it in the middle; in the order of the request's passes.
 std::vector<FactsAnswer> read_answers(const std::filesystem::path& answers);
 
-/// Writes one answer, as a file that read_answers() reads. Throws Error(kOutput).
-void write_answer(const std::filesystem::path& file, const FactsAnswer& answer);
-
 }  // namespace shadowbench::gpu

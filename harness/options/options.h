@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,14 +42,6 @@ struct PictureSize {
   bool operator==(const PictureSize&) const = default;
 };
 
-/// Cells of a plan: every `step`-th from `begin` on, up to `end` and without it.
-struct CellRange {
-  int begin = 0;
-  int end = 0;
-  int step = 1;
-  bool operator==(const CellRange&) const = default;
-};
-
 /// What visibility is held against; pictures are held against the second of the two.
 enum class TruthWeight {
   kArea,    ///< the share of the light's area, of a sphere's solid angle, that is seen: what filters define
@@ -60,9 +51,6 @@ enum class TruthWeight {
 /// What a run leaves of the cells that it does.
 enum class Product {
   kReport,    ///< a folder of its own, and a report once all of them are there
-  kCells,     ///< a task's: files in a folder that the other tasks of a sweep write into at the same time. It takes no
-              ///< lock, deletes nothing of theirs, and makes no report
-  kTruth,     ///< a task's: what the cells share, in the cache
   kImages,    ///< a worker's: records and float images, which the run that started it scores and draws
   kPrograms,  ///< a worker's: nothing, but that the filters compile
 };
@@ -70,16 +58,9 @@ enum class Product {
 /// The part of an experiment that a run does.
 struct Part {
   Product product = Product::kReport;
-  std::vector<CellRange> cells = std::vector(1, CellRange{0, std::numeric_limits<int>::max()});  ///< its own, ascending
-  std::vector<int> scene_cells;  ///< a task's: how many cells each scene has in each picture size, in the plan's order;
-                                 ///< scenes without an own cell are not loaded
-  std::string content;           ///< name of what the own cells are made from, as it was planned; empty: not checked
+  int shard = 1;  ///< every `shards`-th cell, from the `shard`-th on
+  int shards = 1;
 
-  /// Of a shard, which is every `shards`-th cell.
-  int shard_index() const { return cells.front().begin % shards() + 1; }
-  int shards() const { return cells.front().step; }
-
-  bool is_task() const { return product == Product::kCells || product == Product::kTruth; }
   bool is_worker() const { return product == Product::kImages || product == Product::kPrograms; }
 };
 

@@ -124,7 +124,8 @@ void take(const char* name, const std::string& text, Part& part) {
   if (slash == std::string::npos) fail(fmt::format("{}: '{}' must be I/N, such as 1/3", name, text));
   const int index = parse_count(text.substr(0, slash), name), count = parse_count(text.substr(slash + 1), name);
   if (index > count) fail(fmt::format("{}: {} has no {} of {}; choose 1 .. {}", name, text, index, count, count));
-  part.cells = {{index - 1, std::numeric_limits<int>::max(), count}};
+  part.shard = index;
+  part.shards = count;
 }
 
 /// Collects options, one after another; all of a stretch decide the same.
@@ -395,7 +396,7 @@ void check_run_options(const RunOptions& options) {
         fmt::format("--border-page shows all filters side by side, which --no-grids leaves out, as do more than {} "
                     "filters: name fewer, give --grids, or leave it out",
                     kFiltersOfAGrid));
-  if (options.grids && options.part.shards() > 1)
+  if (options.grids && options.part.shards > 1)
     fail("--shard needs --no-grids: a grid shows all filters of a view, and a shard has some of them");
 }
 

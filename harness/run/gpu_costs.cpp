@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/content_hash.h"
 #include "base/error.h"
 #include "base/temporary_files.h"
 #include "harness/gpu/estimate.h"
@@ -89,8 +88,7 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
   for (const measure::MeasuredCell& cell : cells) {
     if (cell.passes.empty()) continue;
     for (const render::DrawnPass* pass : list_passes(cell))
-      if (const std::string name = name_pass(*pass); !known.contains(name) && !take_shared(gpu, name))
-        wanted.emplace(name, pass);
+      if (const std::string name = name_pass(*pass); !known.contains(name)) wanted.emplace(name, pass);
   }
   const auto refuse = [&](const std::string& why) {
     refused_[gpu.name] = why;
@@ -122,7 +120,6 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
     was_silent = given.empty();
     for (gpu::FactsAnswer& answer : given) {
       if (wanted.empty()) break;
-      share(gpu, wanted.begin()->first, answer);
       known.emplace(wanted.begin()->first, std::move(answer));
       wanted.erase(wanted.begin());
     }
@@ -130,25 +127,6 @@ void GpuCosts::compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredC
     known.emplace(wanted.begin()->first, gpu::FactsAnswer{{}, describe_end(outcome)});
     wanted.erase(wanted.begin());
   }
-}
-
-std::filesystem::path GpuCosts::shared_file(const gpu::Gpu& gpu, const std::string& pass) const {
-  ContentHash hash;
-  hash.add(gpu.name);
-  hash.add(pass);
-  return options_.out / "gpu" / (hash.name() + ".json");
-}
-
-bool GpuCosts::take_shared(const gpu::Gpu& gpu, const std::string& pass) {
-  if (!options_.part.is_task()) return false;
-  std::vector<gpu::FactsAnswer> answers = gpu::read_answers(shared_file(gpu, pass));
-  if (answers.empty()) return false;
-  answers_[gpu.name].emplace(pass, std::move(answers.front()));
-  return true;
-}
-
-void GpuCosts::share(const gpu::Gpu& gpu, const std::string& pass, const gpu::FactsAnswer& answer) const {
-  if (options_.part.is_task()) gpu::write_answer(shared_file(gpu, pass), answer);
 }
 
 records::GpuRecord GpuCosts::make_record(const gpu::Gpu& gpu, const measure::MeasuredCell& cell) const {

@@ -42,11 +42,6 @@ class GpuCosts {
 
   void compile(const gpu::Gpu& gpu, const std::vector<measure::MeasuredCell>& cells);
 
-  /// The tasks of a sweep compile a pass once, and one compiler's facts go into all of its cells.
-  std::filesystem::path shared_file(const gpu::Gpu& gpu, const std::string& pass) const;
-  bool take_shared(const gpu::Gpu& gpu, const std::string& pass);
-  void share(const gpu::Gpu& gpu, const std::string& pass, const gpu::FactsAnswer& answer) const;
-
   records::GpuRecord make_record(const gpu::Gpu& gpu, const measure::MeasuredCell& cell) const;
 };
 

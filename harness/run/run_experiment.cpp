@@ -83,23 +83,19 @@ class Experiment {
     if (options.pictures && spirv::can_translate_to_webgl()) renderer_.recorder = std::make_unique<gl::Recorder>();
   }
 
-  records::RunRecord run() {
-    require_no_sweep();
+  void run() {
     RunPlan plan = make_plan(options_, renderer_.context->info().renderer);
     for (PlannedTask& task : plan.tasks) task.is_traced = cache_.has(name_traces(plan.scenes[task.scene], task));
     for (const PlannedTask& task : plan.tasks)
       gl::require_texture_size("--map-size", task.task.map_size, task.task.map_size);
     announce(plan);
-    if (!options_.part.is_task()) lock_.emplace(options_.out, options_.force || options_.part.is_worker());
+    lock_.emplace(options_.out, options_.force || options_.part.is_worker());
     require_writable(options_.out);
-    const bool is_done = plan.finished == plan.own_cells && (options_.part.is_task() || has_report(plan));
-    if (is_done) progress_.note("nothing is left to do");
-    if (!is_done || options_.part.is_task())
-      std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
-    if (is_done) {
-      if (!options_.part.is_task()) records::write_filter_mistakes(options_.out, {});
-      return run_;
+    if (plan.finished == plan.own_cells && has_report(plan)) {
+      progress_.note("nothing is left to do");
+      return records::write_filter_mistakes(options_.out, {});
     }
+    std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
     try {
       if (options_.part.product == options::Product::kReport) {
         check_user_filters(plan, renderer_.context->info().backend);
@@ -110,7 +106,6 @@ class Experiment {
       require_in_place();  // else this is why a file cannot be written, or a cell is missing
       throw;
     }
-    return run_;
   }
 
  private:
@@ -120,20 +115,11 @@ class Experiment {
   measure::Renderer renderer_;
   truth::TruthCache cache_;
   records::RunRecord run_;
-  std::optional<files::FolderLock> lock_;  ///< none where other tasks write into the folder too
-  std::set<std::string> told_;             ///< warnings that the user has seen
+  std::optional<files::FolderLock> lock_;
+  std::set<std::string> told_;  ///< warnings that the user has seen
   TaskListener listener_{&steps_, [this](const measure::SceneMeasurement& measured) { count(measured); }};
   std::function<void(const std::string&)> note_ = [this](const std::string& message) { progress_.note(message); };
   GpuCosts gpus_{options_, note_};
-
-  /// What is half-written in the folder of a sweep belongs to tasks that may run anywhere.
-  void require_no_sweep() const {
-    if (options_.part.is_task() || !std::filesystem::exists(options_.out / kSweepFile)) return;
-    throw Error(
-        ErrorKind::kUsage,
-        "--out: a sweep was submitted into this folder: 'shadowbench status' says how far it is; choose another",
-        options_.out.string());
-  }
 
   void require_in_place() const {
     if (lock_) lock_->require_in_place();
@@ -151,16 +137,14 @@ class Experiment {
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
-    if (!options_.part.is_task()) finish(plan, replaced);
+    finish(plan, replaced);
     steps_.finish();
   }
 
   /// The page of the scenes that are measured, whenever they are twice as many: so it is there after the first, and all
   /// such pages together cost less than the last.
   void show_early(const RunPlan& plan, std::size_t scenes) {
-    if (options_.part.is_task() || options_.part.is_worker() || scenes == plan.scenes.size() ||
-        !std::has_single_bit(scenes))
-      return;
+    if (scenes == plan.scenes.size() || !std::has_single_bit(scenes)) return;
     std::vector<std::string> keys;
     for (const PlannedTask& task : plan.tasks)
       if (task.scene < scenes) keys.insert(keys.end(), task.keys.begin(), task.keys.end());
@@ -205,20 +189,18 @@ class Experiment {
 
   /// Says how much there is to do, and asks where it is a lot.
   void announce(const RunPlan& plan) {
-    run_.experiment = {options_.title, plan.settings, plan.cells, options_.part.shard_index(), options_.part.shards()};
+    run_.experiment = {options_.title, plan.settings, plan.cells, options_.part.shard, options_.part.shards};
     if (options_.part.is_worker()) return;
     const int left = plan.own_cells - plan.finished;
     std::string text = fmt::format("{} cells", plan.own_cells);
-    if (options_.part.shards() > 1)
-      text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.part.shard_index(), options_.part.shards());
+    if (options_.part.shards > 1)
+      text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.part.shard, options_.part.shards);
     if (plan.finished > 0)
       text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
-    const TimeForecast forecast =
-        left > 0 && !options_.part.is_task() ? forecast_time(renderer_, plan, cache_) : TimeForecast();
+    const TimeForecast forecast = left > 0 ? forecast_time(renderer_, plan, cache_) : TimeForecast();
     text += forecast.text;
     progress_.note(text);
-    if (options_.part.is_task() || (left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine)
-      return;
+    if ((left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine) return;
     throw Error(ErrorKind::kUsage, fmt::format("{}: add --yes to run them all, or name fewer values, or {}", text,
                                                options_.rounds.is_fixed() ? "fewer --rounds" : "a smaller --budget"));
   }
@@ -343,16 +325,6 @@ class Experiment {
       if (told_.insert(warning).second) warn(warning);
   }
 
-  /// Traces what all cells of a view and map ask for, and leaves it in the cache.
-  void trace_shared(const PlannedScene& planned, const PlannedTask& each, measure::SceneAssets& assets) {
-    const measure::SceneTask& task = each.task;
-    const std::string what = fmt::format("{} · {} · truth", planned.scene.name, task.map_size);
-    steps_.begin(planned, each, options::Work::kTruth, task.filters.size(), what);
-    assets.tracer().listen([this](double part) { steps_.advance_tracing(part); });
-    const measure::SceneTruth& truth = assets.truth(*task.camera);
-    const measure::CellAnalyser traces(renderer_, planned.options, task, assets, truth);
-  }
-
   void compile(const PlannedScene& planned, const measure::SceneTask& task, measure::SceneAssets& assets) {
     const measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
     for (const filters::FilterRequest& request : task.filters)
@@ -366,9 +338,7 @@ class Experiment {
       if (each.scene != index || each.task.filters.empty()) continue;
       if (!assets)
         assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(planned.options));
-      if (options_.part.product == options::Product::kTruth)
-        trace_shared(planned, each, *assets);
-      else if (options_.part.product == options::Product::kPrograms)
+      if (options_.part.product == options::Product::kPrograms)
         compile(planned, each.task, *assets);
       else
         measure_task({renderer_, planned, each, *assets, run_, listener_, gpus_});
@@ -380,8 +350,8 @@ class Experiment {
 
 }  // namespace
 
-records::RunRecord run_experiment(const options::RunOptions& options, options::Progress& progress) {
-  return Experiment(options, progress).run();
+void run_experiment(const options::RunOptions& options, options::Progress& progress) {
+  Experiment(options, progress).run();
 }
 
 }  // namespace shadowbench::run

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 
 #include "base/content_hash.h"
@@ -109,72 +108,28 @@ std::string name_cell_content(const std::string& scene_content, const filters::F
   return hash.name();
 }
 
-constexpr const char* kChanged =
-    "the experiment is no longer what was submitted: scenes, filters, settings or the program have changed; submit it "
-    "into another folder";
-
-/// Whether one of the cells from `begin` on, up to `end` and without it, is to be measured.
-bool has_own_cell(const options::Part& part, int begin, int end) {
-  return std::ranges::any_of(
-      part.cells,
-      [&](const options::CellRange& own) {
-        const int steps = std::max(begin - own.begin + own.step - 1, 0) / own.step;
-        return own.begin + steps * own.step < std::min(end, own.end);
-      });
-}
-
-/// The first cell of the scene that stands at a place of the plan.
-int find_first_cell(const options::Part& part, std::size_t place) {
-  return std::accumulate(part.scene_cells.begin(), part.scene_cells.begin() + static_cast<std::ptrdiff_t>(place), 0);
-}
-
-/// The scenes of a picture size that have a cell of this run, as far as that is known, as indices. The first of them
-/// stands at `place`.
-std::vector<std::size_t> list_needed_scenes(const options::RunOptions& options, std::size_t place) {
-  std::vector<std::size_t> needed;
-  for (std::size_t i = 0; i < options.scenes.size(); ++i) {
-    const int begin = options.part.is_task() ? find_first_cell(options.part, place + i) : 0;
-    if (!options.part.is_task() || has_own_cell(options.part, begin, begin + options.part.scene_cells[place + i]))
-      needed.push_back(i);
-  }
-  return needed;
-}
-
-void require_known_scenes(const options::RunOptions& options) {
-  if (!options.part.is_task() || options.part.scene_cells.size() == options.sizes.size() * options.scenes.size())
-    return;
-  throw Error(ErrorKind::kInput, kChanged);
-}
-
 /// Every scene in every picture size, under each of its lights, with every fit of the light's map.
 std::vector<PlannedScene> plan_scenes(const options::RunOptions& options) {
-  require_known_scenes(options);
   std::vector<PlannedScene> planned;
-  std::size_t first_place = 0;
+  std::size_t place = 0;
   for (const options::PictureSize& size : options.sizes) {
     options::RunOptions framed = options;
     framed.width = size.width;
     framed.height = size.height;
-    const std::vector<std::size_t> needed = list_needed_scenes(options, first_place);
-    options::RunOptions loaded = framed;
-    loaded.scenes.clear();
-    for (const std::size_t i : needed) loaded.scenes.push_back(options.scenes[i]);
-    std::vector<scene::Scene> scenes = load_scenes(loaded);
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const std::vector<scene::Scene> scenes = load_scenes(framed);
+    for (std::size_t i = 0; i < scenes.size(); ++i, ++place) {
       for (const scene::Scene& lit : list_lit_scenes(options, scenes[i])) {
         for (const scene::FitRule& fit : options.fits) {
           framed.fit = fit;
-          planned.push_back({framed, options.scenes[needed[i]], lit, first_place + needed[i]});
+          planned.push_back({framed, options.scenes[i], lit, place});
         }
       }
     }
-    first_place += options.scenes.size();
   }
   return planned;
 }
 
 void require_views(const options::RunOptions& options, const std::vector<PlannedScene>& scenes) {
-  if (options.part.is_task()) return;  // the scenes that have it may be others' work
   std::set<std::string> known;
   for (const PlannedScene& each : scenes)
     for (const scene::Camera& camera : each.scene.cameras) known.insert(camera.name);
@@ -209,11 +164,9 @@ class Planner {
     if (plan_.scenes.empty()) fail_unknown_light(options_);
     require_views(options_, plan_.scenes);
     require_few_maps(plan_.scenes);
-    plan_.scene_cells.resize(options_.sizes.size() * options_.scenes.size());
     for (std::size_t i = 0; i < plan_.scenes.size(); ++i) add_scene(i);
     plan_.settings = hash_.name();
     require_cells();
-    require_unchanged();
     return std::move(plan_);
   }
 
@@ -222,14 +175,12 @@ class Planner {
   const std::string& renderer_;
   const std::string shaders_ = name_shaders(options_.resources.shaders);
   RunPlan plan_;
-  ContentHash hash_, own_hash_;
+  ContentHash hash_;
   std::optional<scene::EdgeMeter> meter_;  ///< of the scenes at `meter_place_`, which differ in their lights and fits
   std::size_t meter_place_ = 0;
 
   void add_scene(std::size_t index) {
     PlannedScene& scene = plan_.scenes[index];
-    if (options_.part.is_task() && (index == 0 || plan_.scenes[index - 1].place != scene.place))
-      plan_.cells = find_first_cell(options_.part, scene.place);
     std::vector<measure::SceneTask> tasks;
     for (const scene::Camera* camera : choose_views(options_, scene.scene))
       for (const int map_size : options_.map_sizes) tasks.push_back({&scene.scene, camera, map_size, options_.filters});
@@ -263,11 +214,9 @@ class Planner {
     for (const filters::FilterRequest& request : task.filters) {
       const std::string key = measure::make_record(plan_.scenes[scene].options, task, request).key;
       const std::string content = name_cell_content(scene_content, request, options_);
-      add_cell(hash_, key, content);
-      ++plan_.scene_cells[plan_.scenes[scene].place];
-      const int cell = plan_.cells++;
-      if (!has_own_cell(options_.part, cell, cell + 1)) continue;
-      add_cell(own_hash_, key, content);
+      hash_.add(key);
+      hash_.add(content);
+      if (plan_.cells++ % options_.part.shards != options_.part.shard - 1) continue;
       planned.keys.push_back(key);
       planned.task.filters.push_back(request);
       planned.contents.push_back(content);
@@ -290,8 +239,7 @@ class Planner {
     std::erase_if(planned.contents, [&](const auto&) { return finished[at++] != 0; });
   }
 
-  /// A file that cannot be read, or was made from something else or by another OpenGL, is measured anew. The machines
-  /// of a sweep may differ.
+  /// A file that cannot be read, or was made from something else or by another OpenGL, is measured anew.
   bool is_finished(const std::string& key, const std::string& content) const {
     std::error_code ignored;
     if (options_.part.is_worker() || options_.fresh ||
@@ -299,23 +247,17 @@ class Planner {
       return false;
     try {
       const records::CellRecord cell = records::read_cell(options_.out, key);
-      const bool is_drawn_alike = options_.part.is_task() || (cell.machine && cell.machine->renderer == renderer_);
-      return cell.content == content && is_drawn_alike;
+      return cell.content == content && cell.machine && cell.machine->renderer == renderer_;
     } catch (const Error&) {
       return false;
     }
-  }
-
-  void require_unchanged() const {
-    if (!options_.part.content.empty() && options_.part.content != own_hash_.name())
-      throw Error(ErrorKind::kInput, kChanged);
   }
 
   void require_cells() const {
     if (plan_.cells == 0) throw Error(ErrorKind::kUsage, "there is nothing to run: no scene has one of these views");
     if (plan_.own_cells > 0) return;
     throw Error(ErrorKind::kUsage, fmt::format("--shard {}/{} is empty: the experiment has {} cells",
-                                               options_.part.shard_index(), options_.part.shards(), plan_.cells));
+                                               options_.part.shard, options_.part.shards, plan_.cells));
   }
 };
 
@@ -342,11 +284,6 @@ std::string name_view(const PlannedScene& planned, const scene::Camera& camera) 
   add_scene(hash, seen);
   hash.add(fmt::format("{} x {}", planned.options.width, planned.options.height));
   return hash.name();
-}
-
-void add_cell(ContentHash& cells, const std::string& key, const std::string& content) {
-  cells.add(key);
-  cells.add(content);
 }
 
 }  // namespace shadowbench::run

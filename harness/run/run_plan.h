@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "base/content_hash.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/options/options.h"
 #include "harness/scene/scene.h"
@@ -16,7 +15,7 @@ struct PlannedScene {
   options::RunOptions options;  ///< of the run, with one picture size and one fit
   std::string argument;         ///< name or path
   scene::Scene scene;
-  std::size_t place = 0;  ///< of the scene in this picture size among all of the plan: an entry of Part::scene_cells
+  std::size_t place = 0;  ///< of the scene in this picture size; its lights and fits share it
 };
 
 /// The cells of one view through one shadow map that this run is to hold.
@@ -32,10 +31,9 @@ struct PlannedTask {
 struct RunPlan {
   std::vector<PlannedScene> scenes;
   std::vector<PlannedTask> tasks;
-  int cells = 0;                 ///< of the whole experiment, other shards' included
-  int own_cells = 0;             ///< of this shard
-  int finished = 0;              ///< of those, found in the report folder
-  std::vector<int> scene_cells;  ///< see options::Part
+  int cells = 0;         ///< of the whole experiment, other shards' included
+  int own_cells = 0;     ///< of this shard
+  int finished = 0;      ///< of those, found in the report folder
   std::string settings;  ///< names all cells of the experiment, whatever draws them: shards of one experiment agree
 };
 
@@ -50,8 +48,5 @@ std::vector<const scene::Camera*> choose_views(const options::RunOptions& option
 
 /// Names all that the truth of a view depends on, and its picture's size: geometry, textures, light and camera.
 std::string name_view(const PlannedScene& planned, const scene::Camera& camera);
-
-/// Adds a cell to the name of several: planner and sweeps agree on it.
-void add_cell(ContentHash& cells, const std::string& key, const std::string& content);
 
 }  // namespace shadowbench::run

@@ -82,9 +82,8 @@ WORDS = {"--map-format": ["d32", "", "D16 ", "r32f", "d16,d24"], "--fit": ["box"
 SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-size", "128", "--gl", "software"],
          "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "software"],
          "flicker": ["--filters", "none", "--frames", "2", "--size", "16x9", "--map-size", "16", "--gl", "software"],
-         "submit": SMALL + ["--engine", "slurm", "--dry-run", "--out", "s"],
          "tune": ["--scene", "cubes", "--budget", "1", "--size", "16x9", "--map-size", "16", "--gl", "software"]}
-COMMANDS = ["run", "list", "diff", "bias", "merge", "submit", "status", "advise", "tune", "stress", "regress", "flicker", "manual", "nosuch",
+COMMANDS = ["run", "list", "diff", "bias", "merge", "advise", "tune", "stress", "regress", "flicker", "manual", "nosuch",
             ""]
 PIECES = ["--help", "--out", "out", "--scene", "cubes", "--filters", "none", "--fresh", "--json", "--yes", "-1", "..", "/",
           "/dev/null", "/nonexistent/x", "a\nb", "\x1b[31m", "%s%n", "$(id)", "; id", "'", '"', "../" * 40, "x" * 5000,

@@ -47,7 +47,7 @@ def check_files(prefix):
     for page in ["shadowbench", *(f"shadowbench-{command}" for command in commands)]:
         expect((prefix / f"share/man/man1/{page}.1.gz").is_file(), f"there is no manual page {page}(1)")
     for file in ("bash-completion/completions/shadowbench", "zsh/vendor-completions/_shadowbench",
-                 "doc/shadowbench/README.md", "doc/shadowbench/CHANGELOG.md", "doc/shadowbench/copyright"):
+                 "doc/shadowbench/README.md", "doc/shadowbench/slurm.sh", "doc/shadowbench/CHANGELOG.md", "doc/shadowbench/copyright"):
         expect((prefix / "share" / file).is_file(), f"there is no {file}")
 
 

@@ -40,7 +40,6 @@ ROOT = Path(__file__).resolve().parents[2]
 CHEAPER = {
     "run": [("--size", "96x54"), ("--map-size", "128"), ("--rounds", "6"), ("--scene", "cubes"), ("--filters", "none,vsm"),
             ("--gpu", "none")],
-    "submit": [("--size", "96x54"), ("--map-size", "128"), ("--scene", "cubes"), ("--filters", "none,vsm")],
     "bias": [("--size", "96x54"), ("--map-size", "128"), ("--filters", "none")],
     "flicker": [("--size", "96x54"), ("--map-size", "128"), ("--frames", "3"), ("--filters", "none,vsm")],
     "stress": [("--axes", "vsm-cancellation")],
@@ -57,12 +56,12 @@ FIXTURES = {"model.gltf": "tests/fuzz/corpus/gltf/tree.gltf"}
 COPIES = ["data/scenes", "data/experiments", "filters", "tests/golden"]
 
 # Programs of others, and what this test cannot have: packages, a network, a screen, other build folders.
-NOT_RUN = {"apt-get", "cd", "clang-format", "curl", "dpkg", "gh", "git", "man", "npm", "sudo", "source", "xdg-open"}
+NOT_RUN = {"apt-get", "cd", "clang-format", "curl", "dpkg", "gh", "git", "harness/slurm.sh", "man", "npm", "parallel", "sudo", "source", "xdg-open"}
 # Harmless programs that are really run, in the scratch folder.
 RUN_AS_THEY_ARE = {"cp", "mkdir"}
 
 # Options of other programs that texts name.
-OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix", "--exclusive", "--sshlogin", "--account", "--env", "--use-angle"}
+OTHER_OPTIONS = {"--gtest_filter", "--preset", "--config", "--prefix", "--exclusive", "--sshlogin", "--use-angle"}
 # Paths that appear only when something is built or run.
 GENERATED = ("build/", "report/out")
 

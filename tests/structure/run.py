@@ -16,7 +16,7 @@ import sys
 ROOMS = [
     "base", "filters", "reference/metrics", "reference/truth", "report/files", "report/records", "report/images",
     "report/analysis", "report/document", "report/pages", "report/regress", "harness/gl", "harness/spirv", "harness/scene", "harness/gpu", "harness/render",
-    "harness/options", "harness/live", "harness/measure", "harness/run", "harness/engines", "harness/submit", "harness/bias", "harness/tune", "harness/stress", "harness/flicker", "harness/view",
+    "harness/options", "harness/live", "harness/measure", "harness/run", "harness/engines", "harness/bias", "harness/tune", "harness/stress", "harness/flicker", "harness/view",
     "harness/cli"]
 # What a room may not use, although it stands before it.
 FORBIDDEN = {
