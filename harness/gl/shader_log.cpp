@@ -18,7 +18,6 @@ constexpr std::string_view kErrorWord = "error: ";  ///< which the caller's sent
 struct LogLine {
   int index = 0;
   int line = 0;
-  int column = 0;
   std::size_t text_at = 0;
 };
 
@@ -27,7 +26,7 @@ std::optional<LogLine> read_log_line(const std::string& line) {
   LogLine read;
   int end = 0;
   // Mesa      2:14(5): error: x
-  if (std::sscanf(line.c_str(), "%9d:%9d(%9d): %n", &read.index, &read.line, &read.column, &end) != 3 || end == 0) {
+  if (std::sscanf(line.c_str(), "%9d:%9d(%*9d): %n", &read.index, &read.line, &end) != 2 || end == 0) {
     constexpr std::array kForms = {
         "%9d(%9d) : %n",         // NVIDIA    2(14) : error C1008: x
         "ERROR: %9d:%9d: %n",    // others    ERROR: 2:14: x
@@ -56,7 +55,7 @@ Complaint parse_line(const std::string& line, const std::vector<std::string>& fi
   const auto log_line = read_log_line(line);
   const auto file = log_line ? find_file(*log_line, files) : std::nullopt;
   if (!file) return {.text = line, .is_error = line.find("error") != std::string::npos || line.starts_with("ERROR")};
-  Complaint complaint{files[*file], log_line->line % kLinesPerFile, log_line->column, line.substr(log_line->text_at)};
+  Complaint complaint{files[*file], log_line->line % kLinesPerFile, line.substr(log_line->text_at)};
   const std::string& text = complaint.text;
   complaint.is_error = line.starts_with("ERROR") || text.starts_with("error") || text.starts_with("fatal error") ||
                        text.starts_with("preprocessor error");

@@ -10,8 +10,6 @@ namespace shadowbench::gl {
 struct Complaint {
   std::string file = {};  ///< of ShaderSource::files; empty where the driver named none
   int line = 0;
-  int column = 0;  ///< from 1, in what Mesa's preprocessor makes of the line: each run of blanks and comments is one
-                   ///< blank, and macros are replaced; 0: not told
   std::string text = {};  ///< without the word error
   bool is_error = false;
 

@@ -10,7 +10,6 @@
 
 #include "base/nearest_name.h"
 #include "filters/format/glsl_words.h"
-#include "harness/render/syntax_words.h"
 
 namespace shadowbench::render {
 namespace {
@@ -20,51 +19,12 @@ constexpr std::size_t kFew = 3;       ///< a name is near another where one of s
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool is_of_word(char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; }
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 /// The word that begins there; empty where none does.
 std::string word_at(const std::string& line, std::size_t at) {
   if (at >= line.size() || !is_letter(line[at]) || (at > 0 && is_of_word(line[at - 1]))) return {};
-  std::size_t end = at;
-  while (end < line.size() && is_of_word(line[end])) ++end;
-  return line.substr(at, end - at);
-}
-
-/// Where the word before a place begins, with nothing but blanks between.
-std::optional<std::size_t> find_word_before(const std::string& line, std::size_t at) {
-  std::size_t end = at;
-  while (end > 0 && is_blank(line[end - 1])) --end;
-  std::size_t begin = end;
-  while (begin > 0 && is_of_word(line[begin - 1])) --begin;
-  return begin < end && end < at && is_letter(line[begin]) ? std::optional(begin) : std::nullopt;
-}
-
-/// Undoes what Mesa's preprocessor makes of a line: the place of the column there. Nothing where no word, number or
-/// sign begins there, which is so behind macros that were replaced.
-std::optional<std::size_t> find_column(const std::string& line, int column) {
-  int passed = 0;
-  bool was_blank = false;
-  for (std::size_t at = 0; at < line.size(); ++at) {
-    const std::size_t comment = line.compare(at, 2, "/*") == 0 ? line.find("*/", at + 2) : std::string::npos;
-    const bool blank = is_blank(line[at]) || comment != std::string::npos;
-    if (comment != std::string::npos) at = comment + 1;
-    passed += blank && was_blank ? 0 : 1;
-    was_blank = blank;
-    if (passed < column) continue;
-    return blank || (at > 0 && is_of_word(line[at]) && is_of_word(line[at - 1])) ? std::nullopt : std::optional(at);
-  }
-  return std::nullopt;
-}
-
-/// The place nearest to another one at which a text stands, as a whole word where it is one.
-std::optional<std::size_t> find_nearest(const std::string& line, const std::string& text, std::size_t wanted) {
-  std::optional<std::size_t> nearest;
-  const auto distance = [&](std::size_t at) { return at > wanted ? at - wanted : wanted - at; };
-  for (std::size_t at = line.find(text); at != std::string::npos; at = line.find(text, at + 1)) {
-    if (is_letter(text.front()) && word_at(line, at) != text) continue;
-    if (!nearest || distance(at) < distance(*nearest)) nearest = at;
-  }
-  return nearest;
+  return line.substr(at, std::find_if_not(line.begin() + static_cast<std::ptrdiff_t>(at), line.end(), is_of_word) -
+                             line.begin() - static_cast<std::ptrdiff_t>(at));
 }
 
 /// The first name in quotes: "x" of "no function with name 'x'" and of "`x' undeclared".
@@ -88,24 +48,15 @@ bool may_follow(const gl::Complaint& complaint) {
   });
 }
 
-/// A line as it is quoted, with a caret below a place.
-std::string quote(const std::string& line, const std::optional<std::size_t>& caret) {
-  const std::size_t indent = std::min(line.find_first_not_of(" \t"), line.size());
-  const std::size_t begin = caret && *caret > indent + kWidest ? *caret - kWidest / 2 : indent;
-  const auto is_inside_character = [&](std::size_t at) {
-    return at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0U) == 0x80U;
-  };
-  std::size_t first = begin, last = std::min(begin + kWidest, line.size());
-  while (is_inside_character(first)) ++first;
-  while (is_inside_character(last)) ++last;
-  std::string text = "    ", below = text;
-  for (std::size_t at = first; at < last; ++at) {
-    const auto code = static_cast<unsigned char>(line[at]);
-    text += code < 0x20 || code == 0x7f ? ' ' : line[at];
-    if (caret && at < *caret && !is_inside_character(at)) below += ' ';
-  }
-  while (text.ends_with(' ')) text.pop_back();
-  return "\n" + text + (caret ? "\n" + below + "^" : "");
+/// The beginning of a line as it is quoted: of whole characters, without those that no line has.
+std::string quote(const std::string& line) {
+  const std::size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+  std::size_t end = std::min(begin + kWidest, line.size());
+  while (end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U) ++end;
+  std::string text = "\n    " + line.substr(begin, end - begin);
+  std::replace_if(
+      text.begin() + 1, text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  return text.substr(0, text.find_last_not_of(" \n") + 1);
 }
 
 /// What a filter's own part of a shader declares: its parameters, its text, and what that includes.
@@ -128,13 +79,6 @@ std::vector<std::string> list_members(const std::string& glsl) {
   return members;
 }
 
-/// What is said of one complaint.
-struct Explained {
-  std::string text;
-  std::optional<std::size_t> caret;
-  bool lacks_other = false;  ///< something else is expected at the place
-};
-
 class Explainer {
  public:
   Explainer(const std::vector<gl::Piece>& pieces, const gl::ShaderSource& shader)
@@ -154,18 +98,10 @@ class Explainer {
     return begin >= filter_.text.size() ? "" : filter_.text.substr(begin, filter_.text.find('\n', begin) - begin);
   }
 
-  /// "what is meant\n    the line\n    ^"
+  /// "what is meant\n    the line"
   std::string explain(const gl::Complaint& complaint) const {
     const std::string line = find_text(complaint.line);
-    const auto column = complaint.column > 0 ? find_column(line, complaint.column) : std::nullopt;
-    const SyntaxError syntax = read_syntax_error(complaint.text);
-    Explained explained =
-        syntax.unexpected.empty() ? explain_meaning(complaint, line, column) : explain_syntax(syntax, line, column);
-    const bool is_first = explained.caret == line.find_first_not_of(" \t");
-    if (explained.lacks_other && is_first && syntax.expected.find("';'") != std::string::npos)
-      explained.text += suggest_semicolon(complaint.line);
-    const char* kind = complaint.is_error ? "" : "warning: ";
-    return kind + explained.text + (line.empty() ? "" : quote(line, explained.caret));
+    return (complaint.is_error ? "" : "warning: ") + find_meaning(complaint.text, line) + quote(line);
   }
 
  private:
@@ -176,49 +112,25 @@ class Explainer {
     return std::ranges::count(known_, name) > 0 ? "" : did_you_mean(name, known_, kFew);
   }
 
-  Explained explain_meaning(const gl::Complaint& complaint, const std::string& line,
-                            const std::optional<std::size_t>& column) const {
-    const std::string name = find_quoted_name(complaint.text);
-    const auto named = name.empty() ? std::nullopt : find_nearest(line, name, column.value_or(0));
-    const auto caret = named ? named : column;
-    if (name.empty() || !says_unknown(complaint.text)) {
-      std::string text = complaint.text;
-      std::ranges::replace(text, '`', '\'');
-      return {text, caret};
-    }
-    const auto says = [&](const char* words) { return complaint.text.find(words) != std::string::npos; };
+  std::string find_meaning(const std::string& text, const std::string& line) const {
+    const auto says = [&](const char* words) { return text.find(words) != std::string::npos; };
+    if (says("syntax error, unexpected") && says("IDENTIFIER")) return text + suggest_word(line);
+    const std::string name = find_quoted_name(text);
+    const bool is_known = says("overloaded") && std::ranges::count(known_, name) > 0;
+    if (name.empty() || is_known || !says_unknown(text)) return text;
     const char* form = says("function") ? "there is no function '{}'{}"
                        : says("field")  ? "there is no member '{}'{}"
                                         : "'{}' is not declared{}";
-    const bool is_known = says("overloaded") && std::ranges::count(known_, name) > 0;
-    return {is_known ? complaint.text : fmt::format(fmt::runtime(form), name, suggest(name)), caret};
+    return fmt::format(fmt::runtime(form), name, suggest(name));
   }
 
-  /// A misspelt type or statement shows at the name behind it: "flaot x" at x.
-  Explained explain_syntax(const SyntaxError& syntax, const std::string& line,
-                           const std::optional<std::size_t>& column) const {
-    std::optional<std::size_t> caret = column;
-    std::string found = name_token(syntax.unexpected);
-    if (is_name_token(syntax.unexpected)) {
-      const std::string word = caret ? word_at(line, *caret) : "";
-      if (!word.empty()) found = "'" + word + "'";
-      if (const auto before = word.empty() ? std::nullopt : find_word_before(line, *caret)) {
-        const std::string name = word_at(line, *before), near = suggest(name);
-        if (!near.empty()) return {fmt::format("syntax error: '{}' is not known{}", name, near), before};
-      }
-    } else if (found.starts_with('\'') && found.size() > 2) {
-      caret = find_nearest(line, found.substr(1, found.size() - 2), column.value_or(0));
+  /// A misspelt type or statement makes the name behind it unexpected: "flaot x".
+  std::string suggest_word(const std::string& line) const {
+    for (std::size_t at = 0; at < line.find("//") && at < line.size(); ++at) {
+      const std::string word = word_at(line, at), near = word.size() < kFew ? "" : suggest(word);
+      if (!near.empty()) return fmt::format(": '{}' is not known{}", word, near);
     }
-    if (syntax.expected.empty()) return {fmt::format("syntax error: {} cannot stand here", found), caret};
-    return {fmt::format("syntax error: {} stands where {} is expected", found, syntax.expected), caret, true};
-  }
-
-  /// What begins a line may stand there wrongly because the line before it is not ended.
-  std::string suggest_semicolon(int line) const {
-    while (--line >= filter_.first_line)
-      if (find_text(line).find_first_not_of(" \t\r") != std::string::npos)
-        return fmt::format("; is a ';' missing at the end of line {}?", line);
-    return "";
+    return {};
   }
 };
 

@@ -83,17 +83,9 @@ std::string name_cell(const Comparison& comparison) {
   return fmt::format("{} {} ({})", comparison.scene, comparison.label, comparison.settings);
 }
 
-/// What a compiler says of a filter, without the lines of a caret, which point at nothing where letters differ in
-/// width.
-std::vector<std::string> list_lines(const std::string& message) {
-  std::vector<std::string> lines = split_list(message, "\n");
-  std::erase_if(lines, [](const std::string& line) { return line.find_first_not_of(" ^") == std::string::npos; });
-  return lines;
-}
-
 /// What differs in a cell, and what was not compared.
 std::vector<std::string> describe_differences(const Comparison& comparison) {
-  if (comparison.outcome == Outcome::kBroken) return list_lines(comparison.findings.front().text);
+  if (comparison.outcome == Outcome::kBroken) return split_list(comparison.findings.front().text, "\n");
   std::vector<std::string> sentences;
   for (std::size_t i = 0; i < std::min(comparison.findings.size(), kMostFindings); ++i)
     sentences.push_back(comparison.findings[i].text);

@@ -35,25 +35,24 @@ std::string explain(const std::string& body, std::string log) {
   return explain_mistakes({ErrorKind::kFilter, message, std::move(translated)}, pieces, shader).what();
 }
 
-TEST(FilterMistakes, UnknownFunction_IsQuotedWithACaret_AndANearName) {
+TEST(FilterMistakes, UnknownFunction_IsQuoted_WithANearName) {
   EXPECT_EQ(explain("  return 1.0 + compare2x2(r, vec2(0.0), r.depth);",
                     "@8(15): error: no function with name 'compare2x2'\n"
                     "@8(9): error: operands to arithmetic operators must be numeric\n"
                     "@8(2): error: could not implicitly convert return value to float, in function `visibility'\n"),
             "mine.glsl:8: the GLSL of 'mine lookup' does not compile: there is no function 'compare2x2'; did you mean "
             "'compare_2x2'?\n"
-            "    return 1.0 + compare2x2(r, vec2(0.0), r.depth);\n"
-            "                 ^");
+            "    return 1.0 + compare2x2(r, vec2(0.0), r.depth);");
 }
 
 TEST(FilterMistakes, UnknownVariableMemberAndType_GetNearNames) {
   EXPECT_THAT(explain("  return strenght;", "@8(9): error: `strenght' undeclared\n"),
               HasSubstr("'strenght' is not declared; did you mean 'strength'?\n"));
   EXPECT_THAT(explain("  return r.dept;", "@8(9): error: cannot access field `dept' of structure\n"),
-              EndsWith("there is no member 'dept'; did you mean 'depth'?\n    return r.dept;\n             ^"));
+              EndsWith("there is no member 'dept'; did you mean 'depth'?\n    return r.dept;"));
   EXPECT_THAT(
       explain("  flaot s = 1.0;", "@8(8): error: syntax error, unexpected NEW_IDENTIFIER, expecting ',' or ';'\n"),
-      EndsWith("syntax error: 'flaot' is not known; did you mean 'float'?\n    flaot s = 1.0;\n    ^"));
+      EndsWith(": 'flaot' is not known; did you mean 'float'?\n    flaot s = 1.0;"));
   EXPECT_THAT(explain("  return corner_dept(r);", "@8(9): error: no function with name 'corner_dept'\n"),
               HasSubstr("did you mean 'corner_depth'?"));
 }
@@ -67,41 +66,6 @@ TEST(FilterMistakes, NothingNear_NothingIsSuggested) {
   EXPECT_THAT(explain("  return visibilite;", "@8(9): error: `visibilite' undeclared\n"), HasSubstr("'visibility'"));
 }
 
-TEST(FilterMistakes, Tokens_AreWords) {
-  const std::string text =
-      explain("    float a = 12.x;", "@8(15): error: syntax error, unexpected NEW_IDENTIFIER, expecting ',' or ';'\n");
-  EXPECT_THAT(text, EndsWith("syntax error: 'x' stands where ',' or ';' is expected\n    float a = 12.x;\n" +
-                             std::string(17, ' ') + "^"));
-  EXPECT_THAT(
-      explain("  float s = 1.0\n  return s;", "@9(2): error: syntax error, unexpected RETURN, expecting ',' or ';'\n"),
-      EndsWith("mine.glsl:9: the GLSL of 'mine lookup' does not compile: syntax error: 'return' stands where "
-               "',' or ';' is expected; is a ';' missing at the end of line 8?\n    return s;\n    ^"));
-  EXPECT_THAT(explain("  uint q = 3u +* 2;", "@8(16): error: syntax error, unexpected '*'\n"),
-              EndsWith("'*' cannot stand here\n    uint q = 3u +* 2;\n                 ^"));
-  EXPECT_THAT(explain("  a <= <= b;",
-                      "@8(7): error: syntax error, unexpected LE_OP, expecting BASIC_TYPE_TOK or INTCONSTANT\n"),
-              HasSubstr("'<=' stands where a type or a whole number is expected"));
-}
-
-/// Mesa counts columns behind its preprocessor: blanks and comments are one blank there, and macros are replaced.
-TEST(FilterMistakes, Caret_StandsInTheUsersOwnLine) {
-  EXPECT_THAT(explain("\tfloat  s = /* so */ vec2(1.0);",
-                      "@8(12): error: initializer of type vec2 cannot be assigned to variable of type float\n"),
-              EndsWith("\n    float  s = /* so */ vec2(1.0);\n                        ^"));
-  EXPECT_THAT(explain("  float s = TWICE(1.0) + r.dept;", "@8(26): error: cannot access field `dept' of structure\n"),
-              EndsWith("\n    float s = TWICE(1.0) + r.dept;\n                             ^"));
-  EXPECT_THAT(explain("  TWICE(longest_name) = 3;", "@8(6): error: non-lvalue in assignment\n"),
-              EndsWith("\n    TWICE(longest_name) = 3;"))
-      << "no place is better than a wrong one";
-  const std::string far =
-      explain("  float s = " + std::string(150, '1') + " + nowhere;", "@8(165): error: `nowhere' undeclared\n");
-  const std::size_t line = far.rfind('\n', far.rfind('\n') - 1) + 1, caret = far.size() - far.rfind('\n') - 2;
-  EXPECT_EQ(far.substr(line + caret, 7), "nowhere");
-  EXPECT_THAT(explain("  /* \xC3\xA4 */ return nowhere;", "@8(9): error: `nowhere' undeclared\n"),
-              EndsWith("\n" + std::string(4 + 15, ' ') + "^"))
-      << "a letter of two bytes is one column";
-}
-
 TEST(FilterMistakes, AllErrors_AreTold_ButNotWhatFollowsFromThem) {
   const std::string text =
       explain("  float s = vec2(1.0);\n  return s + nowhere;",
@@ -109,19 +73,33 @@ TEST(FilterMistakes, AllErrors_AreTold_ButNotWhatFollowsFromThem) {
               "@9(9): warning: `s' used uninitialized\n"
               "@9(13): error: `nowhere' undeclared\n"
               "@9(13): error: type mismatch\n");
-  EXPECT_THAT(text, HasSubstr("\nmine.glsl:9: 'nowhere' is not declared\n    return s + nowhere;\n"));
+  EXPECT_THAT(text, EndsWith("\nmine.glsl:9: 'nowhere' is not declared\n    return s + nowhere;"));
   EXPECT_THAT(text, Not(::testing::AnyOf(HasSubstr("type mismatch"), HasSubstr("uninitialized"))));
-  EXPECT_THAT(
-      explain("  return compare_2x2(r);",
-              "@8(9): error: no matching function for call to `compare_2x2(Receiver)'; candidates are:\n"
-              "@8(9): error:    float compare_2x2(Receiver, vec2, float)\n"),
-      EndsWith(
-          "candidates are:\n      float compare_2x2(Receiver, vec2, float)\n    return compare_2x2(r);\n           ^"));
+  EXPECT_THAT(explain("  return compare_2x2(r);",
+                      "@8(9): error: no matching function for call to `compare_2x2(Receiver)'; candidates are:\n"
+                      "@8(9): error:    float compare_2x2(Receiver, vec2, float)\n"),
+              EndsWith("candidates are:\n      float compare_2x2(Receiver, vec2, float)\n    return compare_2x2(r);"));
 }
 
-TEST(FilterMistakes, OtherCompilers_NameNoColumn_TheNameIsFound) {
+TEST(FilterMistakes, SyntaxErrors_AreToldAsTheyAre) {
+  const std::string said = "syntax error, unexpected RETURN, expecting ',' or ';'";
+  EXPECT_THAT(
+      explain("  float s = 1.0\n  return s;  // not flaot", "@9(2): error: " + said + "\n"),
+      EndsWith("mine.glsl:9: the GLSL of 'mine lookup' does not compile: " + said + "\n    return s;  // not flaot"));
+  const std::string name = "syntax error, unexpected NEW_IDENTIFIER, expecting ',' or ';'";
+  EXPECT_THAT(explain("  float a = 12.x;  // flaot", "@8(15): error: " + name + "\n"),
+              EndsWith(name + "\n    float a = 12.x;  // flaot"));
+}
+
+TEST(FilterMistakes, ALongLine_EndsBehindAWholeCharacter) {
+  const std::string text =
+      explain("  /* " + std::string(96, 'x') + "\xC3\xA4 */ nowhere;", "@8(9): error: `nowhere' undeclared\n");
+  EXPECT_THAT(text, EndsWith(std::string(96, 'x') + "\xC3\xA4"));
+}
+
+TEST(FilterMistakes, OtherCompilers_AreUnderstood) {
   EXPECT_THAT(explain("  return nowhere;", "3(8) : error C1503: undefined variable \"nowhere\"\n"),
-              EndsWith("'nowhere' is not declared\n    return nowhere;\n           ^"));
+              EndsWith("'nowhere' is not declared\n    return nowhere;"));
   EXPECT_THAT(explain("  return strenght;", "ERROR: 3:8: 'strenght' : undeclared identifier\n"),
               HasSubstr("'strenght' is not declared; did you mean 'strength'?"));
 }
