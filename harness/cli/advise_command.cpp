@@ -152,11 +152,10 @@ Command make_advise_command() {
       .one_of(filters::list_width_names());
   command.add("--light-motion", &a->light_motion, "moving or static: whether every frame pays for map and prefilter")
       .one_of({"moving", "static"});
-  command
-      .add("--cheapest", &a->cheapest,
-           "the cost that is to be small: time, bytes, fetches, or gpu:NAME, the estimate for a GPU of the run [time; "
-           "where no GPU drew, the first estimate]")
-      .such_as({"time", "bytes", "fetches"});
+  command.add(
+      "--cheapest", &a->cheapest,
+      "the cost that is to be small: time, bytes, fetches, or gpu:NAME, the estimate for a GPU of the run [time; "
+      "where no GPU drew, the first estimate]");
   command
       .add("--times", &a->times,
            "judge by the times of a GPU on which the report's page was opened: the gpu-times.json that it saved")

@@ -11,8 +11,7 @@
 
 namespace shadowbench::cli {
 void add_backend_option(Command& command, std::string& backend) {
-  command.add("--gl", &backend, "OpenGL context: auto, software, osmesa, egl or glfw")
-      .such_as({"auto", "software", "osmesa", "egl", "glfw"});
+  command.add("--gl", &backend, "OpenGL context: auto, software, osmesa, egl or glfw");
 }
 
 void add_force_option(Command& command, bool& force) {

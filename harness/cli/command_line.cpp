@@ -47,7 +47,7 @@ std::string check_value(const Option& option, const std::string& value) {
                                                                     : "one, or leave the option out");
   if (option.is_flag())
     return value == "true" || value == "false" ? "" : fmt::format("takes no value, not '{}'", value);
-  if (option.only_choices && std::ranges::find(option.choices, value) == option.choices.end())
+  if (!option.choices.empty() && std::ranges::find(option.choices, value) == option.choices.end())
     return fmt::format("'{}' must be one of {}", value, fmt::join(option.choices, ", "));
   return {};
 }
@@ -69,7 +69,7 @@ void add_option(CLI::App& app, const Option& option) {
   if (option.required) parsed->required();
   if (option.hidden) parsed->group("");
   parsed->check([&option](const std::string& value) { return check_value(option, value); },
-                option.only_choices ? fmt::format("{{{}}}", fmt::join(option.choices, ",")) : std::string());
+                option.choices.empty() ? std::string() : fmt::format("{{{}}}", fmt::join(option.choices, ",")));
   if (option.is_flag()) return;
   if (option.is_repeatable() && !option.is_argument()) parsed->allow_extra_args(false);
   if (!option.default_value().empty()) parsed->default_str(option.default_value());

@@ -24,8 +24,4 @@ Command make_view_command();
 /// it, so that help does not show it.
 Command make_gpu_facts_command();
 
-/// Makes the command that writes manual pages and completions for all commands of `program`, itself included, which
-/// must outlive it. Only the build of the package needs it, so that help does not show it.
-Command make_manual_command(const Command& program);
-
 }  // namespace shadowbench::cli

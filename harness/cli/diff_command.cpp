@@ -311,10 +311,8 @@ Command make_diff_command() {
   auto a = std::make_shared<DiffArguments>();
   command.add("A", &a->image, "the picture, or a run's folder").names(ValueKind::kFile).require();
   command.add("B", &a->truth, "what it should look like, or another run's folder").names(ValueKind::kFile).require();
-  command
-      .add("--metric", &a->metric,
-           fmt::format("the error to print: {} (see 'list metrics')", fmt::join(metric_names(), ", ")))
-      .such_as(metric_names());
+  command.add("--metric", &a->metric,
+              fmt::format("the error to print: {} (see 'list metrics')", fmt::join(metric_names(), ", ")));
   command.add("--mask", &a->mask, "a picture of one channel: pixels count where it is not 0").names(ValueKind::kFile);
   command.add("--pixels-per-degree", &a->pixels_per_degree, "how large FLIP's observer sees the pixels");
   command.add("--out", &a->out, "write a PNG of the signed difference and of FLIP, with their scales")

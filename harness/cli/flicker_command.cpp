@@ -53,8 +53,7 @@ Command make_flicker_command() {
   add_builtin_filters_option(command, a->filters);
   command.add("--frames", &a->frames, "frames of each motion, 2 or more");
   add_picture_options(command, *a);
-  command.add("--motion", &a->motions, "what moves: light, camera, or both, separated by a comma")
-      .such_as({"light", "camera"});
+  command.add("--motion", &a->motions, "what moves: light, camera, or both, separated by a comma");
   add_drawing_options(command, *a);
   command.action = [a](const CommandLine& line) { return measure_flicker(*a, line.words()); };
   return command;

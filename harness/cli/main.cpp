@@ -77,7 +77,6 @@ int run(int argc, char** argv) {
                       make_merge_command(),   make_advise_command(),   make_tune_command(),   make_stress_command(),
                       make_regress_command(), make_flicker_command(),  make_export_command(), make_score_command(),
                       make_view_command(),    make_gpu_facts_command()};
-  program.commands.push_back(make_manual_command(program));
   return run_command_line(program, argc, argv);
 }
 

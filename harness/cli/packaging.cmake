@@ -13,21 +13,18 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/changelog @ONLY CONTENT "shadowbench
  -- ${SHADOWBENCH_MAINTAINER}  ${_date}
 ")
 
-# The program writes its manual pages and completions itself, from the description of its options.
+# Manual pages are made of what the program's --help prints.
+find_program(SHADOWBENCH_HELP2MAN help2man REQUIRED)
 set(_manual ${PROJECT_BINARY_DIR}/manual)
-file(GLOB _named CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/filters/*.glsl ${PROJECT_SOURCE_DIR}/data/scenes/*.toml
-     ${PROJECT_SOURCE_DIR}/data/scenes/teaching/*.toml ${PROJECT_SOURCE_DIR}/data/experiments/*.toml)
 add_custom_command(
   OUTPUT ${_manual}/written
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${_manual}
   COMMAND ${CMAKE_COMMAND} -E env --unset=SHADOWBENCH_ROOT ASAN_OPTIONS=detect_leaks=0:intercept_tls_get_addr=0
-          $<TARGET_FILE:shadowbench> manual ${_manual}/pages
-  COMMAND gzip -9n -r ${_manual}/pages
-  COMMAND gzip -d ${_manual}/pages/shadowbench.bash.gz ${_manual}/pages/_shadowbench.gz
+          ${CMAKE_CURRENT_LIST_DIR}/manual.sh $<TARGET_FILE:shadowbench> ${_manual}/pages
   COMMAND gzip -9nc ${PROJECT_BINARY_DIR}/changelog > ${_manual}/changelog.gz
   COMMAND ${CMAKE_COMMAND} -E touch ${_manual}/written
-  DEPENDS shadowbench ${_named} ${PROJECT_BINARY_DIR}/changelog
-  COMMENT "Writing manual pages and completions"
+  DEPENDS shadowbench ${CMAKE_CURRENT_LIST_DIR}/manual.sh ${PROJECT_BINARY_DIR}/changelog
+  COMMENT "Writing manual pages"
   VERBATIM)
 add_custom_target(shadowbench_manual ALL DEPENDS ${_manual}/written)
 
@@ -40,9 +37,10 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/ DESTINATION ${_share}/shaders C
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/ DESTINATION ${_share}/data COMPONENT program PATTERN "*.md" EXCLUDE)
 install(DIRECTORY ${_manual}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program FILES_MATCHING PATTERN "*.1.gz")
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/harness/slurm.sh DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(FILES ${_manual}/pages/shadowbench.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME shadowbench
+install(FILES ${PROJECT_SOURCE_DIR}/harness/cli/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME shadowbench
         COMPONENT program)
-install(FILES ${_manual}/pages/_shadowbench DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/harness/cli/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _shadowbench
+        COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${_manual}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 

@@ -8,6 +8,7 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/interruption.h"
+#include "harness/cli/print.h"
 #include "report/regress/regress.h"
 
 namespace shadowbench::cli {

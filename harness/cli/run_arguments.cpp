@@ -61,9 +61,8 @@ void add_told(Command& command, RunArguments& arguments, const std::vector<std::
 
 void add_run_options(Command& command, RunArguments& a) {
   a.out = "report/out";
-  command
-      .add("experiment", &a.experiment, "an experiment, by name or as a .toml file, whose keys these options override")
-      .names(ValueKind::kExperiment);
+  command.add("experiment", &a.experiment,
+              "an experiment, by name or as a .toml file, whose keys these options override");
   std::vector<std::string> names;
   for (const options::RunOption& each : a.told) names.push_back(each.name);
   add_told(command, a, names);

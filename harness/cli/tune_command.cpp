@@ -109,10 +109,8 @@ Command make_tune_command() {
       .require();
   command.add("--filter-file", &a->filter_files, "").hide();
   const std::vector<std::string> metrics = tune::list_tune_metrics();
-  command
-      .add("--metric", &a->metric,
-           fmt::format("the error to make small: {} (see 'list metrics')", fmt::join(metrics, ", ")))
-      .such_as(metrics);
+  command.add("--metric", &a->metric,
+              fmt::format("the error to make small: {} (see 'list metrics')", fmt::join(metrics, ", ")));
   add_as_run(command, "--scene", &a->scenes);
   add_as_run(command, "--ground", &a->ground);
   add_picture_options(command, *a);

@@ -12,7 +12,7 @@
 namespace shadowbench::options {
 
 /// What the value of an option names, as far as a shell can complete it.
-enum class ValueKind { kOther, kFile, kFolder, kScene, kFilters, kExperiment };
+enum class ValueKind { kOther, kFile, kFolder, kScene, kFilters };
 
 /// Where the value of an option is stored. Flags are bool; an int counts how often a flag was given, --no-FLAG as -1.
 using Variable = std::variant<bool*, int*, std::string*, std::optional<std::string>*, std::vector<std::string>*,
@@ -24,8 +24,7 @@ struct Option {
   Variable variable;
   std::string help;
   ValueKind kind = ValueKind::kOther;
-  std::vector<std::string> choices = {};  ///< what the value may be, as far as that can be listed
-  bool only_choices = false;              ///< any other value is refused
+  std::vector<std::string> choices = {};  ///< any other value is refused; empty: none is
   bool required = false;
   bool hidden = false;          ///< the help does not show it
   bool opposite = false;        ///< the flag can be taken back with --no-FLAG
@@ -34,9 +33,7 @@ struct Option {
 
   Option& names(ValueKind what) { return kind = what, *this; }
   /// Refuses all values but these.
-  Option& one_of(std::vector<std::string> values) { return only_choices = true, such_as(std::move(values)); }
-  /// These values are offered; who reads the option judges the others.
-  Option& such_as(std::vector<std::string> values) { return choices = std::move(values), *this; }
+  Option& one_of(std::vector<std::string> values) { return choices = std::move(values), *this; }
   Option& require() { return required = true, *this; }
   Option& hide() { return hidden = true, *this; }
   Option& with_opposite() { return opposite = true, *this; }

@@ -191,7 +191,7 @@ std::vector<RunOption> list_run_options() {
   t.add("--light-name", "one of a scene's several lights by its name; may be repeated (default: all, each by itself)",
         &RunOptions::light_names);
   t.add("--size", "picture size in pixels, WIDTHxHEIGHT; several with commas", &RunOptions::sizes);
-  t.add("--map-format", "how the map stores depth: d16, d24 or d32f", &RunOptions::map).such_as({"d16", "d24", "d32f"});
+  t.add("--map-format", "how the map stores depth: d16, d24 or d32f", &RunOptions::map);
   t.add(
       "--reversed-depth", "store 1 - depth; filters read the same depth as without it",
       [](auto& o) -> auto& { return o.map.curve.reversed; });
@@ -213,8 +213,7 @@ std::vector<RunOption> list_run_options() {
         "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen, or in metres "
         "cascades:splits=5/20,near=0.1,far=80; 'focused', 'lispsm', "
         "'psm', 'tsm' or 'logpsm', which warp it; of a point light 'paraboloid'; may be repeated (default: tight)",
-        &RunOptions::fits)
-      .such_as(scene::list_fit_names());
+        &RunOptions::fits);
   t.add_switch("--snap",
                "keep the map's texels fixed in the world while the frusta of --fit view and cascades move: on or off",
                &RunOptions::snap);

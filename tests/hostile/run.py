@@ -83,7 +83,7 @@ SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-s
          "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "software"],
          "flicker": ["--filters", "none", "--frames", "2", "--size", "16x9", "--map-size", "16", "--gl", "software"],
          "tune": ["--scene", "cubes", "--budget", "1", "--size", "16x9", "--map-size", "16", "--gl", "software"]}
-COMMANDS = ["run", "list", "diff", "bias", "merge", "advise", "tune", "stress", "regress", "flicker", "manual", "nosuch",
+COMMANDS = ["run", "list", "diff", "bias", "merge", "advise", "tune", "stress", "regress", "flicker", "nosuch",
             ""]
 PIECES = ["--help", "--out", "out", "--scene", "cubes", "--filters", "none", "--fresh", "--json", "--yes", "-1", "..", "/",
           "/dev/null", "/nonexistent/x", "a\nb", "\x1b[31m", "%s%n", "$(id)", "; id", "'", '"', "../" * 40, "x" * 5000,

@@ -51,6 +51,31 @@ def check_files(prefix):
         expect((prefix / "share" / file).is_file(), f"there is no {file}")
 
 
+def complete(prefix, *words):
+    """What bash offers for the last of these words."""
+    script = (f"source {prefix}/share/bash-completion/completions/shadowbench\nCOMP_WORDS=(\"$@\") COMP_CWORD=$(($# - 1))\n"
+              "_shadowbench_words\necho ${COMPREPLY[@]}")
+    return call("bash", "-c", script, "bash", prefix / "bin/shadowbench", *words).split()
+
+
+def check_shell(prefix):
+    """Manual pages have every option, and no mistake; the shell completes commands, options and values."""
+    for page in sorted((prefix / "share/man/man1").iterdir()):
+        words = page.name.removesuffix(".1.gz").split("-")[1:]
+        text = call("sh", "-c", f"zcat {page} | groff -man -Tascii -ww -P-c -P-b -P-u 2>&1")
+        expect("troff" not in text, f"{page.name}:\n{text}")
+        options = set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", call(prefix / "bin/shadowbench", *words, "--help"), re.MULTILINE))
+        missing = {option for option in options if option not in text}
+        expect(options and not missing, f"{page.name} lacks {missing}")
+    for words, offered in ((["reg"], ["regress"]), (["list", ""], ["filters", "presets", "scenes", "metrics", "gpus", "gl"]),
+                           (["run", "--map"], ["--map-size", "--map-format"]), (["run", "--no-tr"], ["--no-truth"]),
+                           (["run", "--border", ""], ["border", "edge", "repeat"]), (["run", "--border", "=", "e"], ["edge"]),
+                           (["run", "--filters", "none,tent3"], ["none,tent3x3"]), (["bias", "--scene", "cub"], ["cubes"]),
+                           (["run", "--work"], []), (["diff", "a", "b"], [])):
+        found = complete(prefix, *words)
+        expect(found == offered, f"{words}: {found} is offered, not {offered}")
+
+
 def check_use(prefix, folder):
     """Only the prefix has this scene, and no longer has another: what the program finds, it finds there."""
     scenes = prefix / "share/shadowbench/data/scenes"
@@ -123,6 +148,7 @@ def main():
         folder = Path(name)
         prefix = install(build, folder)
         check_files(prefix)
+        check_shell(prefix)
         check_use(prefix, folder)
         check_start(prefix)
         check_missing(prefix, folder)

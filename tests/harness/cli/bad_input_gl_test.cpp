@@ -246,7 +246,6 @@ TEST_F(BadInput, PathThatCannotBeUsed) {
   for (const std::string command : {"advise ", "regress --baseline out ", "merge --out out "})
     expect_refusal(command + path, 3, {path});
   expect_refusal("diff " + path + " " + path, 3, {path});
-  expect_refusal("manual " + path, 6, {path + ": this path cannot be used (File name too long)", "choose another"});
 }
 TEST_F(BadInput, MissingBraceNamesTheUsersFile) {
   std::string text = read_text(user_filter("nine_compares.glsl"));
