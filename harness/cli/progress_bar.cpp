@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "harness/cli/print.h"
 
@@ -16,10 +17,9 @@ namespace {
 
 constexpr std::size_t kBarCells = 24;
 
-/// " · 3 min left"
 std::string describe_seconds(double seconds) {
-  const auto left = static_cast<long>(std::ceil(seconds));
-  return left < 100 ? fmt::format(" · {} s left", left) : fmt::format(" · {} min left", (left + 59) / 60);
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  return whole < 100 ? fmt::format("{} s", whole) : fmt::format("{} min", (whole + 59) / 60);
 }
 
 /// Cuts a text to so many bytes, between characters.
@@ -29,39 +29,36 @@ std::string cut(const std::string& text, std::size_t room) {
   return text.substr(0, room);
 }
 
-/// Where a run is, in words: "42.0 % · 16/40", or "16/40" where the work is counted, and the time left.
+/// Where a run is.
 class Position {
  public:
   void begin(int cells, int finished) {
     cells_ = cells;
-    finished_ = finished;
-    start_ = Clock::now();
+    finished_ = done_ = finished;
+    start_ = last_ = Clock::now();
   }
 
-  double share(int done, const std::optional<options::WorkAhead>& ahead) const {
-    return ahead ? ahead->share : static_cast<double>(done) / std::max(cells_, 1);
-  }
+  double share() const { return static_cast<double>(done_) / std::max(cells_, 1); }
 
-  /// Rounds down: what is not done is not 100 %.
-  std::string count(int done, const std::optional<options::WorkAhead>& ahead) const {
-    const std::string cells = fmt::format("{}/{}", done, cells_);
-    return ahead ? fmt::format("{:.1f} % · {}", std::floor(1000.0 * ahead->share) / 10.0, cells) : cells;
-  }
-
-  /// " · 3 min left", from the time of the finished cells where the work is counted; empty until it can be told, and at
-  /// the end.
-  std::string describe_left(int done, const std::optional<options::WorkAhead>& ahead) const {
-    if (ahead) return ahead->seconds_left && ahead->share < 1.0 ? describe_seconds(*ahead->seconds_left) : "";
-    if (done <= finished_ || done >= cells_) return {};
-    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
-    return describe_seconds(spent / (done - finished_) * (cells_ - done));
+  /// "16/40 · 35 s, 50 s left": the time since the beginning, and the rest, if cells go on to take as long as those
+  /// that are finished.
+  std::string move(int done) {
+    const auto now = Clock::now();
+    const auto since = [&](Clock::time_point then) { return std::chrono::duration<double>(now - then).count(); };
+    if (std::exchange(done_, done) != done) last_ = now;
+    std::string text = fmt::format("{}/{} · {}", done_, cells_, describe_seconds(since(start_)));
+    if (done_ <= finished_ || done_ >= cells_) return text;
+    const double cell_s = (since(start_) - since(last_)) / (done_ - finished_);
+    const double left_s = cell_s * (cells_ - done_) - since(last_);
+    return left_s < 1.0 ? text : text + fmt::format(", {} left", describe_seconds(left_s));
   }
 
  private:
   using Clock = std::chrono::steady_clock;
   int cells_ = 0;
-  int finished_ = 0;
-  Clock::time_point start_;
+  int finished_ = 0;  ///< before the beginning
+  int done_ = 0;
+  Clock::time_point start_, last_;  ///< when the newest cell was finished
 };
 
 /// Redraws one line.
@@ -71,13 +68,11 @@ class TerminalBar final : public options::Progress {
 
   void begin(int cells, int finished) override { position_.begin(cells, finished); }
 
-  void show(int done, const std::string& what, const std::optional<options::WorkAhead>& ahead) override {
-    const double share = std::clamp(position_.share(done, ahead), 0.0, 1.0);
-    const auto filled = static_cast<std::size_t>(static_cast<double>(kBarCells) * share);
+  void show(int done, const std::string& what) override {
+    const std::string head = position_.move(done);
+    const auto filled = static_cast<std::size_t>(static_cast<double>(kBarCells) * std::min(position_.share(), 1.0));
     const std::string bar = std::string(filled, '#') + std::string(kBarCells - filled, '.');
-    const std::string head = position_.count(done, ahead);
-    fmt::print(stderr, "\r\033[K[{}] {}{}", bar, head,
-               cut(make_visible(position_.describe_left(done, ahead) + " " + what), room(head)));
+    fmt::print(stderr, "\r\033[K[{}] {} · {}", bar, head, cut(make_visible(what), room(head)));
     std::fflush(stderr);
   }
 
@@ -90,7 +85,7 @@ class TerminalBar final : public options::Progress {
   static std::size_t room(const std::string& head) {
     winsize size{};
     const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-    return static_cast<std::size_t>(std::max(columns - static_cast<int>(kBarCells + head.size()) - 5, 10));
+    return static_cast<std::size_t>(std::max(columns - static_cast<int>(kBarCells + head.size()) - 8, 10));
   }
 };
 
@@ -102,13 +97,13 @@ class LogLines final : public options::Progress {
     fifths_ = 0;
   }
 
-  void show(int done, const std::string& what, const std::optional<options::WorkAhead>& ahead) override {
-    const double share = position_.share(done, ahead);
-    const int fifths = static_cast<int>(std::floor(5.0 * share));
-    if (fifths <= fifths_) return;
+  void show(int done, const std::string& what) override {
+    const std::string head = position_.move(done);
+    const int fifths = static_cast<int>(std::floor(5.0 * position_.share()));
+    if (fifths <= fifths_ && fifths < 5) return;
     fifths_ = fifths;
-    if (share < 1.0 && lines_ >= kMostLines - kLastLines) return;
-    note(fmt::format("{} {}{}", position_.count(done, ahead), what, position_.describe_left(done, ahead)));
+    if (fifths < 5 && lines_ >= kMostLines - kLastLines) return;
+    note(head + " · " + what);
   }
 
   void note(const std::string& message) override {
@@ -118,32 +113,21 @@ class LogLines final : public options::Progress {
 
  private:
   static constexpr int kMostLines = 10;  ///< of a run; progress is left out where notes are many
-  static constexpr int kLastLines = 2;   ///< "done", and where the report is
+  static constexpr int kLastLines = 3;   ///< that the report is written, "done", and where it is
   Position position_;
   int fifths_ = 0;  ///< of the work, that were told
   int lines_ = 0;
 };
 
-/// Prints one line for each step, for the window and for tests, and one now and then while a step goes on.
+/// Prints one line for each step, for the window and for tests.
 class StepLines final : public options::Progress {
  public:
   void begin(int cells, int finished) override { position_.begin(cells, finished); }
-
-  void show(int done, const std::string& what, const std::optional<options::WorkAhead>& ahead) override {
-    const auto now = std::chrono::steady_clock::now();
-    if (ahead && what == what_ && now - shown_ < kPause) return;
-    what_ = what;
-    shown_ = now;
-    print_message("{} {}{}\n", position_.count(done, ahead), what, position_.describe_left(done, ahead));
-  }
-
+  void show(int done, const std::string& what) override { print_message("{} · {}\n", position_.move(done), what); }
   void note(const std::string& message) override { print_message("{}\n", message); }
 
  private:
-  static constexpr std::chrono::seconds kPause{2};
   Position position_;
-  std::string what_;
-  std::chrono::steady_clock::time_point shown_;
 };
 
 }  // namespace

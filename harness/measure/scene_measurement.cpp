@@ -45,7 +45,7 @@ class SceneBench {
     const std::vector<std::unique_ptr<render::FilterPasses>> filters = compile();
     StabilityMeter stability(renderer_, options_, task_, assets_);
     for (const auto& filter : filters) {
-      listener_.begin(options::Work::kDrawing, 1, filter->request().label());
+      listener_(filter->request().label());
       result.cells.push_back(draw(*filter));
       const int prefilter = filter->prefilter_passes();
       result.passes_run += 1 + prefilter;
@@ -238,22 +238,18 @@ class SceneBench {
       pointers.push_back((added = make_passes(options_.reference)).get());
       drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, renderer_.timer);
     }
-    listener_.begin(options::Work::kTiming, filters.size(), "times");
-    const double timings = 1.0 + static_cast<double>(options_.lights.size());
+    listener_("times");
     const EmptyLookups empty = make_empty_lookups(renderer_, options_, *task_.scene, light_, pointers);
     record_empties(result, empty);
     const gl::Recorder::Pause pause(renderer_.recorder.get());
-    const RoundTimes times = time_rounds({.filters = pointers,
-                                          .empties = empty.passes,
-                                          .draw_map = [&] { assets_.redraw(light_); },
-                                          .map = light_.map,
-                                          .gbuffer = gbuffer_,
-                                          .timer = renderer_.timer},
-                                         {.reference = reference,
-                                          .limits = options_.rounds,
-                                          .seed = options_.seed,
-                                          .drawn_ms = drawn_ms_,
-                                          .on_part = [&](double part) { listener_.advance(part / timings); }});
+    const RoundTimes times =
+        time_rounds({.filters = pointers,
+                     .empties = empty.passes,
+                     .draw_map = [&] { assets_.redraw(light_); },
+                     .map = light_.map,
+                     .gbuffer = gbuffer_,
+                     .timer = renderer_.timer},
+                    {.reference = reference, .limits = options_.rounds, .seed = options_.seed, .drawn_ms = drawn_ms_});
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       note_times(result.cells[i].record, times, {i, reference, empty.of_filter[i]});
@@ -279,10 +275,8 @@ class SceneBench {
       for (MeasuredCell& cell : result.cells) cell.record.absent["lights"] = "the run was made without --lights";
       return;
     }
-    const double timings = 1.0 + static_cast<double>(options_.lights.size());
-    LightMeasurement measured = measure_lights(
-        renderer_, options_, assets_, {&task_.scene->light, task_.camera, task_.map_size, filters, reference},
-        [&](double part) { listener_.advance((1.0 + (timings - 1.0) * part) / timings); });
+    LightMeasurement measured = measure_lights(renderer_, options_, assets_,
+                                               {&task_.scene->light, task_.camera, task_.map_size, filters, reference});
     result.timed_ms += measured.spent_ms;
     for (std::size_t i = 0; i < result.cells.size(); ++i) {
       records::CellRecord& record = result.cells[i].record;
@@ -297,7 +291,7 @@ class SceneBench {
   void draw_phases(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     const gl::Recorder::Pause pause(renderer_.recorder.get());
     const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases, options_.seed);
-    if (shifts.size() > 1) listener_.begin(options::Work::kPhases, filters.size(), "phases");
+    if (shifts.size() > 1) listener_("phases");
     for (std::size_t phase = 1; phase < shifts.size(); ++phase) {
       gbuffer_.forget_receivers();  // no phase asks for those of another
       const LightMap moved = assets_.make_light_map(task_.scene->light, *task_.camera, task_.map_size, shifts[phase]);
@@ -308,7 +302,6 @@ class SceneBench {
             filter.prepare(make_filter_light(options_, task_.scene->light, moved.layers, filter.request()), encoded));
         result.cells[i].phases.push_back(draw_visibility(filter, moved.map, gbuffer_, target_));
       }
-      listener_.advance(static_cast<double>(phase) / static_cast<double>(shifts.size() - 1));
     }
     gbuffer_.forget_receivers();
   }

@@ -68,8 +68,9 @@ struct SceneTask {
 
 /// Draws and times every filter of a task.
 /// Throws Error(kFilter) for a filter's GLSL, Error(kUsage) for a map size that the GL cannot give.
-SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
-                               SceneAssets& assets, const options::StepListener& listener = {});
+SceneMeasurement measure_scene(
+    Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets,
+    const options::StepListener& listener = [](const std::string&) {});
 
 /// Writes a light's place as the command line reads it.
 std::string describe_light(const scene::SkyAngles& light);

@@ -20,7 +20,6 @@
 #include "harness/run/all_lights.h"
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
-#include "harness/run/run_progress.h"
 #include "harness/run/scene_loading.h"
 #include "harness/run/supersampled_pictures.h"
 #include "harness/run/task_run.h"
@@ -69,7 +68,6 @@ class Experiment {
   Experiment(const options::RunOptions& options, options::Progress& progress)
       : options_(options),
         progress_(progress),
-        steps_(progress),
         renderer_(measure::make_renderer(options.backend, options.resources)),
         cache_(options.cache, [this](const std::string& message) { warn(message); }) {
     run_.commit = build_commit();
@@ -111,14 +109,15 @@ class Experiment {
  private:
   const options::RunOptions& options_;
   options::Progress& progress_;
-  RunProgress steps_;
   measure::Renderer renderer_;
   truth::TruthCache cache_;
   records::RunRecord run_;
   std::optional<files::FolderLock> lock_;
   std::set<std::string> told_;  ///< warnings that the user has seen
-  TaskListener listener_{&steps_, [this](const measure::SceneMeasurement& measured) { count(measured); }};
+  int done_ = 0;                ///< cells
   std::function<void(const std::string&)> note_ = [this](const std::string& message) { progress_.note(message); };
+  TaskListener listener_{[this](const std::string& what) { progress_.show(done_, what); }, note_,
+                         [this](const measure::SceneMeasurement& measured) { count(measured); }};
   GpuCosts gpus_{options_, note_};
 
   void require_in_place() const {
@@ -127,7 +126,8 @@ class Experiment {
 
   void measure(const RunPlan& plan) {
     const std::vector<records::CellRecord> replaced = read_replaced();
-    steps_.plan(plan);
+    done_ = plan.finished;
+    progress_.begin(plan.own_cells, done_);
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) {
       run_scene(plan, scene);
@@ -138,7 +138,7 @@ class Experiment {
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
     finish(plan, replaced);
-    steps_.finish();
+    progress_.show(done_, "done");
   }
 
   /// The page of the scenes that are measured, whenever they are twice as many: so it is there after the first, and all
@@ -161,13 +161,12 @@ class Experiment {
   }
 
   void finish(const RunPlan& plan, const std::vector<records::CellRecord>& replaced) {
-    steps_.begin_report();
+    progress_.show(done_, "writing the report");
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (!options_.part.is_worker()) {
       std::vector<records::CellRecord> cells = records::read_cells(options_.out, keep_rows(plan));
-      if (options_.pictures && options_.truth)
-        draw_supersampled_pictures(renderer_, plan, cache_, cells, [this](double part) { steps_.advance(part); });
+      if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, plan, cache_, cells);
       pages::write_report(options_.out, run_, cells);
     }
     cache_.prune(truth::kMaxCacheBytes);
@@ -175,7 +174,7 @@ class Experiment {
 
   void count(const measure::SceneMeasurement& measured) {
     require_in_place();
-    steps_.count(static_cast<int>(measured.cells.size()));
+    done_ += static_cast<int>(measured.cells.size());
     run_.work.timed_s += 1e-3 * measured.timed_ms;
     if (options_.truth && options_.attribution)
       run_.work.attribution_s = run_.work.attribution_s.value_or(0.0) + measured.attribution_s;
@@ -197,7 +196,7 @@ class Experiment {
       text += fmt::format(" of {}, shard {}/{}", plan.cells, options_.part.shard, options_.part.shards);
     if (plan.finished > 0)
       text += fmt::format(", {} of them finished before (--fresh measures them again)", plan.finished);
-    const TimeForecast forecast = left > 0 ? forecast_time(renderer_, plan, cache_) : TimeForecast();
+    const TimeForecast forecast = left > 0 ? forecast_time(plan) : TimeForecast();
     text += forecast.text;
     progress_.note(text);
     if ((left <= kManyCells && forecast.seconds <= kManySeconds) || options_.large_is_fine) return;

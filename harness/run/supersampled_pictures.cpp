@@ -164,17 +164,13 @@ std::vector<ShownCell> list_shown(const RunPlan& plan, std::vector<records::Cell
 }  // namespace
 
 void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache,
-                                std::vector<records::CellRecord>& cells,
-                                const std::function<void(double part)>& on_part) {
+                                std::vector<records::CellRecord>& cells) {
   const gl::Recorder::Pause pause(renderer.recorder.get());
   std::optional<measure::SceneAssets> assets;
   std::optional<SampledView> view;
   const PlannedTask* before = nullptr;
   std::string truth;
-  const std::vector<ShownCell> all = list_shown(plan, cells);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto& [task, request, cell, part] = all[i];
-    on_part(static_cast<double>(i) / static_cast<double>(all.size()));
+  for (const auto& [task, request, cell, part] : list_shown(plan, cells)) {
     const PlannedScene& planned = plan.scenes[task->scene];
     const int side = choose_side(part);
     if (side == 1) continue;

@@ -15,9 +15,7 @@ namespace shadowbench::run {
 /// linear light is the pixel. The rest of the picture is as it was measured; parts larger than 2^23 / 4 pixels are too.
 /// `cells` are all of the plan; those that are drawn get the paths, and are written; those that an earlier run measured
 /// stay as they are. Cost: 16 lookups and shadings of the part for each, and about one tracing of it for each view.
-/// `on_part` hears how much is done, 0 .. 1.
 void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache,
-                                std::vector<records::CellRecord>& cells,
-                                const std::function<void(double part)>& on_part);
+                                std::vector<records::CellRecord>& cells);
 
 }  // namespace shadowbench::run

@@ -5,7 +5,6 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <map>
 #include <optional>
@@ -79,9 +78,6 @@ class TaskRun {
         task_(bench.task.task),
         assets_(bench.assets),
         listener_(bench.listener) {
-    steps_.begin = [this](options::Work kind, std::size_t cells, const std::string& what) { begin(kind, cells, what); };
-    steps_.advance = [this](double part) { listener_.progress->advance(part); };
-    assets_.tracer().listen([progress = bench.listener.progress](double part) { progress->advance_tracing(part); });
     for (std::size_t i = 0; i < task_.filters.size(); ++i)
       contents_[measure::make_record(options_, task_, task_.filters[i]).key] = bench.task.contents[i];
   }
@@ -114,7 +110,6 @@ class TaskRun {
   measure::SceneAssets& assets_;
   const TaskListener& listener_;
   std::map<std::string, std::string> contents_;  ///< by key
-  options::StepListener steps_;
   std::optional<measure::CellAnalyser> analyser_;
   std::optional<measure::MapCoverage> coverage_;
   std::optional<measure::TrafficMeter> traffic_;
@@ -129,7 +124,9 @@ class TaskRun {
     std::vector<measure::MeasuredCell> user_cells;
     for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
     measure::SceneMeasurement measured;
-    if (!built_in.empty()) measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_, steps_);
+    if (!built_in.empty())
+      measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_,
+                                        [this](const std::string& what) { begin(what); });
     const measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
     measured.stored_map = light.map.read_picture();
     measured.depth_map = measure::read_linear_depth(light.map);
@@ -146,10 +143,10 @@ class TaskRun {
     if (options_.frames > 1) accumulate(measured, built_in.size());
     FilesBeside files;  // after what its jobs read
     start_pictures(task_of(all), measured, files);
-    begin(options::Work::kGpus, measured.cells.size(), "costs on GPUs");
+    if (!options_.gpus.empty()) begin("costs on GPUs");
     if (bench_.gpus.compile(measured.cells)) count_traffic(measured);
     bench_.gpus.add_to(measured.cells);
-    begin(options::Work::kPictures, measured.cells.size(), "pictures");
+    if (options_.pictures) begin("pictures");
     write_images(task_of(all), measured, files);
     files.wait();
     const double shared_s = watch.read_s() - measured.truth_s - measured.attribution_s;
@@ -166,32 +163,29 @@ class TaskRun {
   }
 
   measure::MeasuredCell measure_user_cell(const filters::FilterRequest& request) {
-    begin(options::Work::kTiming, 1, request.label());
+    begin(request.label());
     return measure_user_filter(options_, task_, request, {bench_.planned.argument, renderer_.context->info().backend});
   }
 
   /// Scores each cell against the truth, and takes its error apart.
   void score(measure::SceneMeasurement& measured) {
-    const std::size_t cells = measured.cells.size();
-    begin(options::Work::kTruth, cells, "truth");
+    if (options_.truth) begin("truth");
     Stopwatch watch;
     const measure::SceneTruth& truth = assets_.truth(*task_.camera);
     measured.truth_s = watch.read_s();
-    begin(options::Work::kSurroundings, cells, "artefacts");
+    if (options_.truth) begin("artefacts");
     watch = {};
     if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
     measured.truth_s += watch.read_s();
-    begin(options::Work::kScores, cells, "errors");
-    std::atomic<std::size_t> scored = 0;
+    if (options_.truth) begin("errors");
     tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
       cell.flip = measure::score(cell.record, cell.visibility, cell.phases, cell.picture, truth);
       analyser_->note_cascades(cell);
       cell.phases.clear();
       measure::check_against_truth(cell, truth);
-      steps_.advance(static_cast<double>(++scored) / static_cast<double>(cells));
     });
     for (measure::MeasuredCell& cell : measured.cells) {
-      begin(options::Work::kAttribution, 1, "attribution of " + cell.label);
+      if (options_.truth && options_.attribution) begin("attribution of " + cell.label);
       watch = {};
       analyser_->analyse(cell);
       cell.cascades.clear();
@@ -213,7 +207,7 @@ class TaskRun {
     grid.columns = 6;
     for (std::size_t i = 0; i < count; ++i) {
       measure::MeasuredCell& cell = measured.cells[i];
-      begin(options::Work::kFrames, 1, "frames of " + cell.label);
+      begin("frames of " + cell.label);
       measure::AccumulatedImages drawn;
       if (absent.empty()) cell.record.accumulation = accumulation_->measure(cell.request, drawn);
       if (!cell.record.accumulation) {
@@ -268,7 +262,6 @@ class TaskRun {
     if (!options_.part.is_worker() && options_.grids && options_.pictures)
       files.write({plan_grid(options_, task, measured, truth, bench_.run.gl)});
     write_frames(renderer_, options_, task, assets_, measured);
-    steps_.advance(0.3);
     if (!options_.part.is_worker()) {
       for (measure::MeasuredCell& cell : measured.cells) {
         measure::write_stability(options_, task_stem(options_, task), cell);
@@ -279,7 +272,6 @@ class TaskRun {
     note_float_images(options_, task, measured);
     if (options_.border_page) draw_border_page(task);
     write_float_images(options_, task, measured, truth, renderer_.context->info());
-    steps_.advance(0.6);
   }
 
   void draw_border_page(const measure::SceneTask& task) {
@@ -288,7 +280,7 @@ class TaskRun {
     std::erase_if(built_in.filters,
                   [&](const auto& request) { return request.user_file && !options_.part.is_worker(); });
     write_border_page(file, renderer_, options_, built_in, assets_);
-    listener_.progress->shown().note("border page: " + file.string());
+    listener_.note("border page: " + file.string());
   }
 
   void write_cells(measure::SceneMeasurement& measured) {
@@ -299,9 +291,8 @@ class TaskRun {
     listener_.finished(measured);
   }
 
-  void begin(options::Work kind, std::size_t cells, const std::string& what) const {
-    listener_.progress->begin(bench_.planned, bench_.task, kind, cells,
-                              fmt::format("{} · {} · {}", task_.scene->name, task_.map_size, what));
+  void begin(const std::string& what) const {
+    listener_.begin(fmt::format("{} · {} · {}", task_.scene->name, task_.map_size, what));
   }
 };
 

@@ -3,16 +3,17 @@
 #include <functional>
 
 #include "harness/measure/scene_assets.h"
+#include "harness/options/progress.h"
 #include "harness/run/gpu_costs.h"
 #include "harness/run/run_plan.h"
-#include "harness/run/run_progress.h"
 #include "report/records/records.h"
 
 namespace shadowbench::run {
 
 /// Hears how a task proceeds.
 struct TaskListener {
-  RunProgress* progress = nullptr;
+  options::StepListener begin;                                              ///< hears of every step
+  std::function<void(const std::string& message)> note;                     ///< what the user should know
   std::function<void(const measure::SceneMeasurement& measured)> finished;  ///< cells that were written
 };
 

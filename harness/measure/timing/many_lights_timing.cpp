@@ -65,7 +65,7 @@ void LightFrameBench::look_up(std::size_t filter) {
   }
 }
 
-RoundTimes LightFrameBench::time(const std::function<void(double part)>& on_part) {
+RoundTimes LightFrameBench::time() {
   const gl::TimerKind timer = renderer_.timer;
   TimedPasses timed{.draw_map = [&] {
     return gl::time_ms(timer, [&] {
@@ -77,8 +77,7 @@ RoundTimes LightFrameBench::time(const std::function<void(double part)>& on_part
     if (frame_.filters[i]->has_prefilter()) prefilters = [this, i] { prefilter(i); };
     timed.filters.push_back(make_timed(timer, prefilters, [this, i] { look_up(i); }));
   }
-  return run_rounds(
-      timed, {.reference = frame_.reference, .limits = options_.rounds, .seed = options_.seed, .on_part = on_part});
+  return run_rounds(timed, {.reference = frame_.reference, .limits = options_.rounds, .seed = options_.seed});
 }
 
 std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
@@ -90,15 +89,10 @@ std::vector<std::vector<float>> LightFrameBench::draw(std::size_t filter) {
 }
 
 LightMeasurement measure_lights(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets,
-                                const LightFrame& frame, const std::function<void(double part)>& on_part) {
+                                const LightFrame& frame) {
   LightMeasurement result{std::vector<std::vector<records::LightCountRecord>>(frame.filters.size()), 0.0};
-  double timed = 0.0;
   for (const int count : options.lights) {
-    const auto on_rounds = [&](double part) {
-      if (on_part) on_part((timed + part) / static_cast<double>(options.lights.size()));
-    };
-    const RoundTimes times = LightFrameBench(renderer, options, assets, frame, count).time(on_rounds);
-    timed += 1.0;
+    const RoundTimes times = LightFrameBench(renderer, options, assets, frame, count).time();
     result.spent_ms += times.spent_ms;
     for (std::size_t i = 0; i < frame.filters.size(); ++i)
       result.filters[i].push_back(make_record(count, times, i, frame));

@@ -36,7 +36,7 @@ class LightFrameBench {
   /// Times interleaved rounds as run_rounds(): `map` has the time of all lights' depth maps, a filter's `prefilter`
   /// that of all its encoded maps, its `lookup` that of one lookup per light, each over the whole picture. Shading and
   /// adding up are left out.
-  RoundTimes time(const std::function<void(double part)>& on_part = {});
+  RoundTimes time();
 
   /// Runs a filter's prefilters and lookups; gives each light's visibility as the GL wrote it, rows bottom to top.
   std::vector<std::vector<float>> draw(std::size_t filter);
@@ -64,10 +64,9 @@ struct LightMeasurement {
   double spent_ms = 0.0;  ///< of all passes, rounds that warm up included
 };
 
-/// Measures what frames lit by each of `options.lights` cost. The filters are left turned to the last light. `on_part`
-/// hears how much of it is done.
+/// Measures what frames lit by each of `options.lights` cost. The filters are left turned to the last light.
 /// Cost: rounds of map, prefilter and lookup, times the sum of the counts.
 LightMeasurement measure_lights(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets,
-                                const LightFrame& frame, const std::function<void(double part)>& on_part = {});
+                                const LightFrame& frame);
 
 }  // namespace shadowbench::measure

@@ -40,7 +40,6 @@ class Rounds {
     if (!is_spent()) run_round(false);  // slower passes are warm
     for (int round = 1; round <= limits_.most; ++round) {
       run_round(true);
-      if (plan_.on_part) plan_.on_part(find_part(round));
       if (is_enough(round)) break;
     }
     return std::move(times_);
@@ -88,11 +87,6 @@ class Rounds {
     const double ms = passes_.empties[which]();
     times_.spent_ms += ms;
     if (counted) times_.empties[which].push_back(ms);
-  }
-
-  double find_part(int rounds) const {
-    if (limits_.is_fixed()) return static_cast<double>(rounds) / limits_.most;
-    return std::min(times_.spent_ms / (limits_.budget_ms * static_cast<double>(filters_.size())), 1.0);
   }
 
   bool is_spent() const {

@@ -60,8 +60,7 @@ struct RoundPlan {
   std::size_t reference = 0;  ///< index of the filter that ratios refer to
   options::RoundLimits limits = {};
   std::uint64_t seed = 1;
-  double drawn_ms = 0.0;                          ///< what running every filter once has cost before
-  std::function<void(double part)> on_part = {};  ///< hears after every round how much is behind, 0 .. 1
+  double drawn_ms = 0.0;  ///< what running every filter once has cost before
 };
 
 /// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of

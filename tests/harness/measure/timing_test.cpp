@@ -22,8 +22,8 @@ class FakeFilters {
     filters_.push_back(std::move(filter));
   }
 
-  RoundTimes run(const options::RoundLimits& limits, const std::function<void(double)>& on_part = {}) {
-    return run_rounds({filters_, [] { return 1.0; }}, {.limits = limits, .seed = 3, .on_part = on_part});
+  RoundTimes run(const options::RoundLimits& limits) {
+    return run_rounds({filters_, [] { return 1.0; }}, {.limits = limits, .seed = 3});
   }
 
  private:
@@ -36,21 +36,6 @@ class FakeFilters {
 };
 
 double width(const records::Ratio& ratio) { return (ratio.ci95.high - ratio.ci95.low) / ratio.median; }
-
-TEST(Rounds, SayHowMuchOfThemIsDone) {
-  for (const options::RoundLimits& limits :
-       {options::RoundLimits::exactly(5), options::RoundLimits{3, 1000, 1e-9, 100.0}}) {
-    FakeFilters filters;
-    filters.add(2.0, 0.1);
-    filters.add(5.0, 0.1);
-    std::vector<double> parts;
-    const RoundTimes times = filters.run(limits, [&](double part) { parts.push_back(part); });
-    ASSERT_EQ(parts.size(), times.map.size());
-    EXPECT_TRUE(std::ranges::is_sorted(parts));
-    EXPECT_LT(parts.front(), 0.25);
-    EXPECT_EQ(parts.back(), 1.0);
-  }
-}
 
 TEST(Rounds, QuietFilters_StopAsSoonAsTheyMay) {
   FakeFilters filters;

@@ -7,8 +7,6 @@
 namespace shadowbench::run {
 namespace {
 
-using options::Work;
-
 /// One scene with one task.
 struct Plan : RunPlan {
   explicit Plan(std::size_t filters = 8) {
@@ -19,53 +17,41 @@ struct Plan : RunPlan {
     tasks.front().task.filters.resize(filters);
   }
 
-  double task_s(Work kind) const {
-    return static_cast<double>(tasks.front().task.filters.size()) * presume_cell_s(scenes.front(), tasks.front(), kind);
-  }
-
-  double all_s() const {
-    double seconds = presume_report_s(*this);
-    for (std::size_t kind = 0; kind < options::kWorks; ++kind) seconds += task_s(static_cast<Work>(kind));
-    return seconds;
-  }
+  options::RunOptions& options() { return scenes.front().options; }
+  double task_s() const { return presume_task_s(scenes.front(), tasks.front()); }
+  double timing_s() const { return presume_timing_s(scenes.front(), tasks.front()); }
+  double all_s() const { return forecast_time(*this).seconds; }
 };
 
 TEST(TimeForecast, TruthOfAView_IsTracedOnce_HoweverManyFiltersThereAre) {
-  for (const Work kind : {Work::kTruth, Work::kSurroundings})
-    EXPECT_NEAR(Plan(3).task_s(kind), Plan(30).task_s(kind), 1e-9);
-  for (const Work kind : {Work::kDrawing, Work::kTiming, Work::kAttribution, Work::kGpus, Work::kPictures})
-    EXPECT_NEAR(10.0 * Plan(3).task_s(kind), Plan(30).task_s(kind), 1e-9);
+  EXPECT_NEAR(Plan(9).task_s() - Plan(6).task_s(), Plan(6).task_s() - Plan(3).task_s(), 1e-9);
+  EXPECT_GT(2.0 * Plan(3).task_s(), Plan(6).task_s());
+  EXPECT_NEAR(2.0 * Plan(3).timing_s(), Plan(6).timing_s(), 1e-9);
+  EXPECT_EQ(Plan(0).task_s() + Plan(0).timing_s(), 0.0);
 }
 
 TEST(TimeForecast, GrowsWithPictureAndMap_AndNotFaster) {
   const Plan small;
   Plan large, deep;
-  large.scenes.front().options.width *= 2;
-  large.scenes.front().options.height *= 2;
+  large.options().width *= 2;
+  large.options().height *= 2;
   deep.tasks.front().task.map_size *= 2;
   for (const Plan& grown : {large, deep}) {
     EXPECT_GT(grown.all_s(), small.all_s());
-    for (std::size_t kind = 0; kind < options::kWorks; ++kind)
-      EXPECT_LE(grown.task_s(static_cast<Work>(kind)), 4.0 * small.task_s(static_cast<Work>(kind))) << kind;
+    EXPECT_LE(grown.task_s(), 4.0 * small.task_s());
+    EXPECT_LE(grown.timing_s(), 4.0 * small.timing_s());
   }
 }
 
 TEST(TimeForecast, LeavesOut_WhatTheCacheHas_AndWhatIsNotAskedFor) {
   const Plan cold;
-  Plan warm, quick;
+  Plan warm, all[6];
   warm.tasks.front().is_traced = true;
-  for (const Work kind : {Work::kTruth, Work::kSurroundings, Work::kAttribution}) {
-    EXPECT_LT(warm.task_s(kind), cold.task_s(kind));
-    EXPECT_GT(warm.task_s(kind), 0.0);
-  }
-  options::RunOptions& options = quick.scenes.front().options;
-  options.truth = false;
-  options.gpus.clear();
-  options.frames = options.phases = 1;
-  for (const Work kind : {Work::kTruth, Work::kScores, Work::kSurroundings, Work::kAttribution, Work::kGpus,
-                          Work::kFrames, Work::kPhases})
-    EXPECT_EQ(quick.task_s(kind), 0.0);
-  EXPECT_LT(quick.all_s(), warm.all_s());
+  EXPECT_LT(warm.task_s(), cold.task_s());
+  all[0].options().truth = all[1].options().attribution = all[2].options().pictures = false;
+  all[3].options().gpus.clear();
+  all[4].options().frames = all[5].options().phases = 1;
+  for (const Plan& quick : all) EXPECT_LT(quick.all_s(), cold.all_s()) << &quick - all;
 }
 
 }  // namespace
