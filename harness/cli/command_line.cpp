@@ -41,6 +41,7 @@ std::string wrap_all(const std::string& about) {
 }
 
 std::string check_value(const Option& option, const std::string& value) {
+  if (!option.instead.empty()) return option.instead;
   if (value.empty())
     return "a value is missing: give " + (!option.not_empty.empty() ? option.not_empty
                                           : option.required         ? "one"

@@ -36,8 +36,8 @@ records::CellRecord make_external_record(const options::RunOptions& options, con
   records::CellRecord record = measure::make_record(options, task, request);
   record.external = std::move(external);
   record.key = records::cell_key(record);
-  for (const char* field : {"time_ms", "ratio_to_none", "cost", "kernel", "kernel_radius_texels", "lights", "gpu",
-                            "coverage", "stability", "map_scale", "nan"})
+  for (const char* field : {"time_ms", "ratio_to_none", "cost", "kernel", "kernel_radius_texels", "gpu", "coverage",
+                            "stability", "map_scale", "nan"})
     record.absent[field] = kAnother;
   return record;
 }

@@ -16,7 +16,6 @@
 #include "harness/measure/scene_truth.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
-#include "harness/measure/timing/many_lights_timing.h"
 #include "harness/measure/timing/timing.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/shade_pass.h"
@@ -239,7 +238,6 @@ class SceneBench {
       drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, renderer_.timer);
     }
     listener_.begin(options::Work::kTiming, filters.size(), "times");
-    const double timings = 1.0 + static_cast<double>(options_.lights.size());
     const EmptyLookups empty = make_empty_lookups(renderer_, options_, *task_.scene, light_, pointers);
     record_empties(result, empty);
     const gl::Recorder::Pause pause(renderer_.recorder.get());
@@ -253,14 +251,13 @@ class SceneBench {
                                           .limits = options_.rounds,
                                           .seed = options_.seed,
                                           .drawn_ms = drawn_ms_,
-                                          .on_part = [&](double part) { listener_.advance(part / timings); }});
+                                          .on_part = [&](double part) { listener_.advance(part); }});
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       note_times(result.cells[i].record, times, {i, reference, empty.of_filter[i]});
       result.cells[i].empty_lookup = empty.passes[empty.of_filter[i]]->list_passes(0).front();
       result.cells[i].empty_lookup.name = "empty";
     }
-    time_lights(result, pointers, reference);
   }
 
   /// Has the empty lookups written down, each drawn once.
@@ -272,24 +269,6 @@ class SceneBench {
       drawn.push_back(renderer_.recorder->newest_draw());
     }
     for (std::size_t i = 0; i < result.cells.size(); ++i) result.cells[i].empty_frame = drawn[empty.of_filter[i]];
-  }
-
-  void time_lights(SceneMeasurement& result, const std::vector<render::FilterPasses*>& filters, std::size_t reference) {
-    if (options_.lights.empty()) {
-      for (MeasuredCell& cell : result.cells) cell.record.absent["lights"] = "the run was made without --lights";
-      return;
-    }
-    const double timings = 1.0 + static_cast<double>(options_.lights.size());
-    LightMeasurement measured = measure_lights(
-        renderer_, options_, assets_, {&task_.scene->light, task_.camera, task_.map_size, filters, reference},
-        [&](double part) { listener_.advance((1.0 + (timings - 1.0) * part) / timings); });
-    result.timed_ms += measured.spent_ms;
-    for (std::size_t i = 0; i < result.cells.size(); ++i) {
-      records::CellRecord& record = result.cells[i].record;
-      record.lights = std::move(measured.filters[i]);
-      for (records::LightCountRecord& each : *record.lights)
-        each.maps_bytes = each.count * record.cost.map_bytes.value();
-    }
   }
 
   /// Draws every filter again with the map's grid moved by parts of a texel. The passes stay turned to the last of

@@ -95,7 +95,6 @@ struct RunOptions {
   int frames = 1;                                       ///< also accumulate visibility over so many
   std::vector<filters::FilterRequest> until_different;  ///< two: phases are added until they are told apart
   std::vector<gpu::Gpu> gpus;                           ///< also estimate costs on these, which need not be there
-  std::vector<int> lights;                              ///< also time frames with these numbers of lights
   filters::FilterRequest reference;                     ///< the filter that the others' times are ratios to
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;

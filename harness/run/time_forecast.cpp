@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
@@ -70,17 +69,12 @@ RoundRate draw_round(measure::Renderer& renderer, const PlannedScene& planned, c
   return {map_ms / count_megatexels(task.map_size), lookup_ms / count_megapixels(options)};
 }
 
-double count_frames(const options::RunOptions& options) {
-  return 1.0 + std::accumulate(options.lights.begin(), options.lights.end(), 0.0);
-}
-
 /// Pictures that are drawn soon are precise soon, unless a larger budget says that they are to be more so.
 double presume_timing_s(const options::RunOptions& options, double draw_s) {
-  if (options.rounds.is_fixed()) return 0.1 * draw_s * options.rounds.most * count_frames(options);
+  if (options.rounds.is_fixed()) return 0.1 * draw_s * options.rounds.most;
   const double budget_s = 1e-3 * options.rounds.budget_ms;
   const bool is_told_more = options.rounds.budget_ms > options::RoundLimits().budget_ms;
-  return (1.0 + static_cast<double>(options.lights.size())) *
-         (is_told_more ? budget_s : std::min(budget_s, 15.0 * draw_s));
+  return is_told_more ? budget_s : std::min(budget_s, 15.0 * draw_s);
 }
 
 double forecast_timing_s(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache) {
@@ -95,7 +89,7 @@ double forecast_timing_s(measure::Renderer& renderer, const RunPlan& plan, truth
       continue;
     }
     if (!rate) rate = draw_round(renderer, planned, task.task, cache);
-    seconds += 1e-3 * planned.options.rounds.most * count_frames(planned.options) *
+    seconds += 1e-3 * planned.options.rounds.most *
                (count_megatexels(task.task.map_size) * rate->map_ms +
                 cells * count_megapixels(planned.options) * rate->lookup_ms);
   }

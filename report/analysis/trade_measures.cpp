@@ -229,9 +229,4 @@ Measured read_cost(const records::CellRecord& cell, const Measure& cost) {
   return cost.metric ? read_metric(cell, *cost.metric) : read_frame(cell, cost);
 }
 
-bool is_reference(const records::CellRecord& cell) {
-  const auto& ratio = cell.ratio_to_none.lookup;
-  return ratio && ratio->median == 1.0 && ratio->ci95.low == 1.0 && ratio->ci95.high == 1.0;
-}
-
 }  // namespace shadowbench::analysis

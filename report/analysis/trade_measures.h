@@ -83,7 +83,4 @@ Measured read_error(const records::CellRecord& cell, const Measure& measure);
 /// frame_interval(), or where that is missing with the quartiles.
 Measured read_cost(const records::CellRecord& cell, const Measure& measure);
 
-/// Whether a cell is the one that ratios refer to: its own ratio is exactly 1 [1, 1].
-bool is_reference(const records::CellRecord& cell);
-
 }  // namespace shadowbench::analysis

@@ -37,16 +37,6 @@ void visit_fields(Is<MachineKind> auto& kind, auto&& visit) {
   visit("timer", kind.timer);
 }
 
-void visit_fields(Is<LightCountRecord> auto& lights, auto&& visit) {
-  visit("count", lights.count, {.least = 1, .most = 16});
-  visit("static_ms", lights.static_ms);
-  visit("moving_ms", lights.moving_ms);
-  visit("ratio_to_none", kGroup, {.text = "per-round ratios, under as many lights"});
-  visit("ratio_to_none.static", lights.static_ratio);
-  visit("ratio_to_none.moving", lights.moving_ratio);
-  visit("maps_bytes", lights.maps_bytes, {.text = "of the maps that the lookups read"});
-}
-
 void visit_fields(Is<CascadeRecord> auto& cascade, auto&& visit) {
   visit("end_m", cascade.end_m, {.text = "depth along the camera's axis at which it ends"});
   visit("texels_per_m", cascade.texels_per_m, kPositive);
@@ -320,11 +310,6 @@ void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
   visit_group("time_ms", cell.time_ms, visit, {.text = "milliseconds of the clock that gl.timer names"});
   visit_group("ratio_to_none", cell.ratio_to_none, visit,
               {.text = "per-round ratios; static: map and prefilter cached, moving: paid in every frame"});
-  visit("lights", cell.lights,
-        {.text = "frames lit by several suns, each with a map of its own: the scene's light, turned about the vertical "
-                 "by i * 360 / count degrees; null or missing where that was not measured",
-         .least = 1,
-         .later = true});
   visit("cascades", cell.cascades,
         {.text = "of a map of cascades: each with the receivers of which it serves the most, from near to far",
          .may_lack = true,

@@ -109,17 +109,6 @@ struct RatioRecord {
   std::optional<Ratio> moving;        ///< map, prefilter and lookup are paid in every frame
 };
 
-/// What a frame lit by several lights costs, each with a shadow map of its own; milliseconds of the clock that
-/// the run names.
-struct LightCountRecord {
-  int count = 0;        ///< lights: the scene's, turned about the vertical by i * 360 / count degrees
-  Quartiles static_ms;  ///< maps and prefilters cached: a lookup per light
-  Quartiles moving_ms;  ///< a depth map, a prefilter and a lookup per light
-  Ratio static_ratio;   ///< per-round ratios to the filter `none` under as many lights
-  Ratio moving_ratio;
-  std::int64_t maps_bytes = 0;  ///< bytes of the maps that the lookups read
-};
-
 /// What a cascade shows: the receivers of which it serves the most, and how wrong they are.
 struct CascadeRecord {
   double end_m = 0.0;                      ///< depth along the camera's axis at which it ends
@@ -299,11 +288,10 @@ struct CellRecord : metrics::MetricValues {
   std::optional<Interval> flicker_ci95;  ///< of `error.flicker` over the phases
   TimeRecord time_ms;
   RatioRecord ratio_to_none;
-  std::optional<std::vector<LightCountRecord>> lights;  ///< by ascending count
-  std::optional<std::vector<CascadeRecord>> cascades;   ///< from near to far; empty without cascades, or a truth
-  std::optional<AccumulationRecord> accumulation;       ///< over frames
-  std::optional<GpuRecords> gpu;                        ///< what the cell costs on GPUs that were not there
-  std::optional<ExternalRecord> external;               ///< of a row that another renderer drew
+  std::optional<std::vector<CascadeRecord>> cascades;  ///< from near to far; empty without cascades, or a truth
+  std::optional<AccumulationRecord> accumulation;      ///< over frames
+  std::optional<GpuRecords> gpu;                       ///< what the cell costs on GPUs that were not there
+  std::optional<ExternalRecord> external;              ///< of a row that another renderer drew
   ImagesRecord images;
   std::vector<std::string> warnings;  ///< for people: what makes this cell's numbers doubtful
   std::map<std::string, std::string> absent;
