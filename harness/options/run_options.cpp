@@ -349,6 +349,10 @@ std::vector<RunOption> list_run_options() {
       .never_empty("I/N");
   t.add("--fresh", "measure every cell again, even those that an earlier run finished in the report folder",
         &RunOptions::fresh);
+  t.add_row("--until-different", "", std::string())
+      .gone(
+          "the page of a run says how small a difference it can see; run again with more --phases to see a smaller "
+          "one");
   t.add("--yes", "start even where there are very many cells", &RunOptions::large_is_fine);
   t.add("--pictures", "", &RunOptions::pictures).with_opposite().hide();
   return std::move(t.rows);

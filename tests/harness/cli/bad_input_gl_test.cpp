@@ -60,6 +60,7 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {small("--filters none:"), 2, {"none:", "PARAM=VALUE"}},
       {small("--fit box"), 2, {"'box'", "sphere, tight, view"}},
       {small("--snap"), 2, {"--snap"}},
+      {small("--until-different none,vsm"), 2, {"--until-different: ", "--phases"}},
       {small("--lights 1,2"), 2, {"--lights: ", "no longer timed", "several lights"}},
       {small("--snap perhaps"), 2, {"--snap", "perhaps"}},
       {small("--light 120"), 2, {"'120'", "AZIMUTH,ELEVATION"}},
