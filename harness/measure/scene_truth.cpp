@@ -67,10 +67,13 @@ void note_growth(records::CellRecord& record, std::span<const std::span<const fl
                                                                .columns = truth.area.width});
   }
   if (!record.penumbra.growth)
-    record.absent["penumbra"] = texel_m ? records::explain_nothing_to_see(fmt::format(
-                                              "too few penumbrae are {:g} to {:g} texels wide, and of different widths",
-                                              metrics::kGrowthLimits.least_texels, metrics::kGrowthLimits.most_texels))
-                                        : "the renderer's map is not known";
+    records::explain(
+        record, "penumbra",
+        texel_m ? records::Absence{fmt::format("too few penumbrae are {:g} to {:g} texels wide, and of different "
+                                               "widths",
+                                               metrics::kGrowthLimits.least_texels, metrics::kGrowthLimits.most_texels),
+                                   true}
+                : records::Absence{"the renderer's map is not known"});
 }
 
 constexpr double kTellingWeight = 0.01;
@@ -90,7 +93,7 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
   truth.mask = receivers.mask();
   truth.receivers = std::move(receivers);
   if (!truth.receivers.any_counts()) {
-    truth.absent = records::explain_nothing_to_see("no surface in view faces the light");
+    truth.absent = {"no surface in view faces the light", true};
     return truth;
   }
   truth.rays = tracer.trace_view(truth.receivers.image, scene::make_area_light(light));
@@ -112,7 +115,7 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
 }
 
 images::Image make_error_image(const images::Image& visibility, const SceneTruth& truth) {
-  if (!truth.absent.empty() || visibility.empty()) return {};
+  if (truth.is_absent() || visibility.empty()) return {};
   return make_error_image(visibility, truth.area, truth.mask);
 }
 
@@ -141,12 +144,12 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
                     std::span<const images::Image> other_phases, const images::Image& picture,
                     const SceneTruth& truth) {
   std::vector<metrics::ErrorStats> phases;
-  if (truth.absent.empty()) phases = measure_phases(visibility, {}, truth, truth.mask);
+  if (!truth.is_absent()) phases = measure_phases(visibility, {}, truth, truth.mask);
   if (phases.empty()) {
-    const std::string reason = !truth.absent.empty() ? truth.absent
-                               : visibility.empty()  ? record.message
-                                                     : "no pixel of the image is finite";
-    for (const char* group : {"error", "truth", "penumbra"}) record.absent[group] = reason;
+    const records::Absence reason =
+        truth.is_absent() ? truth.absent
+                          : records::Absence{visibility.empty() ? record.message : "no pixel of the image is finite"};
+    for (const char* group : {"error", "truth", "penumbra"}) records::explain(record, group, reason);
     return {};
   }
   std::ranges::move(measure_phases({}, other_phases, truth, truth.mask), std::back_inserter(phases));

@@ -51,10 +51,8 @@ void require_size(const std::vector<records::CellRecord>& cells, std::pair<int, 
 
 void require_claim(const std::vector<records::CellRecord>& cells, const AdviceRequest& request,
                    const std::string& wanted) {
-  std::set<std::string> known;
-  for (const auto& [filter, made] : request.claims) known.insert(made.begin(), made.end());
-  for (const records::CellRecord& cell : cells)
-    if (cell.claims) known.insert(cell.claims->begin(), cell.claims->end());
+  std::set<std::string> known = request.known_claims;
+  for (const records::CellRecord& cell : cells) known.insert(cell.claims.begin(), cell.claims.end());
   if (known.contains(wanted)) return;
   if (known.empty()) refuse(fmt::format("--requires: no filter claims '{}', nor anything else: leave it out", wanted));
   refuse(fmt::format("--requires: no filter claims '{}'{}; filters claim {}", wanted,
@@ -79,7 +77,7 @@ std::vector<const records::CellRecord*> choose_cells(const std::vector<records::
     const bool scene_fits = request.scenes.empty() || std::ranges::count(request.scenes, cell.scene) > 0;
     const bool size_fits = !request.size || std::pair(cell.width, cell.height) == *request.size;
     if (!scene_fits || !size_fits || cell.external) continue;
-    if (cell.teaching.value_or(false))
+    if (cell.teaching)
       advice.teaching.insert(cell.filter);
     else
       chosen.push_back(&cell);
@@ -110,14 +108,6 @@ std::string find_gap(const std::vector<const records::CellRecord*>& cells, const
   return {};
 }
 
-// What the filter of a configuration claims; nothing where nobody knows.
-std::optional<std::vector<std::string>> find_claims(const Configuration& configuration, const AdviceRequest& request) {
-  const records::CellRecord& cell = *configuration.cells.front();
-  if (cell.claims) return cell.claims;
-  const auto known = request.claims.find(cell.filter);
-  return known != request.claims.end() ? std::optional(known->second) : std::nullopt;
-}
-
 std::string find_missing_cell(const Configuration& configuration, const std::vector<Place>& places) {
   for (const Place& place : places) {
     const auto cell = std::ranges::find_if(configuration.cells, [&](const auto* c) { return place_of(*c) == place; });
@@ -130,13 +120,10 @@ std::string find_missing_cell(const Configuration& configuration, const std::vec
   return {};
 }
 
-Verdict judge_claim(const Configuration& configuration, const std::string& claim, const AdviceRequest& request) {
-  const auto claims = find_claims(configuration, request);
-  if (claims && std::ranges::count(*claims, claim) == 0) return {false};
+Verdict judge_claim(const Configuration& configuration, const std::string& claim) {
+  if (std::ranges::count(configuration.cells.front()->claims, claim) == 0) return {false};
   Verdict verdict;
-  verdict.absent = claims ? find_doubt(configuration.cells, claim)
-                          : fmt::format("the run does not say what '{}' claims, and it is no built-in filter",
-                                        configuration.cells.front()->filter);
+  verdict.absent = find_doubt(configuration.cells, claim);
   verdict.kept = verdict.absent.empty();
   return verdict;
 }
@@ -152,7 +139,7 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
     candidate.seam = std::max(candidate.seam, cell->artefact.seam.value_or(0.0));
   for (const Demand& demand : request.demands) {
     Verdict verdict = demand.spec ? judge_limit(configuration, demand, request.light, advice.places)
-                                  : judge_claim(configuration, demand.claim, request);
+                                  : judge_claim(configuration, demand.claim);
     if (!verdict.absent.empty()) return Unjudged{configuration, verdict.absent, candidate.verdicts.size()};
     candidate.verdicts.push_back(std::move(verdict));
   }
@@ -301,8 +288,7 @@ Verdict judge_limit(const Configuration& configuration, const Demand& demand, Li
   const LimitSpec& spec = *demand.spec;
   std::vector<const records::CellRecord*> telling;
   for (const records::CellRecord* cell : configuration.cells) {
-    const bool tells =
-        spec.read(*cell, light) || !records::is_nothing_to_see(records::explain_absence(*cell, spec.field));
+    const bool tells = spec.read(*cell, light) || !records::has_nothing_to_see(*cell, spec.field);
     (tells ? telling : verdict.nothing_to_see).push_back(cell);
   }
   verdict.absent = telling.empty() ? fmt::format("no {} anywhere: {}", spec.field,

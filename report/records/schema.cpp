@@ -138,7 +138,7 @@ class SchemaWriter {
       ordered_json property =
           start(about.unit.empty() ? std::string(about.text) : fmt::format("{}; unit: {}", about.text, about.unit));
       property.update(writer.describe<T>(about));
-      add_property(record, path, property, !about.later);
+      add_property(record, path, property, !about.may_lack);
     }
   };
 };

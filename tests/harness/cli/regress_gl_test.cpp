@@ -147,7 +147,8 @@ TEST_F(Regress, Accept_ChangesWhatMovedAlone_AndSaysWhat) {
   EXPECT_THAT(accepted.out, HasSubstr("accepted: 1 change"));
   const auto lines = report("a")["accepted"];
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0].get<std::string>(), ::testing::AllOf(HasSubstr("replaced: cubes pcf2x2"), HasSubstr("error.rmse")));
+  EXPECT_THAT(lines[0].get<std::string>(),
+              ::testing::AllOf(HasSubstr("replaced: cubes pcf2x2"), HasSubstr("error.rmse")));
   // The image holds the time at which it was written; the numbers are what they were.
   EXPECT_EQ(list_changes(before), (std::vector<std::string>{"pcf2x2.exr"}));
 }

@@ -356,33 +356,19 @@ TEST(Advice, RmseKeptByLessThanTheTruthsStandardError_IsMarked) {
   EXPECT_FALSE(advise_on(cells, {limit("--max-fetches", 4.0)}).keeping.at(0).verdicts[0].uncertain);
 }
 
-TEST(Advice, RequiredClaim_IsReadFromTheKnownFilters) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "hard", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01),
-                                            measure("cubes", "mine", 1.0, 0.01)};
+TEST(Advice, RequiredClaim_IsOfTheFilter_OrOfOneThatTheRunLacks) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "hard", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01)};
+  cells[1].claims = {"contact-hardening"};
   for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
   AdviceRequest request;
   request.demands = {{nullptr, 0.0, "contact-hardening"}};
-  request.claims = {{"hard", {}}, {"soft", {"contact-hardening"}}, {"other", {"temporal"}}};
   const Advice advice = advise(cells, request);
   EXPECT_THAT(labels(advice.keeping), ElementsAre("soft"));
-  EXPECT_THAT(reasons(advice), ElementsAre("the run does not say what 'mine' claims, and it is no built-in filter"));
   EXPECT_THAT(list_bought(advice), ElementsAre("hard"));
   request.demands[0].claim = "temporal";
+  request.known_claims = {"temporal"};
   EXPECT_THAT(describe_failure(advise(cells, request)),
               HasSubstr("--requires temporal (2 fail it alone; without it there is hard)"));
-}
-
-TEST(Advice, ClaimsInTheRecord_CountBeforeThoseOfTheKnownFilters) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "mine", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01)};
-  cells[0].claims = {{"contact-hardening"}};
-  cells[1].claims.emplace();
-  for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
-  AdviceRequest request;
-  request.claims = {{"soft", {"contact-hardening"}}};
-  request.demands = {{nullptr, 0.0, "contact-hardening"}};
-  const Advice advice = advise(cells, request);
-  EXPECT_THAT(labels(advice.keeping), ElementsAre("mine"));
-  EXPECT_THAT(labels(advice.failing), ElementsAre("soft"));
 }
 
 TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
@@ -390,8 +376,8 @@ TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
   for (const char* scene : {"ball", "cubes"})
     for (const char* filter : {"grows", "shrinks", "same", "unseen"}) {
       cells.push_back(measure(scene, filter, 1.0, 0.01));
-      cells.back().claims = {{"contact-hardening", "own-claim"}};
-      cells.back().absent["penumbra"] = records::explain_nothing_to_see("all are narrow");
+      cells.back().claims = {"contact-hardening", "own-claim"};
+      records::explain(cells.back(), "penumbra", {"all are narrow", true});
     }
   cells[0].penumbra.growth = 0.9;
   cells[1].penumbra.growth = -1.0;
@@ -418,7 +404,7 @@ std::vector<records::CellRecord> measure_leak_on_one(const std::string& filter, 
   std::vector<records::CellRecord> cells = {measure("cubes", filter, ms, 0.01), measure("fence", filter, ms, 0.01)};
   cells[0].artefact.leak = leak;
   cells[1].artefact.leak.reset();
-  cells[1].absent["artefact.leak"] = records::explain_nothing_to_see("fewer than 100 receivers are blocked");
+  records::explain(cells[1], "artefact.leak", {"fewer than 100 receivers are blocked", true});
   return cells;
 }
 
@@ -437,8 +423,7 @@ TEST(Advice, SceneWithNothingToSee_BarsNothingAndIsNamed) {
   EXPECT_EQ(advice.keeping[0].verdicts[0].where, &cells[2]);
   EXPECT_THAT(advice.keeping[0].verdicts[0].nothing_to_see, ElementsAre(&cells[3]));
   const std::string note =
-      "--max-leak 0.1 could not be judged on fence, and cannot be broken there: nothing to see: fewer than 100 "
-      "receivers "
+      "--max-leak 0.1 could not be judged on fence, and cannot be broken there: fewer than 100 receivers "
       "are blocked.";
   EXPECT_THAT(list_advice_notes(advice, make_run().gl), ::testing::Contains(note));
   EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-leak", 0.001)}), make_run().gl),
@@ -452,7 +437,8 @@ TEST(Advice, EveryFaultWithoutReceivers_BarsNothing) {
   for (const char* name : {"acne", "leak", "contact_gap"}) {
     std::vector<records::CellRecord> cells = measure_leak_on_one("a", 1.0, 0.0);
     cells[1].artefact = {};
-    cells[1].absent = {{std::string("artefact.") + name, records::explain_nothing_to_see("too few")}};
+    cells[1].absent.clear();
+    records::explain(cells[1], std::string("artefact.") + name, {"too few", true});
     std::string option = "--max-" + std::string(name);
     std::ranges::replace(option, '_', '-');
     EXPECT_THAT(advise_on(cells, {limit(option, 0.1)}).keeping, SizeIs(1)) << name;
@@ -471,8 +457,9 @@ TEST(Advice, NothingToSeeAnywhere_IsNotJudgedAndSaysSo) {
   auto cells = measure_leak_on_one("a", 1.0, 0.0);
   cells[0].artefact.leak.reset();
   cells[0].absent = cells[1].absent;
+  cells[0].nothing_to_see = cells[1].nothing_to_see;
   EXPECT_EQ(describe_failure(advise_on(cells, {limit("--max-leak", 0.1)})),
-            "none of 1 configurations can be judged: 1: no artefact.leak anywhere: nothing to see: fewer than 100 "
+            "none of 1 configurations can be judged: 1: no artefact.leak anywhere: fewer than 100 "
             "receivers are blocked");
 }
 
@@ -480,11 +467,11 @@ TEST(Advice, ClaimThatNoFilterMakes_IsRefused) {
   const std::vector<records::CellRecord> cells = {measure("cubes", "hard", 1.0, 0.01)};
   AdviceRequest request;
   request.demands = {{nullptr, 0.0, "contact-hardning"}};
-  request.claims = {{"hard", {}}, {"soft", {"contact-hardening", "temporal"}}};
+  request.known_claims = {"contact-hardening", "temporal"};
   expect_refusal(cells, request, ErrorKind::kUsage,
                  "--requires: no filter claims 'contact-hardning'; did you mean 'contact-hardening'?; filters claim "
                  "contact-hardening, temporal");
-  request.claims = {{"hard", {}}};
+  request.known_claims = {};
   expect_refusal(cells, request, ErrorKind::kUsage, "nor anything else");
 }
 

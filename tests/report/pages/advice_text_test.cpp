@@ -193,7 +193,8 @@ TEST(AdviceJson, Nulls_AreExplainedBesideThem) {
   request.cheapest = analysis::CostKind::kBytes;
   for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
   request.demands = {{nullptr, 0.0, "contact-hardening"}};
-  request.claims = {{"none", {"contact-hardening"}}, {"wide", {}}};
+  for (records::CellRecord& cell : cells)
+    if (cell.filter == "none") cell.claims = {"contact-hardening"};
   expect_nulls_explained(make_advice_json(make_run(), analysis::advise(cells, request)), "");
 }
 
@@ -203,13 +204,12 @@ TEST(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
     if (i % 2 == 0)
       cells[i].artefact.leak = 0.0;
     else
-      cells[i].absent["artefact.leak"] = records::explain_nothing_to_see("too few");
+      records::explain(cells[i], "artefact.leak", {"too few", true});
   const analysis::Demand leak{
       &*std::ranges::find(analysis::limit_table(), std::string("artefact.leak"), &analysis::LimitSpec::field), 0.1, {}};
   const auto limits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03), leak}))["advised"]["limits"];
   EXPECT_TRUE(limits[0]["nothing_to_see"].empty());
-  EXPECT_EQ(limits[1]["nothing_to_see"].dump(),
-            R"([{"scene":"stack","view":"main","reason":"nothing to see: too few"}])");
+  EXPECT_EQ(limits[1]["nothing_to_see"].dump(), R"([{"scene":"stack","view":"main","reason":"too few"}])");
 }
 
 TEST(AdviceJson, Numbers_AreThoseOfTheCells) {
