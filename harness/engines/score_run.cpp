@@ -172,9 +172,10 @@ OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
       direct += lit.texels[c] - dark.texels[c];
     }
     // Under a sun without the highlights of our pictures, which others do not draw: by the colour that the ambient
-    // light has (shade.frag).
+    // light has.
     if (own.to_light_ws)
-      direct = ambient / (0.75f + 0.25f * normal.y) * std::max(glm::dot(normal, *own.to_light_ws), 0.0f);
+      direct = ambient / (render::kAmbientAtSide + (1.0f - render::kAmbientAtSide) * normal.y) *
+               std::max(glm::dot(normal, *own.to_light_ws), 0.0f);
     own.direct.texels[i] = direct;
   }
   return own;

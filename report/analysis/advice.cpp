@@ -16,7 +16,7 @@
 #include "base/nearest_name.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -128,8 +128,6 @@ Verdict judge_claim(const Configuration& configuration, const std::string& claim
   return verdict;
 }
 
-const LimitSpec& rmse_spec() { return *std::ranges::find(limit_table(), kRmseField, &LimitSpec::field); }
-
 std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice, bool needs_rmse) {
   const AdviceRequest& request = advice.request;
   if (std::string gap = find_missing_cell(configuration, advice.places); !gap.empty())
@@ -144,7 +142,8 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
     candidate.verdicts.push_back(std::move(verdict));
   }
   std::string gap = find_gap(configuration.cells, cost_spec(request.cheapest), request.light, advice.places);
-  if (gap.empty() && needs_rmse) gap = find_gap(configuration.cells, rmse_spec(), request.light, advice.places);
+  if (gap.empty() && needs_rmse)
+    gap = find_gap(configuration.cells, limit_of(kRmseField), request.light, advice.places);
   if (!gap.empty()) return Unjudged{configuration, std::move(gap), {}};
   candidate.cost = *measure_cost(configuration.cells, request.cheapest, request.light);
   return candidate;
@@ -168,18 +167,16 @@ void sort_by_cost(std::vector<Candidate>& candidates, const AdviceRequest& reque
 // Finds the cheapest configuration without a filter, whatever it keeps and how wide kernels are to be, and says of each
 // candidate whether it is clearly better.
 void compare_with_unfiltered(Advice& advice, const std::vector<const records::CellRecord*>& cells) {
-  Advice open;
-  open.request = advice.request;
-  open.request.demands.clear();
-  open.places = advice.places;
   std::vector<Candidate> candidates;
   for (const Configuration& configuration : list_configurations(cells)) {
     if (configuration.cells.front()->filter != kUnfiltered) continue;
-    auto judged = judge(configuration, open, true);
-    if (auto* candidate = std::get_if<Candidate>(&judged)) candidates.push_back(std::move(*candidate));
+    if (!find_missing_cell(configuration, advice.places).empty()) continue;
+    const auto cost = measure_cost(configuration.cells, advice.request.cheapest, advice.request.light);
+    const auto rmse = combine_rmse(configuration.cells);
+    if (cost && rmse) candidates.push_back({configuration, {}, *cost, rmse});
   }
   if (candidates.empty()) return;
-  sort_by_cost(candidates, open.request);
+  sort_by_cost(candidates, advice.request);
   const Candidate& cheapest = candidates.front();
   advice.unfiltered = cheapest.configuration.name;
   for (auto* list : {&advice.keeping, &advice.failing})

@@ -10,8 +10,8 @@
 
 #include "report/analysis/configuration.h"
 #include "report/analysis/front.h"
-#include "report/analysis/gains.h"
 #include "report/analysis/limits.h"
+#include "report/analysis/place_state.h"
 #include "report/records/records.h"
 
 namespace shadowbench::analysis {

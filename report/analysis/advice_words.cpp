@@ -9,7 +9,7 @@
 #include <set>
 
 #include "report/analysis/cell_group.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"

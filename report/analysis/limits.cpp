@@ -13,10 +13,6 @@ namespace {
 
 constexpr const char* kMaxMs = "--max-ms";
 
-const LimitSpec& find_spec(const std::string& field) {
-  return *std::ranges::find(limit_table(), field, &LimitSpec::field);
-}
-
 void add(records::Quartiles& sum, const records::Quartiles& pass) {
   sum.median += pass.median;
   sum.q1 += pass.q1;
@@ -59,11 +55,15 @@ std::span<const LimitSpec> limit_table() {
   return table;
 }
 
+const LimitSpec& limit_of(std::string_view field) {
+  return *std::ranges::find(limit_table(), field, &LimitSpec::field);
+}
+
 const LimitSpec& cost_spec(const CostKind& cost) {
   switch (cost.kind) {
-    case CostKind::kTime: return find_spec("time_ms");
-    case CostKind::kBytes: return find_spec("cost.map_bytes");
-    case CostKind::kFetches: return find_spec("cost.fetches");
+    case CostKind::kTime: return limit_of("time_ms");
+    case CostKind::kBytes: return limit_of("cost.map_bytes");
+    case CostKind::kFetches: return limit_of("cost.fetches");
     case CostKind::kGpu: break;
   }
   static std::map<std::string, LimitSpec> specs;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "reference/metrics/metric_table.h"
 #include "report/records/records.h"
@@ -41,6 +42,9 @@ struct LimitSpec {
 
 /// Lists everything that may be limited: the metrics of the table that have an option, and the time of a frame.
 std::span<const LimitSpec> limit_table();
+
+/// The row of a field. Requires that there is one.
+const LimitSpec& limit_of(std::string_view field);
 
 /// What a cost is read by, and limited: of a frame, by --max-ms.
 const LimitSpec& cost_spec(const CostKind& cost);

@@ -225,6 +225,15 @@ Measured read_error(const records::CellRecord& cell, const Measure& measure) {
   return error;
 }
 
+std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells) {
+  std::vector<Estimate> estimates;
+  for (const records::CellRecord* cell : cells) {
+    if (!cell->error.rmse) return std::nullopt;
+    estimates.push_back(estimate_rmse(*cell));
+  }
+  return estimates.empty() ? std::nullopt : std::optional(root_mean_square(estimates));
+}
+
 Measured read_cost(const records::CellRecord& cell, const Measure& cost) {
   return cost.metric ? read_metric(cell, *cost.metric) : read_frame(cell, cost);
 }

@@ -11,7 +11,7 @@
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
 #include "report/document/chart.h"
