@@ -82,12 +82,12 @@ void print_json(const run::ComparisonOptions& options, const run::Comparison& re
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-/// Refuses a run, which is a folder or a .json file: what moved between two runs is the work of `regress`.
-void require_picture(const std::string& argument) {
+/// Refuses a run's folder and results: what moved between two runs is the work of `regress`.
+void require_picture(const std::filesystem::path& argument) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(argument, ignored) || std::filesystem::path(argument).extension() == ".json")
+  if (std::filesystem::exists(argument / "results.json", ignored) || argument.extension() == ".json")
     fail(fmt::format("'{}' is a run, and diff compares two pictures: compare runs with 'shadowbench regress'",
-                     argument));
+                     argument.string()));
 }
 
 /// The numbers in one line each, as they are printed.

@@ -270,7 +270,7 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
                request.meta->string());
   }
   const measure::SceneTruth& truth = assets_of(task).truth(*task.task.camera);
-  if (truth.is_absent()) fail_input("there is nothing to score against: " + truth.absent.why, options_.out.string());
+  if (!truth.absent.empty()) fail_input("there is nothing to score against: " + truth.absent, options_.out.string());
   require_same_truth(task, truth.area);
   const OwnView own = describe_own_view(task);
   const CheckedImages checked = check_images(drawn, own);

@@ -107,7 +107,7 @@ CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& option
       truth_(truth),
       light_(assets.light_map(*task.camera, task.map_size)),
       view_{options.width, options.height, options.seed, options.bias.plane_max_tangent()} {
-  if (truth_.is_absent()) return;
+  if (!truth_.absent.empty()) return;
   layers_ = list_traced_layers(renderer.shaders, assets.gbuffer(*task.camera),
                                make_unbiased_light(options, task.scene->light, light_.layers));
   around_ = trace_surroundings(assets_.tracer(), layers_, truth_, widest_kernel_texels(options_));
@@ -192,9 +192,9 @@ void CellAnalyser::note_cascades(MeasuredCell& cell) const {
 void CellAnalyser::analyse(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   if (!masks_ || cell.visibility.empty()) {
-    const records::Absence reason = truth_.is_absent() ? truth_.absent : records::Absence{record.message};
+    const std::string reason = truth_.absent.empty() ? record.message : truth_.absent;
     for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused"})
-      records::explain(record, group, reason);
+      records::explain(record, group, {reason, truth_.nothing_to_see});
     return;
   }
   count_artefacts(cell);

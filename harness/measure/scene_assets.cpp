@@ -140,12 +140,12 @@ const SceneTruth& SceneAssets::truth(const scene::Camera& camera) {
 SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
   SceneTruth truth;
   if (!options_.truth) {
-    truth.absent = {"the run was made with --no-truth"};
+    truth.absent = "the run was made with --no-truth";
     return truth;
   }
   render::GBuffer& view = gbuffer(camera);
   truth = trace_scene(tracer_, scene_.light, read_view_receivers(view, scene_.light), options_.truth_weight);
-  if (truth.is_absent()) return truth;
+  if (!truth.absent.empty()) return truth;
   const auto shaded = [&](const images::Image& visibility) {
     return render::shade(renderer_.shaders, view, render::upload_image(visibility), scene_, camera);
   };

@@ -93,7 +93,8 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
   truth.mask = receivers.mask();
   truth.receivers = std::move(receivers);
   if (!truth.receivers.any_counts()) {
-    truth.absent = {"no surface in view faces the light", true};
+    truth.absent = "no surface in view faces the light";
+    truth.nothing_to_see = true;
     return truth;
   }
   truth.rays = tracer.trace_view(truth.receivers.image, scene::make_area_light(light));
@@ -115,7 +116,7 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
 }
 
 images::Image make_error_image(const images::Image& visibility, const SceneTruth& truth) {
-  if (truth.is_absent() || visibility.empty()) return {};
+  if (!truth.absent.empty() || visibility.empty()) return {};
   return make_error_image(visibility, truth.area, truth.mask);
 }
 
@@ -144,12 +145,13 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
                     std::span<const images::Image> other_phases, const images::Image& picture,
                     const SceneTruth& truth) {
   std::vector<metrics::ErrorStats> phases;
-  if (!truth.is_absent()) phases = measure_phases(visibility, {}, truth, truth.mask);
+  if (truth.absent.empty()) phases = measure_phases(visibility, {}, truth, truth.mask);
   if (phases.empty()) {
-    const records::Absence reason =
-        truth.is_absent() ? truth.absent
-                          : records::Absence{visibility.empty() ? record.message : "no pixel of the image is finite"};
-    for (const char* group : {"error", "truth", "penumbra"}) records::explain(record, group, reason);
+    const std::string reason = !truth.absent.empty() ? truth.absent
+                               : visibility.empty()  ? record.message
+                                                     : "no pixel of the image is finite";
+    for (const char* group : {"error", "truth", "penumbra"})
+      records::explain(record, group, {reason, truth.nothing_to_see});
     return {};
   }
   std::ranges::move(measure_phases({}, other_phases, truth, truth.mask), std::back_inserter(phases));

@@ -14,13 +14,14 @@
 #include "reference/metrics/flip.h"
 #include "reference/truth/cached_tracer.h"
 #include "report/images/image.h"
-#include "report/records/absence.h"
+#include "report/records/records.h"
 
 namespace shadowbench::measure {
 
 /// Ray-traced visibility of one view's receivers, rows top to bottom like every report image.
 struct SceneTruth {
-  records::Absence absent;  ///< why there is none
+  std::string absent;           ///< why there is none; empty where there is
+  bool nothing_to_see = false;  ///< there is none, as no surface in view faces the light
   ViewReceivers receivers;
   truth::ViewRays rays;
   images::Image hard;                          ///< the light as a point: 1 seen, 0 blocked
@@ -38,8 +39,6 @@ struct SceneTruth {
   double unanimous = 0.0;     ///< share of them whose rays all agree, and which therefore have no standard error
   std::int64_t lit = 0;       ///< of them: those that see any of the light
   std::int64_t penumbra = 0;  ///< of them: those that are not settled
-
-  bool is_absent() const { return !absent.why.empty(); }
 };
 
 /// Traces the receivers of a view; the pictures are left empty.

@@ -96,7 +96,7 @@ void check_drawing(MeasuredCell& cell, gl::Context& context) {
 }
 
 void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {
-  if (truth.is_absent() || cell.visibility.empty()) return;
+  if (!truth.absent.empty() || cell.visibility.empty()) return;
   ValueSpan span;
   int lit = 0, blocked = 0;
   for (std::size_t i = 0; i < truth.mask.size(); ++i) {

@@ -296,10 +296,6 @@ std::vector<RunOption> list_run_options() {
       "--budget", "for --rounds auto: seconds of timed work for each filter on each map", 0.4,
       [](RunOptions& o, const Told& told) { o.rounds.budget_ms = 1e3 * std::get<double>(told); },
       [](const RunOptions& o) { return o.rounds.budget_ms / 1e3; });
-  t.add_row("--lights", "", std::string())
-      .gone(
-          "frames lit by copies of one light are no longer timed, as each copy costs the same; list several lights in "
-          "the scene's file, and add up their times");
   t.add_row(
        "--gpu",
        "also say what filters cost on these GPUs, which need not be there: names of 'list gpus' with commas, or "
@@ -344,15 +340,15 @@ std::vector<RunOption> list_run_options() {
                         kFiltersOfAGrid),
             0)
       .with_opposite();
+  t.add_row("--lights", "", std::string())
+      .gone("each copy of a light costs the same; list several lights in the scene's file, and add up their times");
   t.decides = Decides::kWay;
   t.add("--shard", "I/N: every N-th cell only, from the I-th on; 'merge' joins the N report folders", &RunOptions::part)
       .never_empty("I/N");
   t.add("--fresh", "measure every cell again, even those that an earlier run finished in the report folder",
         &RunOptions::fresh);
   t.add_row("--until-different", "", std::string())
-      .gone(
-          "the page of a run says how small a difference it can see; run again with more --phases to see a smaller "
-          "one");
+      .gone("the page says how small a difference the run can see; raise --phases to see a smaller one");
   t.add("--yes", "start even where there are very many cells", &RunOptions::large_is_fine);
   t.add("--pictures", "", &RunOptions::pictures).with_opposite().hide();
   return std::move(t.rows);

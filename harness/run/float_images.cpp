@@ -211,9 +211,9 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
   const KeptParts kept = choose_parts(options, *task.scene);
   for (const measure::MeasuredCell& cell : measured.cells) visit_drawn(cell, kept, add);
   for (const measure::MeasuredCell& cell : measured.cells) visit_known(cell, add);
-  if (!truth.is_absent()) add_truth_parts(parts, truth, measured.masks);
-  if (!truth.is_absent() && kept.receivers) add_receiver_parts(parts, truth.receivers.image);
-  if (!truth.is_absent() && kept.picture) add_part(parts, kTruthPicturePart, truth.area_picture);
+  if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
+  if (truth.absent.empty() && kept.receivers) add_receiver_parts(parts, truth.receivers.image);
+  if (truth.absent.empty() && kept.picture) add_part(parts, kTruthPicturePart, truth.area_picture);
   if (kept.receivers) parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   add_part(parts, kAmbientPart, measured.ambient);
   images::write_exr(options.out / exr_name(options, task), parts, describe_task(options, task, measured, info));

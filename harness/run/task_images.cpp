@@ -23,7 +23,7 @@ namespace {
 
 /// The truth comes first: what every filter would like to look like.
 std::vector<images::GridTile> make_truth_tiles(const measure::SceneTask& task, const measure::SceneTruth& truth) {
-  if (truth.is_absent()) return {};
+  if (!truth.absent.empty()) return {};
   const std::string sun = fmt::format("rays to {}, standard error {}", scene::describe_light(task.scene->light),
                                       records::format_number(truth.standard_error));
   return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard,
@@ -69,7 +69,7 @@ images::Grid make_grid(const options::RunOptions& options, const measure::SceneT
                                               : "no attribution: " + records::explain_no_attribution(cell.record);
   }
   grid.error_scale = choose_error_scale(grid.tiles, measured.cells);
-  grid.columns = !truth.is_absent() ? 4 : 3;
+  grid.columns = truth.absent.empty() ? 4 : 3;
   grid.crop = choose_crop(measured.cells, images::choose_crop_size({options.width, options.height}));
   return grid;
 }
@@ -194,7 +194,7 @@ std::vector<FileJob> plan_pictures(const options::RunOptions& options, const mea
     note_cell_pictures(stem, cell);
     jobs.emplace_back([&out = options.out, &cell] { write_noted_pictures(out, cell); });
   }
-  if (!truth.is_absent()) jobs.push_back(plan_truth_pictures(options.out, stem, measured, truth));
+  if (truth.absent.empty()) jobs.push_back(plan_truth_pictures(options.out, stem, measured, truth));
   return jobs;
 }
 

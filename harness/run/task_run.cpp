@@ -204,7 +204,7 @@ class TaskRun {
   /// Accumulates the first cells over frames: those that are drawn in this process.
   void accumulate(measure::SceneMeasurement& measured, std::size_t count) {
     const gl::Recorder::Pause pause(renderer_.recorder.get());
-    const std::string& absent = assets_.truth(*task_.camera).absent.why;
+    const std::string& absent = assets_.truth(*task_.camera).absent;
     if (absent.empty() && count > 0 && !accumulation_)
       accumulation_.emplace(measure::FrameBench{renderer_, options_, task_, assets_});
     const std::string picture = task_stem(options_, task_) + ".frames.png";

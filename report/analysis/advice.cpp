@@ -173,7 +173,7 @@ void compare_with_unfiltered(Advice& advice, const std::vector<const records::Ce
     if (!find_missing_cell(configuration, advice.places).empty()) continue;
     const auto cost = measure_cost(configuration.cells, advice.request.cheapest, advice.request.light);
     const auto rmse = combine_rmse(configuration.cells);
-    if (cost && rmse) candidates.push_back({configuration, {}, *cost, rmse});
+    if (cost && rmse) candidates.push_back({configuration, *cost, {}, rmse});
   }
   if (candidates.empty()) return;
   sort_by_cost(candidates, advice.request);
@@ -308,14 +308,17 @@ std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& 
   for (const records::CellRecord* cell : cells) {
     const auto value = cost_spec(kind).read(*cell, light);
     if (!value) return std::nullopt;
-    const auto time = kind == CostKind::kTime ? frame_time(*cell, light) : std::nullopt;
-    quartiles.push_back(time ? Estimate{*value, time->q1, time->q3} : Estimate{*value, *value, *value});
-    if (const auto interval = time ? frame_interval(*cell, light) : std::nullopt)
-      ci95.push_back({*value, interval->low, interval->high});
+    if (kind == CostKind::kTime) {
+      const records::OwnTime& time = *frame_time(*cell, light);
+      quartiles.push_back({*value, time.q1, time.q3});
+      ci95.push_back({*value, time.ci95.low, time.ci95.high});
+    } else {
+      quartiles.push_back({*value, *value, *value});
+    }
   }
   const Estimate mean = mean_over_scenes(quartiles);
   Cost cost{mean.value, {mean.low, mean.high}, {}};
-  if (ci95.size() < cells.size()) return cost;
+  if (ci95.empty()) return cost;
   const Estimate interval = mean_over_scenes(ci95);
   cost.ci95 = records::Interval{interval.low, interval.high};
   return cost;

@@ -44,7 +44,7 @@ struct Verdict {
 Verdict judge_limit(const Configuration& configuration, const Demand& demand, LightMotion light,
                     const std::vector<Place>& places);
 
-/// A cost over all places: mean_over_scenes() with each place's quartiles, and with its interval as frame_interval()
+/// A cost over all places: mean_over_scenes() with each place's quartiles, and with its interval, as frame_time()
 /// gives it.
 struct Cost {
   double mean = 0.0;

@@ -33,14 +33,9 @@ Measured read_metric(const records::CellRecord& cell, const metrics::Metric& met
 Measured read_frame(const records::CellRecord& cell, const Measure& cost) {
   const auto value = cost_spec(*cost.cost).read(cell, cost.light);
   if (!value) return miss(cell, cost.field());
-  Estimate estimate = exact(*value);
-  const auto set = [&](double low, double high) { estimate = {*value, low, high}; };
-  if (cost.is(CostKind::kTime)) {
-    const auto time = frame_time(cell, cost.light);
-    const auto interval = frame_interval(cell, cost.light);
-    interval ? set(interval->low, interval->high) : set(time->q1, time->q3);
-  }
-  return {estimate, {}};
+  if (!cost.is(CostKind::kTime)) return {exact(*value), {}};
+  const records::Interval& interval = frame_time(cell, cost.light)->ci95;
+  return {Estimate{*value, interval.low, interval.high}, {}};
 }
 
 Estimate worst_of(const std::vector<Estimate>& estimates) {

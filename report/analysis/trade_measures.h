@@ -82,8 +82,8 @@ Measured read_error(const records::CellRecord& cell, const Measure& measure);
 /// The RMSE over cells of several places: the root of the mean square. Nothing where a cell has none, or there is none.
 std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells);
 
-/// Reads a cost from a cell; `measure` is of list_cost_measures(). Times: frame_time() with
-/// frame_interval(), or where that is missing with the quartiles.
+/// Reads a cost from a cell; `measure` is of list_cost_measures(). Times: frame_time(), with
+/// its interval.
 Measured read_cost(const records::CellRecord& cell, const Measure& measure);
 
 }  // namespace shadowbench::analysis

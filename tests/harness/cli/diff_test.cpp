@@ -211,7 +211,7 @@ TEST_F(Diff, ListMetrics_DefinesWhatARunReports) {
 }
 
 TEST_F(Diff, Runs_AreForRegress) {
-  std::filesystem::create_directory(folder() / "run");
+  write("run/results.json", "{}");
   for (const char* words : {"diff run run", "diff a.pgm run", "diff run/results.json a.pgm"})
     expect_refusal(words, 2, {"run", "'shadowbench regress'"});
 }

@@ -36,10 +36,11 @@ records::CellRecord measure(const std::string& scene, const std::string& filter,
   cell.map_size = map_size;
   cell.cost.map_bytes = 4LL * map_size * map_size;
   cell.cost.prefilter_texels = 0;
-  cell.time_ms.map = records::Quartiles{1.0, 0.99, 1.01, 9};
-  cell.time_ms.lookup = records::Quartiles{ms, 0.99 * ms, 1.01 * ms, 9};
-  cell.ratio_to_none.static_light = cell.ratio_to_none.lookup;
-  cell.ratio_to_none.moving = records::Ratio{(1.0 + ms) / 5.0, {(1.0 + ms) / 5.0 * 0.99, (1.0 + ms) / 5.0 * 1.01}};
+  const auto within_a_percent = [](double median) {
+    return records::OwnTime{{median, 0.99 * median, 1.01 * median, 9}, {0.99 * median, 1.01 * median}};
+  };
+  cell.time_ms.lookup = cell.time_ms.static_light = within_a_percent(ms);
+  cell.time_ms.moving = within_a_percent(1.0 + ms);
   cell.error.rmse = rmse;
   cell.truth.se = 0.001;
   cell.artefact.acne = cell.artefact.leak = cell.artefact.contact_gap = cell.artefact.noise = 0.0;
@@ -149,16 +150,15 @@ TEST(Advice, CostsThatDifferOnTheWhole_AreNoTie_WhereEachPlaceIsUncertain) {
     cells.push_back(measure(scene, "cheap", 4.0, 0.0));
     cells.push_back(measure(scene, "dear", 6.0, 0.0));
     for (std::size_t i = cells.size() - 2; i < cells.size(); ++i)
-      cells[i].ratio_to_none.moving->ci95 = {0.8 * cells[i].ratio_to_none.moving->median,
-                                             1.2 * cells[i].ratio_to_none.moving->median};
+      cells[i].time_ms.moving->ci95 = {0.8 * cells[i].time_ms.moving->median, 1.2 * cells[i].time_ms.moving->median};
   }
   const Advice advice = rank_on(cells, {});
   EXPECT_FALSE(compare_costs(advice.keeping.at(0), advice.keeping.at(1), CostKind::kTime).tied);
 }
 
-TEST(Advice, MovingLight_PaysForMapAndPrefilter) {
+TEST(Advice, LightThatMovesOrStandsStill_HasItsOwnTime) {
   std::vector<records::CellRecord> cells = {measure("cubes", "wide", 4.0, 0.0), measure("cubes", "blurred", 2.0, 0.0)};
-  cells[1].time_ms.prefilter = records::Quartiles{8.0, 7.9, 8.1, 9};
+  cells[1].time_ms.moving->median = 11.0;
   AdviceRequest request;
   request.whole = true;
   EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("wide", "blurred"));
@@ -168,9 +168,9 @@ TEST(Advice, MovingLight_PaysForMapAndPrefilter) {
   EXPECT_DOUBLE_EQ(advise(cells, request).keeping.at(0).cost.mean, 2.0);
 }
 
-TEST(Advice, PrefilterThatWasNotTimed_LeavesNoTime) {
+TEST(Advice, FrameThatWasNotTimed_IsNotJudged) {
   std::vector<records::CellRecord> cells = {measure("cubes", "blurred", 2.0, 0.0)};
-  cells[0].cost.prefilter_texels = 100;
+  cells[0].time_ms.moving.reset();
   cells[0].absent = {{"time_ms.prefilter", "the clock stood still"}};
   EXPECT_THAT(reasons(advise_on(cells, {})), ElementsAre("no time_ms on cubes: the clock stood still"));
 }
@@ -232,7 +232,7 @@ TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
   EXPECT_NEAR(gap.share, 0.2 / 5.0, 1e-12);
   EXPECT_EQ(describe_runner_up(advice, make_run().gl),
             "dearer by 0.2 ms (CPU) (4 %); the 95 % intervals are apart; it has the same RMSE");
-  cells[1].ratio_to_none.moving->ci95.low *= 0.9;
+  cells[1].time_ms.moving->ci95.low *= 0.9;
   advice = rank_on(cells, {});
   EXPECT_TRUE(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).tied);
 }
@@ -240,22 +240,15 @@ TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
 TEST(Advice, OfTwoMaps_QuartilesTellCostsApart) {
   std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0, 256),
                                             measure("cubes", "a", 4.2, 0.0, 1024)};
-  cells[1].ratio_to_none.moving->ci95.low *= 0.5;
+  cells[1].time_ms.moving->ci95.low *= 0.5;
   Advice advice = rank_on(cells, {});
   const CostGap gap = compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime);
   EXPECT_EQ(gap.basis, Basis::kQuartiles);
   EXPECT_FALSE(gap.tied);
-  cells[1].time_ms.lookup->q1 = 3.9;
+  cells[1].time_ms.moving->q1 = 4.9;
   advice = rank_on(cells, {});
   EXPECT_TRUE(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).tied);
   EXPECT_THAT(describe_runner_up(advice, make_run().gl), HasSubstr("a tie, for their quartiles overlap"));
-}
-
-TEST(Advice, WithoutARatio_QuartilesTellCostsApart) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
-  cells[0].ratio_to_none = {};
-  const Advice advice = rank_on(cells, {});
-  EXPECT_EQ(compare_costs(advice.keeping.at(0), advice.keeping[1], CostKind::kTime).basis, Basis::kQuartiles);
 }
 
 TEST(Advice, ATie_NamesTheLowerMeanAndSaysByHowMuchErrorsDiffer) {
