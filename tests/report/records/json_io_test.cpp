@@ -449,7 +449,8 @@ TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
 TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
   const TemporaryFolder folder("json_deep");
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
-  write_text_file(folder.path() / "results.json", R"({"schema_version": 3, "commit": )" + deep + "}");
+  write_text_file(folder.path() / "results.json",
+                  fmt::format(R"({{"schema_version": {}, "commit": {}}})", kSchemaVersion, deep));
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
               HasSubstr("nested more than 100 deep"));
   std::istringstream stream(deep);
