@@ -16,6 +16,8 @@ uniform vec3 background;      // linear
 
 layout(location = 0) out vec4 out_color;
 
+uniform float ambient_at_side;  // of what comes from above, where a surface is upright
+
 const float kAmbient = 0.22;
 const float kSpecular = 0.12;
 const float kShininess = 40.0;
@@ -33,7 +35,7 @@ void main() {
   float specular = n_dot_l > 0.0 ? kSpecular * pow(max(dot(normal, normalize(to_light + to_viewer)), 0.0), kShininess) : 0.0;
   float visibility = texelFetch(visibility_image, pixel, 0).r;
   // The sky is brighter than the ground, so that ambient light models form as well.
-  vec3 ambient = kAmbient * (0.75 + 0.25 * normal.y) * albedo;
+  vec3 ambient = kAmbient * (ambient_at_side + (1.0 - ambient_at_side) * normal.y) * albedo;
   vec3 radiance = light_radiance;
 #ifdef HAS_COOKIE
   radiance *= cookie_at(position);

@@ -63,10 +63,10 @@ analysis::CostKind parse_cost(const std::string& text) {
   return found->second;
 }
 
-std::map<std::string, std::vector<std::string>> list_claims() {
-  std::map<std::string, std::vector<std::string>> claims;
+std::set<std::string> list_claims() {
+  std::set<std::string> claims;
   const filters::Catalogue catalogue(options::find_resources().filters);
-  for (const filters::FilterSpec& spec : catalogue.filters()) claims[spec.id] = spec.claims;
+  for (const filters::FilterSpec& spec : catalogue.filters()) claims.insert(spec.claims.begin(), spec.claims.end());
   return claims;
 }
 
@@ -83,7 +83,7 @@ AdviceRequest make_request(const AdviseArguments& arguments) {
   request.scenes = arguments.scenes;
   request.width_class = arguments.width_class;
   if (!arguments.size.empty()) request.size = parse_picture_size(arguments.size);
-  if (!arguments.claims.empty()) request.claims = list_claims();
+  if (!arguments.claims.empty()) request.known_claims = list_claims();
   return request;
 }
 

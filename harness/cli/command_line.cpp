@@ -41,6 +41,7 @@ std::string wrap_all(const std::string& about) {
 }
 
 std::string check_value(const Option& option, const std::string& value) {
+  if (!option.instead.empty()) fail(fmt::format("{} is gone: {}", option.name, option.instead));
   if (value.empty())
     return "a value is missing: give " + (!option.not_empty.empty() ? option.not_empty
                                           : option.required         ? "one"
@@ -141,6 +142,8 @@ void CommandLine::set(const std::string& option, const std::vector<std::string>&
     parsed->run_callback();
   } catch (const CLI::Error& error) {
     throw Error(ErrorKind::kInput, error.what(), where);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::kInput, error.message(), where);
   }
 }
 

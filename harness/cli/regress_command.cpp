@@ -76,15 +76,13 @@ Command make_regress_command() {
       "Exit code 1: a cell is less accurate, has changed, is slower, extra, missing or unreadable. It compares "
       "visibility, errors, artefacts, attribution and costs, and, where machine and OpenGL are the baseline's, times "
       "as their ratio to 'none'. BASELINE/baseline.toml holds the tolerances with their reasons. Make runs for a "
-      "baseline with --uncertainty, so that each pixel that rounding or another seed may move is known. Exit code 3: "
-      "the "
-      "baseline is not as it was accepted; restore it, or accept again.";
+      "baseline with --uncertainty, so that each pixel that rounding or another seed may move is known.";
   auto a = std::make_shared<RegressArguments>();
   command.add("RUN", &a->run, "the report folder of a run").names(ValueKind::kFolder).require();
   command.add("--baseline", &a->baseline, "folder of the expected results").names(ValueKind::kFolder).require();
   command.add("--filters", &a->filters, "compare these filters only, ids with commas").names(ValueKind::kFilters);
   command.add("--scene", &a->scenes, "compare this scene only; may be repeated").names(ValueKind::kScene);
-  command.add("--accept", &a->accept, "take over what differs into the baseline, and log it in BASELINE/accepted.md");
+  command.add("--accept", &a->accept, "take over what differs into the baseline");
   command.add("--remove-missing", &a->remove_missing,
               "with --accept: also remove cells from the baseline that the run lacks");
   command.add("--junit", &a->junit, "also write JUnit XML for a build server").names(ValueKind::kFile);

@@ -1,7 +1,6 @@
 #include "harness/cli/run_arguments.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -11,25 +10,6 @@
 
 namespace shadowbench::cli {
 namespace {
-
-/// The two filters of the run that --until-different names. Throws Error(kUsage) where they are not two of them.
-std::vector<filters::FilterRequest> parse_pair(const filters::Catalogue& catalogue, const std::string& text,
-                                               const options::RunOptions& options) {
-  std::vector<filters::FilterRequest> pair = catalogue.parse_requests(text);
-  if (!options.kernel_width.empty()) filters::set_widths(pair, options.kernel_width);
-  if (pair.size() != 2 || filters::is_same(pair[0], pair[1]))
-    fail(fmt::format("--until-different: '{}' is not two filters; name two of the run's, such as tent5x5,castano5",
-                     text));
-  std::vector<std::string> labels;
-  for (const filters::FilterRequest& each : options.filters) labels.push_back(each.label());
-  for (const filters::FilterRequest& each : pair)
-    if (std::ranges::none_of(options.filters, [&](const auto& other) { return filters::is_same(each, other); }))
-      fail(fmt::format("--until-different: {} is not measured in this run; its filters are {}", each.label(),
-                       fmt::join(labels, ", ")));
-  if (!options.truth) fail("--until-different compares errors, which --no-truth leaves out: leave one of them out");
-  if (options.part.shards > 1) fail("--until-different needs all cells, of which --shard leaves some out");
-  return pair;
-}
 
 /// The filters that are told by name, and those whose files are told.
 void choose_filters(options::RunOptions& options, RunArguments& arguments) {
@@ -43,8 +23,6 @@ void choose_filters(options::RunOptions& options, RunArguments& arguments) {
     options.notes = tune::apply_tuned(options.filters, catalogue, tuned, options.map_sizes);
   require_distinct(options.filters);
   for (std::string& note : describe_presets(options.filters)) options.notes.push_back(std::move(note));
-  if (!arguments.until_different.empty())
-    options.until_different = parse_pair(catalogue, arguments.until_different, options);
   options.grids =
       arguments.grids() > 0 || (arguments.grids() == 0 && options.filters.size() <= options::kFiltersOfAGrid);
 }
@@ -66,11 +44,6 @@ void add_run_options(Command& command, RunArguments& a) {
   std::vector<std::string> names;
   for (const options::RunOption& each : a.told) names.push_back(each.name);
   add_told(command, a, names);
-  command
-      .add("--until-different", &a.until_different,
-           fmt::format("A,B: two of the filters; phases are doubled until their RMSEs are told apart, or {} are done",
-                       options::kMostAveraged))
-      .never_empty("two of the run's filters, such as tent5x5,castano5");
   command.add("--allow-commands", &a.allow_commands,
               "run the commands of the experiment's [[engine]] tables, which are printed first; without it they are "
               "asked for on a terminal, and refused elsewhere");

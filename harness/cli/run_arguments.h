@@ -21,7 +21,6 @@ struct RunArguments : DrawingArguments {
   bool strict = false;
   bool allow_commands = false;
   std::vector<options::Engine> engines;  ///< of the experiment
-  std::string until_different;           ///< two filters; empty: phases are as they are told
   bool worker = false;
   bool check = false;       ///< as a worker: only compile the filters
   bool every_step = false;  ///< show a line for each step, as the window reads them

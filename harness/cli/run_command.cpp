@@ -14,7 +14,6 @@
 #include "harness/engines/engine_command.h"
 #include "harness/gpu/facts_request.h"
 #include "harness/run/run_experiment.h"
-#include "harness/run/until_different.h"
 #include "report/files/folder_lock.h"
 #include "report/records/filter_mistakes.h"
 #include "report/records/json_io.h"
@@ -24,10 +23,7 @@ namespace {
 
 void run_with_notes(const options::RunOptions& options, options::Progress& progress) {
   for (const std::string& note : options.notes) progress.note("note: " + note);
-  if (options.until_different.empty())
-    run::run_experiment(options, progress);
-  else
-    progress.note(run::run_until_different(options, progress));
+  run::run_experiment(options, progress);
 }
 
 /// Says what the experiment's commands are, and whether they may run: a file of an experiment looks like data, and may

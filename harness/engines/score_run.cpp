@@ -36,8 +36,8 @@ records::CellRecord make_external_record(const options::RunOptions& options, con
   records::CellRecord record = measure::make_record(options, task, request);
   record.external = std::move(external);
   record.key = records::cell_key(record);
-  for (const char* field : {"time_ms", "ratio_to_none", "cost", "kernel", "kernel_radius_texels", "lights", "gpu",
-                            "coverage", "stability", "map_scale", "nan"})
+  for (const char* field : {"time_ms", "ratio_to_none", "cost", "kernel", "kernel_radius_texels", "gpu", "coverage",
+                            "stability", "map_scale", "nan"})
     record.absent[field] = kAnother;
   return record;
 }
@@ -172,9 +172,10 @@ OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
       direct += lit.texels[c] - dark.texels[c];
     }
     // Under a sun without the highlights of our pictures, which others do not draw: by the colour that the ambient
-    // light has (shade.frag).
+    // light has.
     if (own.to_light_ws)
-      direct = ambient / (0.75f + 0.25f * normal.y) * std::max(glm::dot(normal, *own.to_light_ws), 0.0f);
+      direct = ambient / (render::kAmbientAtSide + (1.0f - render::kAmbientAtSide) * normal.y) *
+               std::max(glm::dot(normal, *own.to_light_ws), 0.0f);
     own.direct.texels[i] = direct;
   }
   return own;

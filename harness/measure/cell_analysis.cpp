@@ -26,14 +26,14 @@ std::vector<std::uint8_t> find_settled(const truth::TracedVisibility& traced) {
 }
 
 void note(records::CellRecord& record, const char* field, std::optional<double>& to, const std::optional<double>& rate,
-          const std::string& reason) {
+          const records::Absence& reason) {
   to = rate;
-  if (!rate) record.absent[field] = reason;
+  if (!rate) records::explain(record, field, reason);
 }
 
 /// Which receivers there are too few of for a rate.
-std::string too_few(const char* which) {
-  return records::explain_nothing_to_see(fmt::format("fewer than {} receivers {}", metrics::kFewestReceivers, which));
+records::Absence too_few(const char* which) {
+  return {fmt::format("fewer than {} receivers {}", metrics::kFewestReceivers, which), true};
 }
 
 metrics::ArtefactMasks make_masks(const Surroundings& around, const std::vector<TracedLayer>& layers,
@@ -186,14 +186,15 @@ void CellAnalyser::note_cascades(MeasuredCell& cell) const {
     cascade.contact_gap = metrics::rate_contact_gap(image, cell.unbiased.texels, masks);
     if (cascade.rmse) record.error.rmse_cascade = std::max(record.error.rmse_cascade.value_or(0.0), *cascade.rmse);
   }
-  if (!record.error.rmse_cascade) record.absent["error.rmse_cascade"] = too_few("are in any cascade");
+  if (!record.error.rmse_cascade) records::explain(record, "error.rmse_cascade", too_few("are in any cascade"));
 }
 
 void CellAnalyser::analyse(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   if (!masks_ || cell.visibility.empty()) {
     const std::string reason = truth_.absent.empty() ? record.message : truth_.absent;
-    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused"}) record.absent[group] = reason;
+    for (const char* group : {"artefact", "attribution", "error.kernel_rmse", "excused"})
+      records::explain(record, group, {reason, truth_.nothing_to_see});
     return;
   }
   count_artefacts(cell);
@@ -212,15 +213,16 @@ void CellAnalyser::count_artefacts(MeasuredCell& cell) const {
                               : cell.cascades.empty() ? "what the renderer makes of each cascade is not known"
                                                       : "";
   note(record, "artefact.seam", record.artefact.seam, no_seam.empty() ? measure_seam(cell) : std::nullopt,
-       no_seam.empty() ? too_few("lie where a cascade takes over") : no_seam);
+       no_seam.empty() ? too_few("lie where a cascade takes over") : records::Absence{no_seam});
   const auto touching = std::ranges::count(masks_->contact_gap, 1);
   note(record, "artefact.contact_gap", record.artefact.contact_gap,
        metrics::rate_contact_gap(image, cell.unbiased.texels, *masks_),
        touching < metrics::kFewestReceivers
            ? too_few("are wholly blocked by something that touches them, or lit by bias behind something farther")
-           : fmt::format("of {} receivers that touch what blocks them fewer than {} are dark without bias: the filter "
-                         "lights the others itself, by its blur or by fading at contacts",
-                         touching, metrics::kFewestReceivers));
+           : records::Absence{fmt::format(
+                 "of {} receivers that touch what blocks them fewer than {} are dark without bias: the filter "
+                 "lights the others itself, by its blur or by fading at contacts",
+                 touching, metrics::kFewestReceivers)});
 }
 
 /// Compares what the cascades draw alone, for the receivers that fall into their maps.
@@ -308,12 +310,12 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   }
   const auto to_kernel = metrics::measure_error(image, kernel.visibility, truth_.mask, kernel.variance);
   note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
-       "no pixel of the image is finite");
+       {"no pixel of the image is finite"});
   const bool random = request.spec.kind == filters::FilterKind::kStochastic;
   note(
       record, "artefact.noise", record.artefact.noise,
       random ? metrics::rate_noise(image, images.closer, kernel.visibility, truth_.mask, options_.width) : std::nullopt,
-      random ? too_few("lie in the kernel's penumbra") : "the filter takes no random taps");
+      random ? too_few("lie in the kernel's penumbra") : records::Absence{"the filter takes no random taps"});
   note_attribution(cell, std::move(attribution));
 }
 

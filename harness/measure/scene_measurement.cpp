@@ -16,7 +16,6 @@
 #include "harness/measure/scene_truth.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
-#include "harness/measure/timing/many_lights_timing.h"
 #include "harness/measure/timing/timing.h"
 #include "harness/render/gbuffer.h"
 #include "harness/render/shade_pass.h"
@@ -256,7 +255,6 @@ class SceneBench {
       result.cells[i].empty_lookup = empty.passes[empty.of_filter[i]]->list_passes(0).front();
       result.cells[i].empty_lookup.name = "empty";
     }
-    time_lights(result, pointers, reference);
   }
 
   /// Has the empty lookups written down, each drawn once.
@@ -268,22 +266,6 @@ class SceneBench {
       drawn.push_back(renderer_.recorder->newest_draw());
     }
     for (std::size_t i = 0; i < result.cells.size(); ++i) result.cells[i].empty_frame = drawn[empty.of_filter[i]];
-  }
-
-  void time_lights(SceneMeasurement& result, const std::vector<render::FilterPasses*>& filters, std::size_t reference) {
-    if (options_.lights.empty()) {
-      for (MeasuredCell& cell : result.cells) cell.record.absent["lights"] = "the run was made without --lights";
-      return;
-    }
-    LightMeasurement measured = measure_lights(renderer_, options_, assets_,
-                                               {&task_.scene->light, task_.camera, task_.map_size, filters, reference});
-    result.timed_ms += measured.spent_ms;
-    for (std::size_t i = 0; i < result.cells.size(); ++i) {
-      records::CellRecord& record = result.cells[i].record;
-      record.lights = std::move(measured.filters[i]);
-      for (records::LightCountRecord& each : *record.lights)
-        each.maps_bytes = each.count * record.cost.map_bytes.value();
-    }
   }
 
   /// Draws every filter again with the map's grid moved by parts of a texel. The passes stay turned to the last of

@@ -67,10 +67,13 @@ void note_growth(records::CellRecord& record, std::span<const std::span<const fl
                                                                .columns = truth.area.width});
   }
   if (!record.penumbra.growth)
-    record.absent["penumbra"] = texel_m ? records::explain_nothing_to_see(fmt::format(
-                                              "too few penumbrae are {:g} to {:g} texels wide, and of different widths",
-                                              metrics::kGrowthLimits.least_texels, metrics::kGrowthLimits.most_texels))
-                                        : "the renderer's map is not known";
+    records::explain(
+        record, "penumbra",
+        texel_m ? records::Absence{fmt::format("too few penumbrae are {:g} to {:g} texels wide, and of different "
+                                               "widths",
+                                               metrics::kGrowthLimits.least_texels, metrics::kGrowthLimits.most_texels),
+                                   true}
+                : records::Absence{"the renderer's map is not known"});
 }
 
 constexpr double kTellingWeight = 0.01;
@@ -90,7 +93,8 @@ SceneTruth trace_scene(truth::CachedTracer& tracer, const scene::Light& light, V
   truth.mask = receivers.mask();
   truth.receivers = std::move(receivers);
   if (!truth.receivers.any_counts()) {
-    truth.absent = records::explain_nothing_to_see("no surface in view faces the light");
+    truth.absent = "no surface in view faces the light";
+    truth.nothing_to_see = true;
     return truth;
   }
   truth.rays = tracer.trace_view(truth.receivers.image, scene::make_area_light(light));
@@ -146,7 +150,8 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
     const std::string reason = !truth.absent.empty() ? truth.absent
                                : visibility.empty()  ? record.message
                                                      : "no pixel of the image is finite";
-    for (const char* group : {"error", "truth", "penumbra"}) record.absent[group] = reason;
+    for (const char* group : {"error", "truth", "penumbra"})
+      records::explain(record, group, {reason, truth.nothing_to_see});
     return {};
   }
   std::ranges::move(measure_phases({}, other_phases, truth, truth.mask), std::back_inserter(phases));

@@ -20,7 +20,8 @@ namespace shadowbench::measure {
 
 /// Ray-traced visibility of one view's receivers, rows top to bottom like every report image.
 struct SceneTruth {
-  std::string absent;  ///< why there is none; empty where there is
+  std::string absent;           ///< why there is none; empty where there is
+  bool nothing_to_see = false;  ///< there is none, as no surface in view faces the light
   ViewReceivers receivers;
   truth::ViewRays rays;
   images::Image hard;                          ///< the light as a point: 1 seen, 0 blocked

@@ -29,6 +29,7 @@ struct Option {
   bool hidden = false;          ///< the help does not show it
   bool opposite = false;        ///< the flag can be taken back with --no-FLAG
   std::string not_empty = {};   ///< what to give in place of an empty value, which no option takes
+  std::string instead = {};     ///< of an option that is gone: what to use instead, which refuses every value
   std::string other_name = {};  ///< a spelling that is understood, and that the help does not show
 
   Option& names(ValueKind what) { return kind = what, *this; }
@@ -38,6 +39,7 @@ struct Option {
   Option& hide() { return hidden = true, *this; }
   Option& with_opposite() { return opposite = true, *this; }
   Option& also_called(std::string what) { return other_name = std::move(what), *this; }
+  Option& gone(std::string what) { return instead = std::move(what), hide(); }
   Option& never_empty(std::string what) { return not_empty = std::move(what), *this; }
 
   bool is_flag() const { return variable.index() < 2; }

@@ -91,12 +91,10 @@ struct RunOptions {
   bool border_page = false;          ///< also draw every rule for what lies outside the map, side by side
   std::optional<double> pad_texels;  ///< around the scene in the map; empty: as many as the widest kernel needs
   RoundLimits rounds;
-  int phases = 8;                                       ///< places of the map's grid over which errors are averaged
-  int frames = 1;                                       ///< also accumulate visibility over so many
-  std::vector<filters::FilterRequest> until_different;  ///< two: phases are added until they are told apart
-  std::vector<gpu::Gpu> gpus;                           ///< also estimate costs on these, which need not be there
-  std::vector<int> lights;                              ///< also time frames with these numbers of lights
-  filters::FilterRequest reference;                     ///< the filter that the others' times are ratios to
+  int phases = 8;                    ///< places of the map's grid over which errors are averaged
+  int frames = 1;                    ///< also accumulate visibility over so many
+  std::vector<gpu::Gpu> gpus;        ///< also estimate costs on these, which need not be there
+  filters::FilterRequest reference;  ///< the filter that the others' times are ratios to
   std::uint32_t seed = 1;
   gl::Backend backend = gl::Backend::kAuto;
   bool truth = true;  ///< trace rays, and score every filter against them

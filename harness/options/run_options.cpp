@@ -296,12 +296,6 @@ std::vector<RunOption> list_run_options() {
       "--budget", "for --rounds auto: seconds of timed work for each filter on each map", 0.4,
       [](RunOptions& o, const Told& told) { o.rounds.budget_ms = 1e3 * std::get<double>(told); },
       [](const RunOptions& o) { return o.rounds.budget_ms / 1e3; });
-  t.add("--lights",
-        fmt::format("also time frames lit by so many suns, each with a map of its own, casters static and moving: "
-                    "counts of 1 .. {} with commas (default: none)",
-                    kMostLights),
-        &RunOptions::lights)
-      .never_empty("counts of lights, such as 1,2,4,8");
   t.add_row(
        "--gpu",
        "also say what filters cost on these GPUs, which need not be there: names of 'list gpus' with commas, or "
@@ -346,11 +340,15 @@ std::vector<RunOption> list_run_options() {
                         kFiltersOfAGrid),
             0)
       .with_opposite();
+  t.add_row("--lights", "", std::string())
+      .gone("each copy of a light costs the same; list several lights in the scene's file, and add up their times");
   t.decides = Decides::kWay;
   t.add("--shard", "I/N: every N-th cell only, from the I-th on; 'merge' joins the N report folders", &RunOptions::part)
       .never_empty("I/N");
   t.add("--fresh", "measure every cell again, even those that an earlier run finished in the report folder",
         &RunOptions::fresh);
+  t.add_row("--until-different", "", std::string())
+      .gone("the page says how small a difference the run can see; raise --phases to see a smaller one");
   t.add("--yes", "start even where there are very many cells", &RunOptions::large_is_fine);
   t.add("--pictures", "", &RunOptions::pictures).with_opposite().hide();
   return std::move(t.rows);
@@ -379,9 +377,6 @@ void read_run_options(const std::vector<RunOption>& all, RunOptions& options) {
   require_in_range("--precision", options.rounds.precision, 0.0, 1.0);
   require_in_range("--budget", options.rounds.budget_ms / 1e3, 0.0, 3600.0, " seconds");
   require_in_range("--cell-timeout", options.cell_timeout_s, 0.0, 86400.0, " seconds");
-  std::ranges::sort(options.lights);
-  if (const int most = options.lights.empty() ? 0 : options.lights.back(); most > kMostLights)
-    fail(fmt::format("--lights: {} is out of range: choose counts of 1 .. {}", most, kMostLights));
   options.bias = render::parse_bias(options.bias_texts);
   options.fit = options.fits.front();
 }
@@ -389,7 +384,6 @@ void read_run_options(const std::vector<RunOption>& all, RunOptions& options) {
 void check_run_options(const RunOptions& options) {
   render::require_drawable(options.bias, options.map);
   for (const filters::FilterRequest& request : options.filters) render::require_usable(options.bias, request.spec);
-  require_light_maps_fit(options);
   if (options.border_page && !options.grids)
     fail(
         fmt::format("--border-page shows all filters side by side, which --no-grids leaves out, as do more than {} "

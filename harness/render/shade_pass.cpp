@@ -50,6 +50,7 @@ void shade_into(ImageTarget& target, ShaderLibrary& shaders, const ShadedView& v
     program.set("light_direction_ws", -scene::to_light(scene.light, {}));
   program.set("light_radiance", scene.light.color * scene.light.intensity);
   program.set("background", scene.background);
+  program.set("ambient_at_side", kAmbientAtSide);
   target.bind();
   glViewport(columns.x, 0, columns.y - columns.x, gbuffer.height());
   gbuffer.bind();

@@ -7,6 +7,9 @@
 
 namespace shadowbench::render {
 
+/// The share of the ambient light that an upright surface gets; one that faces up gets all.
+inline constexpr float kAmbientAtSide = 0.75f;
+
 /// What a camera sees, to be shaded.
 struct ShadedView {
   const GBuffer& gbuffer;

@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "harness/live/frame_file.h"
+#include "report/analysis/summary.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_report.h"
 #include "report/records/gpu_times.h"
@@ -97,20 +98,6 @@ void require_free(const std::filesystem::path& out, const std::vector<ShardRun>&
               out.string());
 }
 
-std::vector<std::string> list_files(const records::CellRecord& cell) {
-  std::vector<std::string> files;
-  for (const auto member :
-       {&records::ImagesRecord::picture, &records::ImagesRecord::visibility, &records::ImagesRecord::depth_map,
-        &records::ImagesRecord::grid, &records::ImagesRecord::exr, &records::ImagesRecord::values,
-        &records::ImagesRecord::truth_picture, &records::ImagesRecord::truth_values,
-        &records::ImagesRecord::supersampled, &records::ImagesRecord::truth_supersampled,
-        &records::ImagesRecord::texel_density, &records::ImagesRecord::texel_grid, &records::ImagesRecord::all_lights,
-        &records::ImagesRecord::stability})
-    if (cell.images.*member) files.push_back(*(cell.images.*member));
-  if (cell.accumulation && cell.accumulation->picture) files.push_back(*cell.accumulation->picture);
-  return files;
-}
-
 void write_again(const std::filesystem::path& report, const records::Results& results) {
   std::vector<std::string> keys;
   for (const records::CellRecord& cell : results.cells) keys.push_back(cell.key);
@@ -122,7 +109,6 @@ void write_again(const std::filesystem::path& report, const records::Results& re
 records::RunRecord join_runs(const std::vector<records::RunRecord>& runs) {
   records::RunRecord whole = runs.front();
   whole.experiment.shard = whole.experiment.shards = 1;
-  whole.repeat = {};  // of one run alone
   for (const records::RunRecord& run : std::span(runs).subspan(1)) {
     whole.work.shader_variants_compiled += run.work.shader_variants_compiled;
     whole.work.passes_run += run.work.passes_run;
@@ -158,14 +144,17 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
   for (int i = 0; i < shards.front().results.run.experiment.cells; ++i) {
     const ShardRun& shard = shards[static_cast<std::size_t>(i) % shards.size()];
     const records::CellRecord& cell = shard.results.cells[static_cast<std::size_t>(i) / shards.size()];
-    for (const std::string& file : list_files(cell))
+    for (const std::string& file : records::list_files(cell))
       if (copied.insert(file).second) copy_whole_file(shard.folder / file, out / file);
     copy_whole_file(records::cell_path(shard.folder, cell.key), records::cell_path(out, cell.key));
     keys.push_back(cell.key);
   }
   for (const ShardRun& shard : shards) live::copy_frames(shard.folder, out);
   std::vector<records::RunRecord> runs;
-  for (const ShardRun& shard : shards) runs.push_back(shard.results.run);
+  for (const ShardRun& shard : shards) {
+    runs.push_back(shard.results.run);
+    std::erase(runs.back().warnings, analysis::warn_of_mixed_machines(shard.results.cells));  // the whole has its own
+  }
   pages::write_report(out, join_runs(runs), keys);
 }
 

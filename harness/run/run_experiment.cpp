@@ -27,7 +27,6 @@
 #include "harness/run/worker_process.h"
 #include "harness/spirv/webgl.h"
 #include "reference/truth/truth_cache.h"
-#include "report/analysis/repeat.h"
 #include "report/analysis/summary.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"
@@ -125,7 +124,6 @@ class Experiment {
   }
 
   void measure(const RunPlan& plan) {
-    const std::vector<records::CellRecord> replaced = read_replaced();
     done_ = plan.finished;
     progress_.begin(plan.own_cells, done_);
     const auto start = std::chrono::steady_clock::now();
@@ -137,7 +135,7 @@ class Experiment {
     run_.work.shader_variants_compiled = renderer_.shaders.compiled();
     run_.work.truths_traced = cache_.traced();
     run_.work.truths_cached = cache_.loaded();
-    finish(plan, replaced);
+    finish(plan);
     progress_.show(done_, "done");
   }
 
@@ -160,10 +158,9 @@ class Experiment {
                                           whole, run_.scenes.size(), keys.size(), plan.own_cells));
   }
 
-  void finish(const RunPlan& plan, const std::vector<records::CellRecord>& replaced) {
+  void finish(const RunPlan& plan) {
     progress_.show(done_, "writing the report");
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
-    if (!replaced.empty()) compare_with(replaced, list_keys(plan));
     if (!options_.part.is_worker()) {
       std::vector<records::CellRecord> cells = records::read_cells(options_.out, keep_rows(plan));
       if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, plan, cache_, cells);
@@ -207,29 +204,6 @@ class Experiment {
   bool is_same(const records::ExperimentRecord& known) const {
     const records::ExperimentRecord& own = run_.experiment;
     return known.settings == own.settings && known.shard == own.shard && known.shards == own.shards;
-  }
-
-  /// The cells of the finished report of this very run that is measured anew, as far as this kind of machine measured
-  /// them; none where there is none.
-  std::vector<records::CellRecord> read_replaced() const {
-    const std::filesystem::path file = options_.out / "results.json";
-    if (!options_.fresh || options_.part.is_worker() || !std::filesystem::exists(file)) return {};
-    try {
-      records::Results results = records::read_results(file);
-      if (!is_same(results.run.experiment)) return {};
-      const records::MachineKind here = records::kind_of(run_.machine, run_.gl);
-      std::erase_if(results.cells, [&](const records::CellRecord& cell) { return cell.machine != here; });
-      return std::move(results.cells);
-    } catch (const Error&) {
-      // What cannot be read cannot be compared with.
-    }
-    return {};
-  }
-
-  void compare_with(const std::vector<records::CellRecord>& replaced, const std::vector<std::string>& keys) {
-    run_.repeat = analysis::compare_runs(replaced, records::read_cells(options_.out, keys)).record;
-    if (run_.repeat.of == 0) return;
-    progress_.note(analysis::describe_overlap(run_.repeat) + " those of the run that this one replaces");
   }
 
   /// Whether the folder has the whole report of this very run already, of the very cells that lie there. Their content

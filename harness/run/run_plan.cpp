@@ -13,7 +13,6 @@
 #include "harness/measure/light_width.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/options/run_options.h"
-#include "harness/render/gbuffer.h"
 #include "harness/run/provenance.h"
 #include "harness/run/scene_loading.h"
 #include "report/records/json_io.h"
@@ -140,21 +139,6 @@ void require_views(const options::RunOptions& options, const std::vector<Planned
   }
 }
 
-/// Beyond that, timed frames would prepare receivers as well.
-void require_few_maps(const std::vector<PlannedScene>& scenes) {
-  for (const PlannedScene& each : scenes) {
-    const int layers = scene::count_layers(each.scene.light, each.options.fit);
-    const int most = static_cast<int>(render::kKeptReceiverMaps) / layers;
-    for (const int lights : each.options.lights) {
-      if (lights <= most) continue;
-      throw Error(ErrorKind::kUsage,
-                  fmt::format("--lights: {} lights on {} have {} maps ({} each), more than the {} "
-                              "that a frame may have; choose {} lights or fewer",
-                              lights, each.scene.name, lights * layers, layers, render::kKeptReceiverMaps, most));
-    }
-  }
-}
-
 class Planner {
  public:
   Planner(const options::RunOptions& options, const std::string& renderer) : options_(options), renderer_(renderer) {}
@@ -163,7 +147,6 @@ class Planner {
     plan_.scenes = plan_scenes(options_);
     if (plan_.scenes.empty()) fail_unknown_light(options_);
     require_views(options_, plan_.scenes);
-    require_few_maps(plan_.scenes);
     for (std::size_t i = 0; i < plan_.scenes.size(); ++i) add_scene(i);
     plan_.settings = hash_.name();
     require_cells();

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "report/records/format.h"
 
@@ -40,21 +39,16 @@ double presume_drawing_s(const PlannedScene& scene, const PlannedTask& task) {
   return 0.06 * count_megapixels(scene.options) + 0.02 * count_megatexels(task.task.map_size);
 }
 
-double count_frames(const options::RunOptions& options) {
-  return 1.0 + std::accumulate(options.lights.begin(), options.lights.end(), 0.0);
-}
-
 }  // namespace
 
 /// Pictures that are drawn soon are precise soon, unless a larger budget says that they are to be more so.
 double presume_timing_s(const PlannedScene& scene, const PlannedTask& task) {
   const options::RunOptions& options = scene.options;
   const double draw_s = presume_drawing_s(scene, task), cells = static_cast<double>(task.task.filters.size());
-  if (options.rounds.is_fixed()) return cells * 0.1 * draw_s * options.rounds.most * count_frames(options);
+  if (options.rounds.is_fixed()) return cells * 0.1 * draw_s * options.rounds.most;
   const double budget_s = 1e-3 * options.rounds.budget_ms;
   const bool is_told_more = options.rounds.budget_ms > options::RoundLimits().budget_ms;
-  return cells * (1.0 + static_cast<double>(options.lights.size())) *
-         (is_told_more ? budget_s : std::min(budget_s, 15.0 * draw_s));
+  return cells * (is_told_more ? budget_s : std::min(budget_s, 15.0 * draw_s));
 }
 
 /// Measured in quiet processor seconds of the default run: each kind's time in its busiest thread, or half of all.

@@ -112,8 +112,7 @@ measure::MeasuredCell failed_cell(const options::RunOptions& options, const meas
             ? fmt::format("killed by signal {} ({})", outcome.signal, strsignal(outcome.signal))
             : fmt::format("ended with exit code {}: {}", *outcome.exit_code, clean_message(outcome.error_text));
   }
-  for (const char* group :
-       {"time_ms", "ratio_to_none", "lights", "cost", "receivers", "nan", "stability", "images", "gpu"})
+  for (const char* group : {"time_ms", "ratio_to_none", "cost", "receivers", "nan", "stability", "images", "gpu"})
     cell.record.absent[group] = cell.record.message;
   return cell;
 }

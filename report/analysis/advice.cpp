@@ -16,7 +16,7 @@
 #include "base/nearest_name.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -51,10 +51,8 @@ void require_size(const std::vector<records::CellRecord>& cells, std::pair<int, 
 
 void require_claim(const std::vector<records::CellRecord>& cells, const AdviceRequest& request,
                    const std::string& wanted) {
-  std::set<std::string> known;
-  for (const auto& [filter, made] : request.claims) known.insert(made.begin(), made.end());
-  for (const records::CellRecord& cell : cells)
-    if (cell.claims) known.insert(cell.claims->begin(), cell.claims->end());
+  std::set<std::string> known = request.known_claims;
+  for (const records::CellRecord& cell : cells) known.insert(cell.claims.begin(), cell.claims.end());
   if (known.contains(wanted)) return;
   if (known.empty()) refuse(fmt::format("--requires: no filter claims '{}', nor anything else: leave it out", wanted));
   refuse(fmt::format("--requires: no filter claims '{}'{}; filters claim {}", wanted,
@@ -79,7 +77,7 @@ std::vector<const records::CellRecord*> choose_cells(const std::vector<records::
     const bool scene_fits = request.scenes.empty() || std::ranges::count(request.scenes, cell.scene) > 0;
     const bool size_fits = !request.size || std::pair(cell.width, cell.height) == *request.size;
     if (!scene_fits || !size_fits || cell.external) continue;
-    if (cell.teaching.value_or(false))
+    if (cell.teaching)
       advice.teaching.insert(cell.filter);
     else
       chosen.push_back(&cell);
@@ -110,14 +108,6 @@ std::string find_gap(const std::vector<const records::CellRecord*>& cells, const
   return {};
 }
 
-// What the filter of a configuration claims; nothing where nobody knows.
-std::optional<std::vector<std::string>> find_claims(const Configuration& configuration, const AdviceRequest& request) {
-  const records::CellRecord& cell = *configuration.cells.front();
-  if (cell.claims) return cell.claims;
-  const auto known = request.claims.find(cell.filter);
-  return known != request.claims.end() ? std::optional(known->second) : std::nullopt;
-}
-
 std::string find_missing_cell(const Configuration& configuration, const std::vector<Place>& places) {
   for (const Place& place : places) {
     const auto cell = std::ranges::find_if(configuration.cells, [&](const auto* c) { return place_of(*c) == place; });
@@ -130,18 +120,13 @@ std::string find_missing_cell(const Configuration& configuration, const std::vec
   return {};
 }
 
-Verdict judge_claim(const Configuration& configuration, const std::string& claim, const AdviceRequest& request) {
-  const auto claims = find_claims(configuration, request);
-  if (claims && std::ranges::count(*claims, claim) == 0) return {false};
+Verdict judge_claim(const Configuration& configuration, const std::string& claim) {
+  if (std::ranges::count(configuration.cells.front()->claims, claim) == 0) return {false};
   Verdict verdict;
-  verdict.absent = claims ? find_doubt(configuration.cells, claim)
-                          : fmt::format("the run does not say what '{}' claims, and it is no built-in filter",
-                                        configuration.cells.front()->filter);
+  verdict.absent = find_doubt(configuration.cells, claim);
   verdict.kept = verdict.absent.empty();
   return verdict;
 }
-
-const LimitSpec& rmse_spec() { return *std::ranges::find(limit_table(), kRmseField, &LimitSpec::field); }
 
 std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice, bool needs_rmse) {
   const AdviceRequest& request = advice.request;
@@ -152,12 +137,13 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
     candidate.seam = std::max(candidate.seam, cell->artefact.seam.value_or(0.0));
   for (const Demand& demand : request.demands) {
     Verdict verdict = demand.spec ? judge_limit(configuration, demand, request.light, advice.places)
-                                  : judge_claim(configuration, demand.claim, request);
+                                  : judge_claim(configuration, demand.claim);
     if (!verdict.absent.empty()) return Unjudged{configuration, verdict.absent, candidate.verdicts.size()};
     candidate.verdicts.push_back(std::move(verdict));
   }
   std::string gap = find_gap(configuration.cells, cost_spec(request.cheapest), request.light, advice.places);
-  if (gap.empty() && needs_rmse) gap = find_gap(configuration.cells, rmse_spec(), request.light, advice.places);
+  if (gap.empty() && needs_rmse)
+    gap = find_gap(configuration.cells, limit_of(kRmseField), request.light, advice.places);
   if (!gap.empty()) return Unjudged{configuration, std::move(gap), {}};
   candidate.cost = *measure_cost(configuration.cells, request.cheapest, request.light);
   return candidate;
@@ -181,18 +167,16 @@ void sort_by_cost(std::vector<Candidate>& candidates, const AdviceRequest& reque
 // Finds the cheapest configuration without a filter, whatever it keeps and how wide kernels are to be, and says of each
 // candidate whether it is clearly better.
 void compare_with_unfiltered(Advice& advice, const std::vector<const records::CellRecord*>& cells) {
-  Advice open;
-  open.request = advice.request;
-  open.request.demands.clear();
-  open.places = advice.places;
   std::vector<Candidate> candidates;
   for (const Configuration& configuration : list_configurations(cells)) {
     if (configuration.cells.front()->filter != kUnfiltered) continue;
-    auto judged = judge(configuration, open, true);
-    if (auto* candidate = std::get_if<Candidate>(&judged)) candidates.push_back(std::move(*candidate));
+    if (!find_missing_cell(configuration, advice.places).empty()) continue;
+    const auto cost = measure_cost(configuration.cells, advice.request.cheapest, advice.request.light);
+    const auto rmse = combine_rmse(configuration.cells);
+    if (cost && rmse) candidates.push_back({configuration, *cost, {}, rmse});
   }
   if (candidates.empty()) return;
-  sort_by_cost(candidates, open.request);
+  sort_by_cost(candidates, advice.request);
   const Candidate& cheapest = candidates.front();
   advice.unfiltered = cheapest.configuration.name;
   for (auto* list : {&advice.keeping, &advice.failing})
@@ -301,8 +285,7 @@ Verdict judge_limit(const Configuration& configuration, const Demand& demand, Li
   const LimitSpec& spec = *demand.spec;
   std::vector<const records::CellRecord*> telling;
   for (const records::CellRecord* cell : configuration.cells) {
-    const bool tells =
-        spec.read(*cell, light) || !records::is_nothing_to_see(records::explain_absence(*cell, spec.field));
+    const bool tells = spec.read(*cell, light) || !records::has_nothing_to_see(*cell, spec.field);
     (tells ? telling : verdict.nothing_to_see).push_back(cell);
   }
   verdict.absent = telling.empty() ? fmt::format("no {} anywhere: {}", spec.field,
@@ -325,14 +308,17 @@ std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& 
   for (const records::CellRecord* cell : cells) {
     const auto value = cost_spec(kind).read(*cell, light);
     if (!value) return std::nullopt;
-    const auto time = kind == CostKind::kTime ? frame_time(*cell, light) : std::nullopt;
-    quartiles.push_back(time ? Estimate{*value, time->q1, time->q3} : Estimate{*value, *value, *value});
-    if (const auto interval = time ? frame_interval(*cell, light) : std::nullopt)
-      ci95.push_back({*value, interval->low, interval->high});
+    if (kind == CostKind::kTime) {
+      const records::OwnTime& time = *frame_time(*cell, light);
+      quartiles.push_back({*value, time.q1, time.q3});
+      ci95.push_back({*value, time.ci95.low, time.ci95.high});
+    } else {
+      quartiles.push_back({*value, *value, *value});
+    }
   }
   const Estimate mean = mean_over_scenes(quartiles);
   Cost cost{mean.value, {mean.low, mean.high}, {}};
-  if (ci95.size() < cells.size()) return cost;
+  if (ci95.empty()) return cost;
   const Estimate interval = mean_over_scenes(ci95);
   cost.ci95 = records::Interval{interval.low, interval.high};
   return cost;

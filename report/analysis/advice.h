@@ -10,8 +10,8 @@
 
 #include "report/analysis/configuration.h"
 #include "report/analysis/front.h"
-#include "report/analysis/gains.h"
 #include "report/analysis/limits.h"
+#include "report/analysis/place_state.h"
 #include "report/records/records.h"
 
 namespace shadowbench::analysis {
@@ -21,11 +21,11 @@ struct AdviceRequest {
   std::vector<Demand> demands;
   LightMotion light = LightMotion::kMoving;
   CostKind cheapest = CostKind::kTime;
-  std::vector<std::string> scenes;                         ///< empty: all of the run
-  std::string width_class;                                 ///< of the kernel; empty: any
-  std::optional<std::pair<int, int>> size;                 ///< of the picture, pixels; empty: all of the run
-  bool whole = false;                                      ///< keep those that are beaten or no gain, too
-  std::map<std::string, std::vector<std::string>> claims;  ///< by filter id, for cells whose records do not hold theirs
+  std::vector<std::string> scenes;          ///< empty: all of the run
+  std::string width_class;                  ///< of the kernel; empty: any
+  std::optional<std::pair<int, int>> size;  ///< of the picture, pixels; empty: all of the run
+  bool whole = false;                       ///< keep those that are beaten or no gain, too
+  std::set<std::string> known_claims;       ///< that filters make which the run may lack: to require one is no mistake
 };
 
 /// How a configuration stands to one demand.
@@ -44,7 +44,7 @@ struct Verdict {
 Verdict judge_limit(const Configuration& configuration, const Demand& demand, LightMotion light,
                     const std::vector<Place>& places);
 
-/// A cost over all places: mean_over_scenes() with each place's quartiles, and with its interval as frame_interval()
+/// A cost over all places: mean_over_scenes() with each place's quartiles, and with its interval, as frame_time()
 /// gives it.
 struct Cost {
   double mean = 0.0;
@@ -130,7 +130,7 @@ struct Advice {
 /// Costs that are equal are ordered by RMSE, then time. Filters for teaching are left out, and with a class of width
 /// those of others. A configuration that was not measured in a place, did not finish there, or lacks a value there is
 /// not judged; nor is one without an RMSE, where others have one. A value that has nothing to be measured on in some
-/// places, as is_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells` outlive what
+/// places, as has_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells` outlive what
 /// is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have, or a claim
 /// that no filter makes; Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);

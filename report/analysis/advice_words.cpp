@@ -9,7 +9,7 @@
 #include <set>
 
 #include "report/analysis/cell_group.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
@@ -116,20 +116,15 @@ bool uses_time(const AdviceRequest& request) {
              request.demands, [](const Demand& d) { return d.spec == &cost_spec(CostKind::kTime); });
 }
 
-bool is_of_one_round(const std::optional<records::Ratio>& ratio) {
-  return ratio && ratio->median != 1.0 && ratio->ci95.low == ratio->ci95.high;
-}
-
 void add_time_notes(std::vector<std::string>& notes, const std::vector<const records::CellRecord*>& cells,
-                    const records::GlRecord& gl, const AdviceRequest& request) {
+                    const records::GlRecord& gl) {
   const std::vector<std::string> gpus = list_gpus(cells);
   if (gl.software)
     notes.push_back(
         fmt::format("Times are {}: a GPU ranks filters differently{}.", records::describe_clock(gl),
                     gpus.empty() ? "" : fmt::format("; there are estimates for {}", fmt::join(gpus, ", "))));
-  const bool once = std::ranges::any_of(cells, [&](const records::CellRecord* c) {
-    return c->time_ms.lookup ? c->time_ms.lookup->n < 2 : is_of_one_round(frame_ratio(*c, request.light));
-  });
+  const bool once = std::ranges::any_of(
+      cells, [](const records::CellRecord* c) { return c->time_ms.lookup && c->time_ms.lookup->n < 2; });
   if (once) notes.push_back("Times of a single round have no spread, so their order may be chance: raise --rounds.");
 }
 
@@ -266,7 +261,7 @@ std::vector<std::string> list_run_notes(const Advice& advice, const records::GlR
   for (const LeftOutPlace& each : advice.left_out)
     if (each.is_tested() || !is_said) notes.push_back(describe_left_out(each, advice) + ".");
   const std::vector<const records::CellRecord*> cells = list_judged_cells(advice);
-  if (uses_time(advice.request)) add_time_notes(notes, cells, gl, advice.request);
+  if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
   add_setting_notes(notes, cells);
   return notes;
 }

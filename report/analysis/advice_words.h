@@ -9,7 +9,7 @@
 
 namespace shadowbench::analysis {
 
-/// Writes a cost for people, with its unit: "4.39 ms (CPU)", "1.09 × none", "4194304 bytes", "4 fetches".
+/// Writes a cost for people, with its unit: "4.39 ms (CPU)", "4194304 bytes", "4 fetches".
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl);
 
 /// Writes a number near to a value and between two ends, with as many digits, three or more, as that takes.

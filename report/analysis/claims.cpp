@@ -21,18 +21,14 @@ std::string find_doubt(const std::vector<const records::CellRecord*>& cells, con
   const records::CellRecord* least = nullptr;
   for (const records::CellRecord* cell : cells)
     if (cell->penumbra.growth && (!least || *cell->penumbra.growth < *least->penumbra.growth)) least = cell;
-  if (!least) {
-    const std::string reason = records::explain_absence(*cells.front(), kGrowth);
-    return doubt + reason.substr(records::is_nothing_to_see(reason) ? records::kNothingToSee.size() : 0);
-  }
+  if (!least) return doubt + records::explain_absence(*cells.front(), kGrowth);
   if (*least->penumbra.growth >= kLeastGrowth) return "";
   return fmt::format("{}on {} its penumbrae widen by {} where the truth's widen by 1, and {} is the least", doubt,
                      least->scene, records::format_number(least->penumbra.growth), kLeastGrowth);
 }
 
 bool shows_claim(const std::vector<const records::CellRecord*>& cells, const std::string& claim) {
-  const auto& claims = cells.front()->claims;
-  return claims && std::ranges::count(*claims, claim) > 0 && find_doubt(cells, claim).empty();
+  return std::ranges::count(cells.front()->claims, claim) > 0 && find_doubt(cells, claim).empty();
 }
 
 }  // namespace shadowbench::analysis

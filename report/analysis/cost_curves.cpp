@@ -37,60 +37,6 @@ std::vector<CostCurve> make_width_curves(const TradeScope& scope, int map_size,
   return curves;
 }
 
-Estimate read_spread(const records::Quartiles& time) { return {time.median, time.q1, time.q3}; }
-
-Estimate scale(const records::Ratio& ratio, const records::Quartiles& reference) {
-  return {ratio.median * reference.median, ratio.ci95.low * reference.median, ratio.ci95.high * reference.median};
-}
-
-CurvePoint make_light_point(const records::LightCountRecord& own, const records::CellRecord* reference) {
-  CurvePoint point{static_cast<double>(own.count), {read_spread(own.moving_ms), read_spread(own.static_ms)}};
-  if (!reference) return point;
-  const auto under = std::ranges::find(*reference->lights, own.count, &records::LightCountRecord::count);
-  if (under != reference->lights->end())
-    point.costs = {scale(own.moving_ratio, under->moving_ms), scale(own.static_ratio, under->static_ms)};
-  return point;
-}
-
-std::vector<CostCurve> make_light_curves(const TradeScope& scope, int map_size,
-                                         const std::vector<records::CellRecord>& cells) {
-  std::vector<TradeConfiguration> timed;
-  const records::CellRecord* reference = nullptr;
-  for (const TradeConfiguration& each : scope.configurations) {
-    const records::CellRecord& cell = cells[each.cells.front()];
-    if (each.map_size != map_size || !cell.lights || cell.lights->empty()) continue;
-    timed.push_back(each);
-    if (is_reference(cell)) reference = &cell;
-  }
-  label_configurations(timed, cells);
-  std::vector<CostCurve> curves;
-  for (const TradeConfiguration& each : timed) {
-    CostCurve& curve = curves.emplace_back(CostCurve{each.filter, each.label, {}});
-    for (const records::LightCountRecord& own : *cells[each.cells.front()].lights)
-      curve.points.push_back(make_light_point(own, reference));
-  }
-  return curves;
-}
-
-// One chart of each scene, view and picture, and each size of its maps, of which `says` has something to say.
-template <class MakeCurves, class Says>
-std::vector<CostChart> make_charts(CurveAxis axis, const std::vector<records::CellRecord>& cells,
-                                   const std::vector<TradeScope>& scopes, MakeCurves make_curves, Says says) {
-  std::vector<CostChart> charts;
-  for (const TradeScope& scope : scopes) {
-    if (scope.scene.empty()) continue;
-    std::set<int> map_sizes;
-    for (const TradeConfiguration& each : scope.configurations) map_sizes.insert(each.map_size);
-    for (const int map_size : map_sizes) {
-      CostChart chart{scope.id,    fmt::format("{} · map {}", scope.title, map_size),
-                      map_size,    axis,
-                      scope.costs, make_curves(scope, map_size, cells)};
-      if (says(chart)) charts.push_back(std::move(chart));
-    }
-  }
-  return charts;
-}
-
 bool has_several_fits(const MapFamily& family) {
   return std::ranges::any_of(
       family.maps, [&](const MapPoint& map) { return map.fit != family.maps.front().fit; });
@@ -98,28 +44,28 @@ bool has_several_fits(const MapFamily& family) {
 
 }  // namespace
 
-std::vector<double> CostChart::places() const {
-  std::set<double> places;
+std::vector<double> CostChart::widths() const {
+  std::set<double> widths;
   for (const CostCurve& curve : curves)
-    for (const CurvePoint& point : curve.points) places.insert(point.at);
-  return {places.begin(), places.end()};
+    for (const CurvePoint& point : curve.points) widths.insert(point.sigma_texels);
+  return {widths.begin(), widths.end()};
 }
 
 std::vector<CostChart> make_width_charts(const std::vector<records::CellRecord>& cells,
                                          const std::vector<TradeScope>& scopes) {
-  return make_charts(
-      CurveAxis::kWidth, cells, scopes, make_width_curves,
-      [](const CostChart& chart) {
-        return std::ranges::any_of(
-            chart.curves, [](const CostCurve& curve) { return curve.points.size() > 1; });
-      });
-}
-
-std::vector<CostChart> make_light_charts(const std::vector<records::CellRecord>& cells,
-                                         const std::vector<TradeScope>& scopes) {
-  return make_charts(
-      CurveAxis::kLights, cells, scopes, make_light_curves,
-      [](const CostChart& chart) { return !chart.curves.empty(); });
+  std::vector<CostChart> charts;
+  for (const TradeScope& scope : scopes) {
+    if (scope.scene.empty()) continue;
+    std::set<int> map_sizes;
+    for (const TradeConfiguration& each : scope.configurations) map_sizes.insert(each.map_size);
+    for (const int map_size : map_sizes) {
+      CostChart chart{scope.id, fmt::format("{} · map {}", scope.title, map_size), map_size, scope.costs,
+                      make_width_curves(scope, map_size, cells)};
+      const auto has_several = [](const CostCurve& curve) { return curve.points.size() > 1; };
+      if (std::ranges::any_of(chart.curves, has_several)) charts.push_back(std::move(chart));
+    }
+  }
+  return charts;
 }
 
 Measure make_map_measure(const std::vector<records::CellRecord>& cells) {

@@ -9,16 +9,13 @@
 
 namespace shadowbench::analysis {
 
-/// What a curve runs over: the kernel's width in texels, or the number of lights.
-enum class CurveAxis { kWidth, kLights };
-
-/// The cost of a frame at one place of the axis: of width as in the scope's costs, of lights in milliseconds.
+/// The cost of a frame for a kernel of one width.
 struct CurvePoint {
-  double at = 0.0;
+  double sigma_texels = 0.0;
   std::array<Estimate, 2> costs;  ///< kMovingCost and kStaticCost
 };
 
-/// One filter over the axis, all else being equal.
+/// One filter over the kernel's width, all else being equal.
 struct CostCurve {
   std::string filter;
   std::string label;               ///< with the parameters that tell it from the filter's other curves
@@ -31,23 +28,16 @@ struct CostChart {
   std::string scope_id;
   std::string title;  ///< "cubes · view main · 480 × 270 · map 512"
   int map_size = 0;
-  CurveAxis axis = CurveAxis::kWidth;
-  std::vector<Measure> costs;  ///< those of its scope: what the curves over the width are in
+  std::vector<Measure> costs;  ///< of its scope
   std::vector<CostCurve> curves;
 
-  /// Lists where its curves were measured, ascending.
-  std::vector<double> places() const;
+  /// Lists the widths of its curves, ascending.
+  std::vector<double> widths() const;
 };
 
 /// Sorts cells into charts over the width, whose curves are those of list_width_series(). Charts in which no filter has
 /// several widths are left out.
 std::vector<CostChart> make_width_charts(const std::vector<records::CellRecord>& cells,
-                                         const std::vector<TradeScope>& scopes);
-
-/// Sorts the cells whose frames under several lights were timed into charts. Times are per-round ratios to the chart's
-/// reference under as many lights, times its median, with the ratio's 95 % interval; where the run does not hold the
-/// reference, medians and quartiles.
-std::vector<CostChart> make_light_charts(const std::vector<records::CellRecord>& cells,
                                          const std::vector<TradeScope>& scopes);
 
 /// What a filter got and paid with one map, in a frame that draws the map.

@@ -6,7 +6,6 @@
 
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/cell_group.h"
-#include "report/analysis/trade_measures.h"
 #include "report/records/format.h"
 
 namespace shadowbench::analysis {
@@ -36,24 +35,6 @@ std::vector<double> list_least_differences(const std::vector<records::CellRecord
 }
 
 }  // namespace
-
-std::optional<Estimate> find_difference(const std::vector<records::CellRecord>& cells, const CellChoice& a,
-                                        const CellChoice& b) {
-  std::vector<Estimate> of_a, of_b;
-  for (const CellGroup& group : group_cells(cells)) {
-    const auto find = [&](const CellChoice& choose) {
-      return std::ranges::find_if(group.cells,
-                                  [&](const records::CellRecord& cell) { return cell.error.rmse && choose(cell); });
-    };
-    const auto first = find(a), second = find(b);
-    if (first == group.cells.end() || second == group.cells.end()) continue;
-    of_a.push_back(estimate_rmse(*first));
-    of_b.push_back(estimate_rmse(*second));
-  }
-  if (of_a.empty()) return std::nullopt;
-  const Measure& rmse = list_error_measures().front();
-  return subtract(rmse.combine(of_a), rmse.combine(of_b));
-}
 
 std::string describe_power(const std::vector<records::CellRecord>& cells) {
   std::vector<double> differences = list_least_differences(cells);

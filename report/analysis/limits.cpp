@@ -13,17 +13,6 @@ namespace {
 
 constexpr const char* kMaxMs = "--max-ms";
 
-const LimitSpec& find_spec(const std::string& field) {
-  return *std::ranges::find(limit_table(), field, &LimitSpec::field);
-}
-
-void add(records::Quartiles& sum, const records::Quartiles& pass) {
-  sum.median += pass.median;
-  sum.q1 += pass.q1;
-  sum.q3 += pass.q3;
-  sum.n = std::min(sum.n, pass.n);
-}
-
 std::optional<double> read_estimate(const records::CellRecord& cell, const std::string& gpu, LightMotion light) {
   if (!cell.gpu) return std::nullopt;
   const auto found = cell.gpu->find(gpu);
@@ -31,16 +20,12 @@ std::optional<double> read_estimate(const records::CellRecord& cell, const std::
   return records::frame_ms(*found->second.estimate, light == LightMotion::kMoving);
 }
 
-const std::optional<records::OwnTime>& own_time(const records::CellRecord& cell, LightMotion light) {
-  return light == LightMotion::kStatic ? cell.time_ms.static_light : cell.time_ms.moving;
-}
-
 }  // namespace
 
 std::optional<double> LimitSpec::read(const records::CellRecord& cell, LightMotion light) const {
   if (metric) return metric->read(cell);
   if (!gpu.empty()) return read_estimate(cell, gpu, light);
-  const auto time = frame_time(cell, light);
+  const auto& time = frame_time(cell, light);
   return time ? std::optional(time->median) : std::nullopt;
 }
 
@@ -59,11 +44,15 @@ std::span<const LimitSpec> limit_table() {
   return table;
 }
 
+const LimitSpec& limit_of(std::string_view field) {
+  return *std::ranges::find(limit_table(), field, &LimitSpec::field);
+}
+
 const LimitSpec& cost_spec(const CostKind& cost) {
   switch (cost.kind) {
-    case CostKind::kTime: return find_spec("time_ms");
-    case CostKind::kBytes: return find_spec("cost.map_bytes");
-    case CostKind::kFetches: return find_spec("cost.fetches");
+    case CostKind::kTime: return limit_of("time_ms");
+    case CostKind::kBytes: return limit_of("cost.map_bytes");
+    case CostKind::kFetches: return limit_of("cost.fetches");
     case CostKind::kGpu: break;
   }
   static std::map<std::string, LimitSpec> specs;
@@ -73,27 +62,8 @@ const LimitSpec& cost_spec(const CostKind& cost) {
       .first->second;
 }
 
-std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, LightMotion light) {
-  if (const auto& own = own_time(cell, light)) return *own;
-  const records::TimeRecord& time = cell.time_ms;
-  if (!time.lookup) return std::nullopt;
-  records::Quartiles sum = *time.lookup;
-  if (light == LightMotion::kStatic) return sum;
-  // A filter that looks up the depth map itself has no prefilter to time.
-  const bool prefilters = time.prefilter || cell.cost.prefilter_texels.value_or(0) > 0;
-  if (!time.map || (prefilters && !time.prefilter)) return std::nullopt;
-  add(sum, *time.map);
-  if (prefilters) add(sum, *time.prefilter);
-  return sum;
-}
-
-std::optional<records::Interval> frame_interval(const records::CellRecord& cell, LightMotion light) {
-  if (const auto& own = own_time(cell, light)) return own->ci95;
-  const auto time = frame_time(cell, light);
-  const auto& ratio = frame_ratio(cell, light);
-  if (!time || !ratio || !(ratio->median > 0.0)) return std::nullopt;
-  const double scale = time->median / ratio->median;
-  return records::Interval{scale * ratio->ci95.low, scale * ratio->ci95.high};
+const std::optional<records::OwnTime>& frame_time(const records::CellRecord& cell, LightMotion light) {
+  return light == LightMotion::kStatic ? cell.time_ms.static_light : cell.time_ms.moving;
 }
 
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light) {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "reference/metrics/metric_table.h"
 #include "report/records/records.h"
@@ -42,17 +43,14 @@ struct LimitSpec {
 /// Lists everything that may be limited: the metrics of the table that have an option, and the time of a frame.
 std::span<const LimitSpec> limit_table();
 
+/// The row of a field. Requires that there is one.
+const LimitSpec& limit_of(std::string_view field);
+
 /// What a cost is read by, and limited: of a frame, by --max-ms.
 const LimitSpec& cost_spec(const CostKind& cost);
 
-/// Returns what a filter costs in one frame, without what every lookup pays. For cells of runs that did not time empty
-/// lookups, the sums of the passes' medians and quartiles, which makes the quartiles of several passes wider than those
-/// of their sum. Nothing where a pass that is paid was not timed.
-std::optional<records::Quartiles> frame_time(const records::CellRecord& cell, LightMotion light);
-
-/// Returns the 95 % interval of that time's median; for cells of runs that did not time empty lookups, the time scaled
-/// by the interval of its ratio to `none`. Nothing where there is none.
-std::optional<records::Interval> frame_interval(const records::CellRecord& cell, LightMotion light);
+/// What a filter costs in one frame, without what every lookup pays. Nothing where a pass that is paid was not timed.
+const std::optional<records::OwnTime>& frame_time(const records::CellRecord& cell, LightMotion light);
 
 /// Returns the ratio to `none` of what one frame takes, what every lookup pays included.
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light);

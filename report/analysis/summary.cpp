@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "report/analysis/repeat.h"
 #include "report/records/format.h"
 
 namespace shadowbench::analysis {
@@ -32,21 +31,16 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 }  // namespace
 
 Facts list_run_facts(const records::RunRecord& run) {
-  Facts facts = {{"experiment", describe_experiment(run.experiment)},
-                 {"command", fmt::format("{}", fmt::join(run.command, " "))},
-                 {"commit", run.commit},
-                 {"seed", fmt::format("{}", run.seed)},
-                 {"times", records::describe_clock(run.gl)},
-                 {"GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version)},
-                 {"machine", fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
-                                         records::format_number(run.machine.load_at_start))},
-                 {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
-                 {"work", describe_work(run.work)}};
-  if (run.repeat.of.value_or(0) > 0) {
-    facts.emplace_back("repeat", fmt::format("{} those of the run that this one replaced ({} cells)",
-                                             describe_overlap(run.repeat), run.repeat.cells.value_or(0)));
-  }
-  return facts;
+  return {{"experiment", describe_experiment(run.experiment)},
+          {"command", fmt::format("{}", fmt::join(run.command, " "))},
+          {"commit", run.commit},
+          {"seed", fmt::format("{}", run.seed)},
+          {"times", records::describe_clock(run.gl)},
+          {"GL", fmt::format("{} · {} · {}", run.gl.backend, run.gl.renderer, run.gl.version)},
+          {"machine", fmt::format("{} · {} cores · load {} at the start", run.machine.cpu, run.machine.cores,
+                                  records::format_number(run.machine.load_at_start))},
+          {"system", fmt::format("{} · {}", run.machine.os, run.machine.compiler)},
+          {"work", describe_work(run.work)}};
 }
 
 std::string warn_of_mixed_machines(const std::vector<records::CellRecord>& cells) {

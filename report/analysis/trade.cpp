@@ -9,7 +9,7 @@
 #include "filters/kernel_width.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/configuration.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "report/files/file_name.h"
 #include "report/records/cell_key.h"
 #include "report/records/cell_names.h"

@@ -33,14 +33,9 @@ Measured read_metric(const records::CellRecord& cell, const metrics::Metric& met
 Measured read_frame(const records::CellRecord& cell, const Measure& cost) {
   const auto value = cost_spec(*cost.cost).read(cell, cost.light);
   if (!value) return miss(cell, cost.field());
-  Estimate estimate = exact(*value);
-  const auto set = [&](double low, double high) { estimate = {*value, low, high}; };
-  if (cost.is(CostKind::kTime)) {
-    const auto time = frame_time(cell, cost.light);
-    const auto interval = frame_interval(cell, cost.light);
-    interval ? set(interval->low, interval->high) : set(time->q1, time->q3);
-  }
-  return {estimate, {}};
+  if (!cost.is(CostKind::kTime)) return {exact(*value), {}};
+  const records::Interval& interval = frame_time(cell, cost.light)->ci95;
+  return {Estimate{*value, interval.low, interval.high}, {}};
 }
 
 Estimate worst_of(const std::vector<Estimate>& estimates) {
@@ -225,13 +220,17 @@ Measured read_error(const records::CellRecord& cell, const Measure& measure) {
   return error;
 }
 
-Measured read_cost(const records::CellRecord& cell, const Measure& cost) {
-  return cost.metric ? read_metric(cell, *cost.metric) : read_frame(cell, cost);
+std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells) {
+  std::vector<Estimate> estimates;
+  for (const records::CellRecord* cell : cells) {
+    if (!cell->error.rmse) return std::nullopt;
+    estimates.push_back(estimate_rmse(*cell));
+  }
+  return estimates.empty() ? std::nullopt : std::optional(root_mean_square(estimates));
 }
 
-bool is_reference(const records::CellRecord& cell) {
-  const auto& ratio = cell.ratio_to_none.lookup;
-  return ratio && ratio->median == 1.0 && ratio->ci95.low == 1.0 && ratio->ci95.high == 1.0;
+Measured read_cost(const records::CellRecord& cell, const Measure& cost) {
+  return cost.metric ? read_metric(cell, *cost.metric) : read_frame(cell, cost);
 }
 
 }  // namespace shadowbench::analysis

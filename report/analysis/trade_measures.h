@@ -79,11 +79,11 @@ struct Measured {
 /// RMSE to the area truth: its 95 % interval; see find_rmse_reach(). The others have no interval in the record.
 Measured read_error(const records::CellRecord& cell, const Measure& measure);
 
-/// Reads a cost from a cell; `measure` is of list_cost_measures(). Times: frame_time() with
-/// frame_interval(), or where that is missing with the quartiles.
-Measured read_cost(const records::CellRecord& cell, const Measure& measure);
+/// The RMSE over cells of several places: the root of the mean square. Nothing where a cell has none, or there is none.
+std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells);
 
-/// Whether a cell is the one that ratios refer to: its own ratio is exactly 1 [1, 1].
-bool is_reference(const records::CellRecord& cell);
+/// Reads a cost from a cell; `measure` is of list_cost_measures(). Times: frame_time(), with
+/// its interval.
+Measured read_cost(const records::CellRecord& cell, const Measure& measure);
 
 }  // namespace shadowbench::analysis

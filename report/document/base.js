@@ -18,13 +18,14 @@ const addSelect = (parent, text, options, properties, onPick) => {
 const addButton = (parent, text, onclick, title = "") =>
   element(parent, "button", { type: "button", onclick, title }, text);
 
-// A number as people read it: three digits, whole numbers in full, shares in percent, bytes in powers of 1024.
+// Three digits, and those before the point in full.
+const shorten = (value) => (Math.abs(value) >= 99.95 ? Math.round(value) : Number(value.toPrecision(3)));
+// A number as people read it: whole numbers with their thousands apart, shares in percent, bytes in powers of 1024.
 const format = (value, unit = "") => {
   if (value === null) return "\u2013";
-  if (unit === "share") return `${Number((100 * value).toPrecision(3))} %`;
+  if (unit === "share") return `${shorten(100 * value)} %`;
   const step = unit === "bytes" && value >= 1024 ? Math.min(3, Math.floor(Math.log2(value) / 10)) : 0;
-  const short = Number((value / 1024 ** step).toPrecision(3));
-  const text = step === 0 && Number.isInteger(value) ? value.toLocaleString("en") : String(short);
+  const text = step === 0 && Number.isInteger(value) ? value.toLocaleString("en") : `${shorten(value / 1024 ** step)}`;
   return unit === "bytes" ? `${text} ${["B", "KiB", "MiB", "GiB"][step]}` : text;
 };
 

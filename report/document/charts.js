@@ -27,7 +27,7 @@ const savePng = (chart, hidden) => {
 };
 
 const listLines = (chart, { point, series }) => {
-  const say = (axis, [value]) => `${axis.name}: ${Number(value.toPrecision(4))}`;
+  const say = (axis, [value]) => `${axis.name}: ${format(value)}`;
   if (point.details.length > 0) return point.details;
   return [series.title, say(chart.x, point.x), say(chart.y, point.y)].filter(Boolean);
 };

@@ -84,20 +84,23 @@ const subtract = (left, right) => {
   return left.map((value, i) => value - right[i]);
 };
 
-// Finds what all but one of 200 magnitudes over the receivers do not exceed, from a count in small steps.
+// The scale of error images, as the program's figures have it: what 95 % of the magnitudes over the receivers do not
+// exceed, of those that anybody sees, rounded up to 1, 2 or 5 times a power of 10. It counts in small steps.
 const findScale = (planes, mask, least) => {
   const counts = new Uint32Array(4096);
   const visit = (look) => {
     for (const plane of planes)
-      plane.forEach((value, i) => (!mask || mask[i]) && Number.isFinite(value) && look(Math.abs(value)));
+      plane.forEach((value, i) => (!mask || mask[i]) && Math.abs(value) >= 0.1 * least && look(Math.abs(value)));
   };
   let largest = 0;
-  visit((size) => (largest = Math.max(largest, size)));
-  visit((size) => ++counts[Math.floor((size / (largest || 1)) * 4095)]);
+  visit((size) => Number.isFinite(size) && (largest = Math.max(largest, size)));
+  visit((size) => Number.isFinite(size) && ++counts[Math.floor((size / largest) * 4095)]);
   const total = counts.reduce((sum, count) => sum + count, 0);
   let step = 0;
-  for (let seen = counts[0]; seen < 0.995 * total; seen += counts[step]) ++step;
-  return Number(Math.max(least, ((step + 1) / 4096) * largest).toPrecision(2));
+  for (let seen = counts[0]; seen < 0.95 * total; seen += counts[step]) ++step;
+  const most = Math.max(least, ((step + 1) / 4096) * largest);
+  const power = 10 ** Math.floor(Math.log10(most));
+  return [1, 2, 5, 10].map((factor) => factor * power).find((end) => most <= end * (1 + 1e-6));
 };
 
 // The ends and the middle of the first are those of the heat maps that the program draws.

@@ -11,7 +11,7 @@
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
 #include "report/document/chart.h"
@@ -157,7 +157,7 @@ json make_configuration(const analysis::Configuration& configuration,
                {"request", write_request(cell)},
                {"map", cell.map_size},
                {"size", {cell.width, cell.height}},
-               {"teaching", cell.teaching.value_or(false)},
+               {"teaching", cell.teaching},
                {"surroundings", configuration.surroundings},
                {"color", style.color},
                {"bias", describe_biases(configuration, biases)},

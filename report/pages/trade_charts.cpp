@@ -200,59 +200,43 @@ document::ChartAxis choose_y_axis(const std::vector<ChartSeries>& series) {
   return document::choose_log_axis(values, ends);
 }
 
-/// Cost over the kernel's width or over lights, of one state of the light: kMovingCost or kStaticCost.
-class CurveChart {
+/// Cost over the kernel's width, of one state of the light: kMovingCost or kStaticCost.
+class WidthChart {
  public:
-  CurveChart(const analysis::CostChart& chart, std::size_t light, const records::GlRecord& gl)
+  WidthChart(const analysis::CostChart& chart, std::size_t light, const records::GlRecord& gl)
       : chart_(chart), light_(light), gl_(gl) {}
 
   document::Chart make(const std::vector<std::string>& filters) const {
     document::Chart made;
     const char* state = light_ == analysis::kStaticCost ? "static" : "moving";
-    made.id = fmt::format("{}.map{}.{}.{}", chart_.scope_id, chart_.map_size, is_lights_ ? "lights" : "width", state);
+    made.id = fmt::format("{}.map{}.width.{}", chart_.scope_id, chart_.map_size, state);
     made.title = chart_.title;
-    made.x_name = is_lights_ ? "lights, each with a map of its own" : "kernel width (standard deviation), texels";
-    made.y_name = is_lights_ ? fmt::format("time of a frame, ms: {}", records::describe_clock(gl_))
-                             : analysis::name_axis(cost_, gl_);
+    made.x_name = "kernel width (standard deviation), texels";
+    made.y_name = analysis::name_axis(cost_, gl_);
     for (const analysis::CostCurve& curve : chart_.curves)
       made.series.push_back(make_series(curve, style_among(filters, curve.filter)));
-    made.x = make_x_axis();
+    made.x = document::choose_axis(chart_.widths(), {}, document::TickKind::kNumber);
     made.y = choose_y_axis(made.series);
-    if (!is_lights_) made.notes = {"solid: prefiltered", "dashed: read at every lookup"};
+    made.notes = {"solid: prefiltered", "dashed: read at every lookup"};
     return made;
   }
 
  private:
-  document::ChartAxis make_x_axis() const {
-    const std::vector<double> places = chart_.places();
-    if (!is_lights_) return document::choose_axis(places, {}, document::TickKind::kNumber);
-    document::ChartAxis axis{true, places.front() / 1.12, places.back() * 1.12, {}};
-    for (const double count : places) axis.ticks.push_back({count, fmt::format("{}", count)});
-    return axis;
-  }
-
-  std::string say_place(double at) const {
-    return is_lights_ ? fmt::format("lights: {}", at) : fmt::format("kernel {} texels", records::format_number(at));
-  }
-
-  std::string say_cost(const analysis::Estimate& cost) const {
-    return is_lights_ ? fmt::format("time of a frame: {} ms", analysis::format_estimate(cost_, cost))
-                      : say_value(cost_, cost, gl_);
-  }
-
   ChartSeries make_series(const analysis::CostCurve& curve, const document::ChartStyle& style) const {
     ChartSeries series = start_series(curve.label, style);
-    series.line = is_lights_ || curve.prefiltered ? document::LineStyle::kSolid : document::LineStyle::kDashed;
+    series.line = curve.prefiltered ? document::LineStyle::kSolid : document::LineStyle::kDashed;
     for (const analysis::CurvePoint& p : curve.points)
-      series.points.push_back(
-          {exactly(p.at), p.costs[light_], {}, {curve.label, say_place(p.at), say_cost(p.costs[light_])}});
+      series.points.push_back({exactly(p.sigma_texels),
+                               p.costs[light_],
+                               {},
+                               {curve.label, fmt::format("kernel {} texels", records::format_number(p.sigma_texels)),
+                                say_value(cost_, p.costs[light_], gl_)}});
     return series;
   }
 
   const analysis::CostChart& chart_;
   std::size_t light_;
   const records::GlRecord& gl_;
-  const bool is_lights_ = chart_.axis == analysis::CurveAxis::kLights;
   const analysis::Measure& cost_ = chart_.costs[light_];
 };
 
@@ -305,14 +289,14 @@ document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>&
   return choice;
 }
 
-document::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
+document::ChartChoice make_width_choice(const std::vector<analysis::CostChart>& charts,
                                         const std::vector<std::string>& filters, const records::GlRecord& gl) {
   document::ChartChoice choice{
-      id, {{"where", {}}, {"light", {"static: lookup", "moving: map, prefilter, lookup"}}}, {}};
+      "width", {{"where", {}}, {"light", {"static: lookup", "moving: map, prefilter, lookup"}}}, {}};
   for (const analysis::CostChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
     for (const std::size_t light : {analysis::kStaticCost, analysis::kMovingCost})
-      choice.charts.push_back(CurveChart(chart, light, gl).make(filters));
+      choice.charts.push_back(WidthChart(chart, light, gl).make(filters));
   }
   return choice;
 }

@@ -19,8 +19,8 @@ inline constexpr std::size_t kMostCellsInDetail = 2000;
 document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
                                         const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
 
-/// Draws a frame's cost over the kernel width or over lights, for every chart and state of the light.
-document::ChartChoice make_curve_choice(const std::string& id, const std::vector<analysis::CostChart>& charts,
+/// Draws a frame's cost over the kernel width, for every chart and state of the light.
+document::ChartChoice make_width_choice(const std::vector<analysis::CostChart>& charts,
                                         const std::vector<std::string>& filters, const records::GlRecord& gl);
 
 /// Draws RMSE over cost for the maps of every family, a curve for each fit. `cost` is make_map_measure().

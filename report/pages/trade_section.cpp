@@ -21,11 +21,6 @@ constexpr const char* kFrontsNote =
 constexpr const char* kLargeNote =
     "The run has more than {} cells: beaten ones, and the lines from narrow to wide kernels, are left out of these "
     "charts. fronts.csv has them.";
-constexpr const char* kLightsNote =
-    "Light 0 is the scene's; the others are copies, turned about the vertical in equal steps, each with a frustum and "
-    "maps of its own. Static: maps and prefilters are kept, and each light is looked up; moving: every frame draws all "
-    "of them. Shading is left out. Whiskers: the 95 % interval of the per-round ratio to the reference under as many "
-    "lights, times its median (quartiles where the run does not hold the reference).";
 constexpr const char* kMapsNote =
     "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
     "stand still; every other fit follows a camera, and is drawn anew whenever it moves.";
@@ -79,9 +74,8 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
   Trade trade;
   trade.scopes = analysis::make_trade_scopes(cells);
   trade.has_fronts = analysis::has_trade(trade.scopes);
-  trade.light_charts = analysis::make_light_charts(cells, trade.scopes);
   trade.map_families = analysis::list_map_families(cells);
-  if (!trade.has_fronts && trade.light_charts.empty() && trade.map_families.empty()) return std::nullopt;
+  if (!trade.has_fronts && trade.map_families.empty()) return std::nullopt;
   if (trade.has_fronts) trade.width_charts = analysis::make_width_charts(cells, trade.scopes);
   return trade;
 }
@@ -91,10 +85,8 @@ document::Section make_trade_section(const records::RunRecord& run, const std::v
   document::Section section{"trade", "The trade", {}};
   const std::vector<std::string> filters = analysis::list_filters(cells);
   if (trade.has_fronts) add_fronts(section.blocks, run, cells, trade);
-  add_charts(section.blocks, "Cost over the kernel width",
-             make_curve_choice("width", trade.width_charts, filters, run.gl), nullptr);
-  add_charts(section.blocks, "Cost over the number of lights",
-             make_curve_choice("lights", trade.light_charts, filters, run.gl), kLightsNote);
+  add_charts(section.blocks, "Cost over the kernel width", make_width_choice(trade.width_charts, filters, run.gl),
+             nullptr);
   add_charts(section.blocks, "Error and cost of maps of several fits",
              make_map_choice(trade.map_families, analysis::make_map_measure(cells), run.gl), kMapsNote);
   return section;

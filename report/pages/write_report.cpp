@@ -24,10 +24,10 @@ void add_warnings(records::RunRecord& run, const std::vector<records::CellRecord
       if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end())
         run.warnings.push_back(warning);
   }
-  // Shards that were merged have warned of their own machines.
-  std::erase_if(run.warnings, [](const std::string& warning) { return warning.starts_with(analysis::kMixedMachines); });
-  if (analysis::mixes_machines(cells))
-    run.warnings.insert(run.warnings.begin(), analysis::warn_of_mixed_machines(cells));
+  if (!analysis::mixes_machines(cells)) return;
+  const std::string warning = analysis::warn_of_mixed_machines(cells);
+  std::erase(run.warnings, warning);
+  run.warnings.insert(run.warnings.begin(), warning);
 }
 
 }  // namespace

@@ -1,23 +1,31 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
-#include <string_view>
 
 #include "report/records/records.h"
 
 namespace shadowbench::records {
 
-/// The beginning of the reason of a value that has nothing to be measured on, since its fault cannot occur there: that
-/// is not a value that nobody measured. Readers of results.json find it in `absent`.
-inline constexpr std::string_view kNothingToSee = "nothing to see: ";
+/// Why a value is absent.
+struct Absence {
+  std::string why;
+  bool nothing_to_see = false;  ///< its fault cannot occur in the view: that is not a value that nobody measured
+};
 
-/// Makes such a reason; `why` says what there is too little of.
-inline std::string explain_nothing_to_see(std::string_view why) {
-  return std::string(kNothingToSee) + std::string(why);
+/// Says why a field, or a group of them, is absent.
+inline void explain(CellRecord& cell, const std::string& field, const Absence& absence) {
+  cell.absent[field] = absence.why;
+  if (absence.nothing_to_see) cell.nothing_to_see.push_back(field);
 }
 
-/// Whether a reason of `absent` begins like that.
-inline bool is_nothing_to_see(std::string_view reason) { return reason.starts_with(kNothingToSee); }
+/// Whether the fault that a field measures cannot occur in the cell's view.
+inline bool has_nothing_to_see(const CellRecord& cell, std::string field) {
+  for (;; field.resize(field.rfind('.'))) {
+    if (cell.absent.contains(field)) return std::ranges::count(cell.nothing_to_see, field) > 0;
+    if (field.find('.') == std::string::npos) return false;
+  }
+}
 
 /// Why a cell lacks a value: what `absent` holds for the field, for a group that it is in, or for a part of it;
 /// "not measured" where it holds nothing.

@@ -27,10 +27,7 @@ Fit parse_fit(std::string text) {
   const std::size_t colon = text.find(':');
   fit.kind = text.substr(0, colon);
   if (colon == std::string::npos) return fit;
-  for (const std::string& option : split_list(text.substr(colon + 1), ",")) {
-    const std::size_t equals = option.find('=');
-    if (equals != std::string::npos) fit.options[option.substr(0, equals)] = option.substr(equals + 1);
-  }
+  for (auto& [option, value] : split_assignments(text.substr(colon + 1), "fit")) fit.options[option] = value;
   return fit;
 }
 

@@ -22,7 +22,6 @@ struct About {
   bool filled = false;    ///< a text, or each of a list, is not empty; what may be null is filled where it is not
   bool is_path = false;   ///< in the report's folder, and does not leave it
   bool may_lack = false;  ///< what is not there is not written, and is no gap that needs a reason
-  bool later = false;     ///< files of before lack it, or the group: it is read as null or empty there
   std::string_view column = {};       ///< what its column in CSV holds; empty: it has none
   std::string_view column_name = {};  ///< empty: it follows from the path
   std::string_view unit = {};         ///< of a metric; empty: it is none
@@ -45,9 +44,7 @@ inline std::optional<std::string> null_if_empty(const std::string& text) {
 void visit_group(const std::string& name, auto& record, auto&& visit, const About& about = {}) {
   visit(name, kGroup, about);
   visit_fields(record, [&](const std::string& member, auto& value, const About& field = {}) {
-    About inner = field;
-    inner.later |= about.later;
-    visit(name + "." + member, value, inner);
+    visit(name + "." + member, value, field);
   });
 }
 

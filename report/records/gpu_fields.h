@@ -56,8 +56,8 @@ void visit_fields(Is<GpuRecord> auto& gpu, auto&& visit) {
   visit("frame_ms", kGroup,
         {.text = "of a frame of 1920x1080, each pixel a lookup, with one map; moving: and its prefilter. Drawing the "
                  "map, and what every lookup pays, is left out"});
-  visit("frame_ms.moving", moving, {.least = 0, .later = true});
-  visit("frame_ms.static", still, {.least = 0, .later = true});
+  visit("frame_ms.moving", moving, {.least = 0});
+  visit("frame_ms.static", still, {.least = 0});
   visit("parts_us", gpu.estimate,
         {.text = "lookup is of a million receivers, as dense as in that frame, and the largest of arithmetic, sampling "
                  "and memory, which is null where the filter's reads are not known; prefilter is of one map"});

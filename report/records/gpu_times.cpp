@@ -138,7 +138,6 @@ void apply_gpu_times(Results& results, const GpuTimes& times) {
   results.run.gl.software = times.software;
   for (CellRecord& cell : results.cells) {
     cell.ratio_to_none = {};
-    cell.lights = std::nullopt;
     cell.machine = MachineKind{"", 0, times.renderer, times.software, TimerKind::kWallClock};
     const auto found = times.cells.find(cell.key);
     if (found == times.cells.end()) {

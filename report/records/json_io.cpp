@@ -70,7 +70,7 @@ struct FieldReader {
   void operator()(const std::string& path, T& value, const About& about = {}) const {
     const auto pointer = make_pointer(path);
     const bool is_there = root.is_object() && root.contains(pointer);
-    if (!is_there && about.later && root.is_object()) return;
+    if (!is_there && about.may_lack && root.is_object()) return;
     if (!is_there) fail(fmt::format("the field '{}' is missing", path));
     const json& written = root.at(pointer);
     try {
@@ -86,6 +86,19 @@ struct FieldReader {
 
   [[noreturn]] void fail(const std::string& fault) const {
     throw Error(ErrorKind::kInput, fault + "; delete this file and run again", where);
+  }
+};
+
+// Lists the files that visited fields name.
+struct PathLister {
+  std::vector<std::string>& files;
+
+  void operator()(const std::string&, const auto&, const About& = {}) const {}
+  void operator()(const std::string&, const std::optional<std::string>& file, const About& about = {}) const {
+    if (file && about.is_path) files.push_back(*file);
+  }
+  void operator()(const std::string&, const std::optional<AccumulationRecord>& record, const About& = {}) const {
+    if (record) visit_fields(*record, *this);
   }
 };
 
@@ -244,6 +257,12 @@ CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
   const json root = parse_file(file);
   check_version(root, file.string());
   return cell_from_json(root.value("cell", json()), file.string());
+}
+
+std::vector<std::string> list_files(const CellRecord& cell) {
+  std::vector<std::string> files;
+  visit_fields(cell, PathLister{files});
+  return files;
 }
 
 std::vector<CellRecord> read_cells(const std::filesystem::path& dir, const std::vector<std::string>& keys) {

@@ -37,6 +37,9 @@ void write_cell(const std::filesystem::path& dir, const CellRecord& cell);
 /// Throws Error(kInput) where the file is missing, cut off or of another schema version.
 CellRecord read_cell(const std::filesystem::path& dir, const std::string& key);
 
+/// Lists the files of the report folder that a cell names.
+std::vector<std::string> list_files(const CellRecord& cell);
+
 /// Reads several, in this order. Throws likewise.
 std::vector<CellRecord> read_cells(const std::filesystem::path& dir, const std::vector<std::string>& keys);
 

@@ -110,7 +110,7 @@ struct MemberReader {
   void operator()(const std::string&, const Group&, const About& = {}) const {}
   template <class T>
   void operator()(const std::string& path, T& value, const About& about = {}) const {
-    if (about.later && !root.contains(make_pointer(path))) return;
+    if (about.may_lack && !root.contains(make_pointer(path))) return;
     const std::size_t dot = path.find('.');
     if (dot == path.npos)
       value = read_value<T>(root.at(path));

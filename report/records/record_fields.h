@@ -37,16 +37,6 @@ void visit_fields(Is<MachineKind> auto& kind, auto&& visit) {
   visit("timer", kind.timer);
 }
 
-void visit_fields(Is<LightCountRecord> auto& lights, auto&& visit) {
-  visit("count", lights.count, {.least = 1, .most = 16});
-  visit("static_ms", lights.static_ms);
-  visit("moving_ms", lights.moving_ms);
-  visit("ratio_to_none", kGroup, {.text = "per-round ratios, under as many lights"});
-  visit("ratio_to_none.static", lights.static_ratio);
-  visit("ratio_to_none.moving", lights.moving_ratio);
-  visit("maps_bytes", lights.maps_bytes, {.text = "of the maps that the lookups read"});
-}
-
 void visit_fields(Is<CascadeRecord> auto& cascade, auto&& visit) {
   visit("end_m", cascade.end_m, {.text = "depth along the camera's axis at which it ends"});
   visit("texels_per_m", cascade.texels_per_m, kPositive);
@@ -100,11 +90,10 @@ void visit_fields(Is<KernelRecord> auto& kernel, auto&& visit) {
                "compared with each other alone; null above the widest class",
        .one_of = "sharp,medium,soft,light",
        .column = "the class of kernels that are about as wide, with which alone it is compared"});
-  constexpr About kByLight{.text = "the parameter that the light's width set", .may_lack = true, .later = true};
+  constexpr About kByLight{.text = "the parameter that the light's width set", .may_lack = true};
   constexpr const char* kAsked = "the kernel's standard deviation that the scene's light asks for, texels";
   visit("by_light", kernel.by_light, kByLight);
-  visit("light_texels", kernel.light_texels,
-        {.text = kAsked, .least = 0, .may_lack = true, .later = true, .column = kAsked});
+  visit("light_texels", kernel.light_texels, {.text = kAsked, .least = 0, .may_lack = true, .column = kAsked});
 }
 
 void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {
@@ -113,15 +102,12 @@ void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {
   visit("map", time.map, {.column = "drawing the depth map"});
   visit("empty", time.empty,
         {.text = "a lookup that reads what the filter does of its receivers, and nothing of the map",
-         .later = true,
          .column = "lookup that reads nothing of the map"});
   visit("static", time.static_light,
         {.text = "the filter's own: the lookup less a lookup that reads nothing, per round",
-         .later = true,
          .column = "the filter's own: lookup less that"});
   visit("moving", time.moving,
         {.text = "map, prefilter and the filter's own, per round: what a moving light pays",
-         .later = true,
          .column = "map, prefilter and the filter's own"});
   visit("stopped", time.stopped,
         {.text = "why no more rounds were timed: as many as may be, the ratio's interval is narrow enough, the time is "
@@ -172,16 +158,14 @@ void visit_fields(Is<TileRecord> auto& tile, auto&& visit) {
 
 void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
   constexpr About kPath{.text = "relative to the report folder", .is_path = true};
-  const auto path = [](std::string_view text, bool later = false) {
-    return About{.text = text, .is_path = true, .later = later};
-  };
+  const auto path = [](std::string_view text) { return About{.text = text, .is_path = true}; };
   visit("picture", images.picture, kPath);
   visit("visibility", images.visibility, kPath);
   visit("depth_map", images.depth_map, kPath);
   visit("grid", images.grid, kPath);
   visit("exr", images.exr, kPath);
   visit("parts", images.parts,
-        path("what the names of the cell's parts in `exr` begin with: '<parts>.visibility'", true));
+        {.text = "what the names of the cell's parts in `exr` begin with: '<parts>.visibility'"});
   visit("texel_density", images.texel_density,
         path("map texels per pixel, one per view and map; relative to the report folder"));
   visit("texel_grid", images.texel_grid,
@@ -191,26 +175,23 @@ void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
   visit("stability", images.stability,
         path("where the cell's numbers break, per texel and per pixel; relative to the report folder"));
   visit("values", images.values,
-        path("relative to the report folder: a script with the cell's images as 16-bit numbers, for the page", true));
+        path("relative to the report folder: a script with the cell's images as 16-bit numbers, for the page"));
   visit("truth_picture", images.truth_picture,
-        path("relative to the report folder: the picture shaded with the area truth", true));
+        path("relative to the report folder: the picture shaded with the area truth"));
   visit("truth_values", images.truth_values,
-        path("relative to the report folder: a script with the truth as 16-bit numbers, for the page", true));
-  visit("frames", images.frames, path("relative to the report folder: how the page draws the cell again", true));
-  visit("hardest", images.hardest, {.text = "the tile where the picture's FLIP is largest", .later = true});
+        path("relative to the report folder: a script with the truth as 16-bit numbers, for the page"));
+  visit("frames", images.frames, path("relative to the report folder: how the page draws the cell again"));
+  visit("hardest", images.hardest, {.text = "the tile where the picture's FLIP is largest"});
   // Of the cells that the page shows first.
   visit("supersampled", images.supersampled,
         {.text = "relative to the report folder: the picture with several samples a pixel",
          .is_path = true,
-         .may_lack = true,
-         .later = true});
+         .may_lack = true});
   visit("truth_supersampled", images.truth_supersampled,
         {.text = "relative to the report folder: the truth's picture with as many samples a pixel",
          .is_path = true,
-         .may_lack = true,
-         .later = true});
-  visit("samples", images.samples,
-        {.text = "of each pixel of the supersampled pictures", .may_lack = true, .later = true});
+         .may_lack = true});
+  visit("samples", images.samples, {.text = "of each pixel of the supersampled pictures", .may_lack = true});
 }
 
 /// Visits a cell's metrics, and over what its errors are means.
@@ -226,30 +207,22 @@ void visit_metrics(Is<CellRecord> auto& cell, auto&& visit) {
   for (const metrics::Metric& metric : metrics::metric_table())
     metrics::visit_metric(metric, cell, [&](const std::string& path, auto& value) {
       visit(path, value,
-            {.text = metric.definition,
-             .least = metric.range.min,
-             .most = metric.range.max,
-             .later = true,  // whatever the table gets, reports of before are read
-             .unit = metric.unit});
+            {.text = metric.definition, .least = metric.range.min, .most = metric.range.max, .unit = metric.unit});
     });
   visit("phases", cell.phases,
         {.text = "places of the map's grid, moved by parts of a texel, that the errors of visibility are means over; "
                  "all else is of the first",
          .least = 1,
-         .later = true,
          .column = "places of the map's grid that errors of visibility are means over"});
   visit("error.rmse_ci95", cell.rmse_ci95,
         {.text = "95 % confidence interval of the mean over all places of the map's grid, by Student's t",
-         .later = true,
          .column = "rmse",
          .column_name = "rmse"});
   visit("error.rmse_replicates", cell.rmse_replicates,
         {.text = "means over groups of phases that are independent of each other, the same in every cell: two cells "
-                 "are compared by their differences, group by group",
-         .later = true});
+                 "are compared by their differences, group by group"});
   visit("error.flicker_ci95", cell.flicker_ci95,
         {.text = "95 % confidence interval, by the jackknife over the groups of phases",
-         .later = true,
          .column = "flicker",
          .column_name = "flicker"});
 }
@@ -262,12 +235,9 @@ void visit_settings(Is<CellRecord> auto& cell, auto&& visit) {
   visit("params", cell.params, {.column = "the filter's parameters as JSON"});
   visit("kernel_radius_texels", cell.kernel_radius_texels,
         {.text = "half-width of the filter's kernel, as its parameters make it", .least = 0});
-  visit_group("kernel", cell.kernel, visit,
-              {.text = "how wide the filter's kernel is; null or missing where no model knows it", .later = true});
-  visit(
-      "teaching", cell.teaching,
-      {.text = "the filter shows a mistake, and is not advised; null or missing where that is unknown", .later = true});
-  visit("claims", cell.claims, {.text = "what the filter says of itself, such as contact-hardening", .later = true});
+  visit_group("kernel", cell.kernel, visit, {.text = "how wide the filter's kernel is; null where no model knows it"});
+  visit("teaching", cell.teaching, {.text = "the filter shows a mistake, and is not advised"});
+  visit("claims", cell.claims, {.text = "what the filter says of itself, such as contact-hardening"});
   visit("map_size", cell.map_size,
         {.text = "texels along a side", .least = 1, .column = "shadow map, texels along a side"});
   visit("map_format", cell.map_format,
@@ -302,47 +272,39 @@ void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
   visit("content", cell.content,
         {.text = "names what it was made from beside its settings: program, scene, filter, options"});
   visit("machine", cell.machine,
-        {.text = "the kind of machine that measured it: times of two kinds do not compare; null or missing where that "
+        {.text = "the kind of machine that measured it: times of two kinds do not compare; null where that "
                  "is unknown",
-         .later = true,
-         .column = "what measured the times: those of two kinds of machine do not compare; empty in cells of before"});
-  visit("measured_s", cell.measured_s,
-        {.text = "seconds that measuring it took: its share of what cells did together, without the truth",
-         .least = 0,
-         .later = true});
+         .column = "what measured the times: those of two kinds of machine do not compare"});
+  visit(
+      "measured_s", cell.measured_s,
+      {.text = "seconds that measuring it took: its share of what cells did together, without the truth", .least = 0});
   visit_settings(cell, visit);
   visit("status", cell.status, {.column = "ok, suspect, timeout, crashed or error"});
   visit("message", cell.message,
         {.text = "why status is not ok; empty otherwise", .column = "why the status is not ok"});
   visit("suspect_of", cell.suspect_of,
-        {.text = "what is wrong with the filter of a suspect cell, and what to do", .filled = true, .later = true});
+        {.text = "what is wrong with the filter of a suspect cell, and what to do", .filled = true});
   visit("excused", cell.excused, {.text = "pixels left out: on a tie or a texel's border"});
   visit_group("time_ms", cell.time_ms, visit, {.text = "milliseconds of the clock that gl.timer names"});
   visit_group("ratio_to_none", cell.ratio_to_none, visit,
               {.text = "per-round ratios; static: map and prefilter cached, moving: paid in every frame"});
-  visit("lights", cell.lights,
-        {.text = "frames lit by several suns, each with a map of its own: the scene's light, turned about the vertical "
-                 "by i * 360 / count degrees; null or missing where that was not measured",
-         .least = 1,
-         .later = true});
   visit("cascades", cell.cascades,
         {.text = "of a map of cascades: each with the receivers of which it serves the most, from near to far",
-         .may_lack = true,
-         .later = true});
+         .may_lack = true});
   visit("accumulation", cell.accumulation,
-        {.text = "visibility accumulated over frames; missing where the run has one", .may_lack = true, .later = true});
+        {.text = "visibility accumulated over frames; missing where the run has one", .may_lack = true});
   visit("gpu", cell.gpu,
-        {.text = "what the cell costs on GPUs that were not there, by name; null or missing where none was named",
-         .later = true});
+        {.text = "what the cell costs on GPUs that were not there, by name; null where none was named"});
   visit("external", cell.external,
         {.text = "of a row that another renderer drew: what is said of it, and whether it shows the same view; "
                  "missing for the program's own filters",
          .may_lack = true,
-         .later = true,
          .column = "of a row that another renderer drew: what is said of it, as JSON"});
   visit_group("images", cell.images, visit);
   visit("warnings", cell.warnings, {.text = "what makes this cell's numbers doubtful"});
   visit("absent", cell.absent, {.text = "dotted name of a null field or of a group of them: why it is null"});
+  visit("nothing_to_see", cell.nothing_to_see,
+        {.text = "names of `absent` whose fault cannot occur in the view: that is not a value that nobody measured"});
   visit_metrics(cell, visit);
 }
 
@@ -374,8 +336,7 @@ void visit_fields(Is<WorkRecord> auto& work, auto&& visit) {
         {.text = "seconds from the first cell to the last, the report not included", .least = 0});
   visit("attribution_s", work.attribution_s,
         {.text = "seconds of elapsed_s that taking errors apart took: kernel truths, models; null without attribution",
-         .least = 0,
-         .later = true});
+         .least = 0});
 }
 
 void visit_fields(Is<ExperimentRecord> auto& experiment, auto&& visit) {
@@ -386,16 +347,10 @@ void visit_fields(Is<ExperimentRecord> auto& experiment, auto&& visit) {
   visit("shards", experiment.shards, {.least = 1});
 }
 
-void visit_fields(Is<RepeatRecord> auto& repeat, auto&& visit) {
-  visit("cells", repeat.cells, {.text = "that both runs have"});
-  visit("overlapping", repeat.overlapping, {.text = "ratios to none whose 95 % intervals overlap"});
-  visit("of", repeat.of, {.text = "so many ratios"});
-}
-
 void visit_fields(Is<SceneRecord> auto& scene, auto&& visit) {
   visit("name", scene.name, {.filled = true});
   visit("title", scene.title);
-  visit("view_words", scene.view_words, {.text = "what opens it in the window; empty: not known", .later = true});
+  visit("view_words", scene.view_words, {.text = "what opens it in the window; empty: not known"});
 }
 
 void visit_fields(Is<RunRecord> auto& run, auto&& visit) {
@@ -406,10 +361,8 @@ void visit_fields(Is<RunRecord> auto& run, auto&& visit) {
   visit_group("machine", run.machine, visit);
   visit_group("work", run.work, visit, {.text = "what was done, and the passes that no chosen filter needed"});
   visit_group("experiment", run.experiment, visit, {.text = "which cells of which experiment the run holds"});
-  visit_group("repeat", run.repeat, visit,
-              {.text = "how the times compare with those of the same run that it replaced", .later = true});
   visit("scenes", run.scenes);
-  visit("filter_files", run.filter_files, {.text = "of the user, as they were given; null: not known", .later = true});
+  visit("filter_files", run.filter_files, {.text = "of the user, as they were given; null: not known"});
   visit("warnings", run.warnings);
 }
 

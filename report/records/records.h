@@ -17,7 +17,7 @@ using metrics::ArtefactRecord, metrics::AttributionPart, metrics::AttributionRec
     metrics::TruthRecord;
 
 /// Version of results.json and of the cell files; a reader refuses any other.
-inline constexpr int kSchemaVersion = 3;
+inline constexpr int kSchemaVersion = 4;
 
 /// The spread of `n` repeated measurements.
 struct Quartiles {
@@ -107,17 +107,6 @@ struct RatioRecord {
   std::optional<Ratio> lookup;
   std::optional<Ratio> static_light;  ///< map and prefilter cached: lookup alone is paid
   std::optional<Ratio> moving;        ///< map, prefilter and lookup are paid in every frame
-};
-
-/// What a frame lit by several lights costs, each with a shadow map of its own; milliseconds of the clock that
-/// the run names.
-struct LightCountRecord {
-  int count = 0;        ///< lights: the scene's, turned about the vertical by i * 360 / count degrees
-  Quartiles static_ms;  ///< maps and prefilters cached: a lookup per light
-  Quartiles moving_ms;  ///< a depth map, a prefilter and a lookup per light
-  Ratio static_ratio;   ///< per-round ratios to the filter `none` under as many lights
-  Ratio moving_ratio;
-  std::int64_t maps_bytes = 0;  ///< bytes of the maps that the lookups read
 };
 
 /// What a cascade shows: the receivers of which it serves the most, and how wrong they are.
@@ -268,7 +257,7 @@ struct ExternalRecord {
 struct CellRecord : metrics::MetricValues {
   std::string key;      ///< cell_key() of the settings below
   std::string content;  ///< names what made the cell beside its settings: program, scene, filter, options
-  std::optional<MachineKind> machine;  ///< what measured it; empty in files of before
+  std::optional<MachineKind> machine;  ///< what measured it; empty where nothing did
   std::optional<double> measured_s;  ///< seconds that measuring it took: its share of what cells did together, without
                                      ///< the truth, which others use too
   CellStatus status = CellStatus::kOk;
@@ -280,10 +269,10 @@ struct CellRecord : metrics::MetricValues {
   ParamMap params;
   std::optional<double> kernel_radius_texels;  ///< half-width of the kernel, which follows from `params`
   KernelRecord kernel = {};
-  std::optional<bool> teaching;                    ///< the filter is for teaching: it is not advised
-  std::optional<std::vector<std::string>> claims;  ///< what the filter says of itself, such as "contact-hardening"
-  int map_size = 0;                                ///< texels along a side
-  std::string map_format;                          ///< "d32f", "d16 reversed hashed"
+  bool teaching = false;            ///< the filter is for teaching: it is not advised
+  std::vector<std::string> claims;  ///< what the filter says of itself, such as "contact-hardening"
+  int map_size = 0;                 ///< texels along a side
+  std::string map_format;           ///< "d32f", "d16 reversed hashed"
   std::string fit = "tight";    ///< how the light's frustum is fitted: "sphere", "tight" or "view", perhaps " snapped"
   std::string light = "scene";  ///< where the light stands: as the scene says, or "AZIMUTH,ELEVATION" in degrees
   BiasRecord bias;
@@ -299,14 +288,14 @@ struct CellRecord : metrics::MetricValues {
   std::optional<Interval> flicker_ci95;  ///< of `error.flicker` over the phases
   TimeRecord time_ms;
   RatioRecord ratio_to_none;
-  std::optional<std::vector<LightCountRecord>> lights;  ///< by ascending count
-  std::optional<std::vector<CascadeRecord>> cascades;   ///< from near to far; empty without cascades, or a truth
-  std::optional<AccumulationRecord> accumulation;       ///< over frames
-  std::optional<GpuRecords> gpu;                        ///< what the cell costs on GPUs that were not there
-  std::optional<ExternalRecord> external;               ///< of a row that another renderer drew
+  std::optional<std::vector<CascadeRecord>> cascades;  ///< from near to far; empty without cascades, or a truth
+  std::optional<AccumulationRecord> accumulation;      ///< over frames
+  std::optional<GpuRecords> gpu;                       ///< what the cell costs on GPUs that were not there
+  std::optional<ExternalRecord> external;              ///< of a row that another renderer drew
   ImagesRecord images;
   std::vector<std::string> warnings;  ///< for people: what makes this cell's numbers doubtful
   std::map<std::string, std::string> absent;
+  std::vector<std::string> nothing_to_see;  ///< those of `absent` whose fault cannot occur in the view
 };
 
 /// Whether the cell's filter was drawn to the end, be it suspect or not.
@@ -315,7 +304,7 @@ inline bool is_drawn(const CellRecord& cell) {
 }
 
 /// Whether advice and fronts are about the cell: not where its filter shows a mistake, or another renderer drew it.
-inline bool is_advised(const CellRecord& cell) { return !cell.teaching.value_or(false) && !cell.external; }
+inline bool is_advised(const CellRecord& cell) { return !cell.teaching && !cell.external; }
 
 /// The OpenGL that drew the pictures.
 struct GlRecord {
@@ -352,13 +341,6 @@ struct WorkRecord {
   std::optional<double> attribution_s = std::nullopt;  ///< seconds of `elapsed_s` that the attribution took
 };
 
-/// How the times of a run compare with those of the run of the same settings that it replaced.
-struct RepeatRecord {
-  std::optional<std::int64_t> cells;        ///< cells that both runs have
-  std::optional<std::int64_t> overlapping;  ///< ratios to `none` whose 95 % intervals overlap
-  std::optional<std::int64_t> of;           ///< the number of ratios that both runs have
-};
-
 /// Names a scene for people.
 struct SceneRecord {
   std::string name;
@@ -384,7 +366,6 @@ struct RunRecord {
   MachineRecord machine;
   WorkRecord work;
   ExperimentRecord experiment;
-  RepeatRecord repeat = {};
   std::vector<SceneRecord> scenes;
   std::map<std::string, std::optional<std::string>> filter_files = {};  ///< of the user, by id; empty: not known
   std::vector<std::string> warnings;

@@ -22,10 +22,6 @@ constexpr Definition find_definition() {
   if (std::is_same_v<T, Interval>) return {"interval"};
   if (std::is_same_v<T, Ratio>) return {"ratio"};
   if (std::is_same_v<T, OwnTime>) return {"own_time", "may be below 0 where a difference is too small for this clock"};
-  if (std::is_same_v<T, LightCountRecord>)
-    return {"light_count",
-            "static: maps and prefilters cached, a lookup per light; moving: a depth map, a prefilter and a lookup per "
-            "light"};
   if (std::is_same_v<T, CascadeRecord>) return {"cascade"};
   if (std::is_same_v<T, GpuRecord>)
     return {"gpu", "facts of the compiler, and an estimate made of them; or why there are none"};
@@ -142,7 +138,7 @@ class SchemaWriter {
       ordered_json property =
           start(about.unit.empty() ? std::string(about.text) : fmt::format("{}; unit: {}", about.text, about.unit));
       property.update(writer.describe<T>(about));
-      add_property(record, path, property, !about.later);
+      add_property(record, path, property, !about.may_lack);
     }
   };
 };

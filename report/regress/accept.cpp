@@ -1,31 +1,14 @@
 #include "report/regress/accept.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/input_file.h"
 
 namespace shadowbench::regress {
-namespace {
-
-std::string read_log(const std::filesystem::path& file) {
-  require_plain_file(file, 64 * kMebibyte);
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-}  // namespace
-
 /// Ratios that no run is compared with are not kept: they would only make the files differ.
 BaselineCell Accepter::make_cell(const ActualCell& cell) const {
   const records::CellRecord& record = cell.record;
@@ -77,13 +60,13 @@ void Accepter::take(Comparison& comparison, const ActualCell& cell) {
     *same = std::move(taken);
   CellImages& kept = own.images[cell.record.key] = cell.images;
   kept.uncertainty.rounding = coarsen_rounding(cell.images.uncertainty.rounding);
-  log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+  note(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
 }
 
 void Accepter::take(Comparison& comparison, const ActualTruth& truth) {
   if (!comparison.differs()) return;
   truths(truth.record.scene)[comparison.key] = truth.images;
-  log(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+  note(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
 }
 
 void Accepter::drop(Comparison& comparison) {
@@ -93,10 +76,10 @@ void Accepter::drop(Comparison& comparison) {
     CellFile& own = file(comparison.scene, comparison.filter);
     std::erase_if(own.cells, [&](const BaselineCell& each) { return each.key == comparison.key; });
   }
-  log(comparison, "removed");
+  note(comparison, "removed");
 }
 
-void Accepter::log(Comparison& comparison, const std::string& what) {
+void Accepter::note(Comparison& comparison, const std::string& what) {
   comparison.accepted = true;
   std::string line = fmt::format("{}: {} {} ({})", what, comparison.scene, comparison.label, comparison.settings);
   if (comparison.outcome != Outcome::kExtra)
@@ -104,22 +87,11 @@ void Accepter::log(Comparison& comparison, const std::string& what) {
   lines_.push_back(std::move(line));
 }
 
-std::vector<std::string> Accepter::write(const Origin& origin) {
-  // Tolerances and log come first: a folder that is written only in part is then known to be a baseline, and why. The
-  // checksums come last: such a folder is not taken for a whole one.
+std::vector<std::string> Accepter::write() {
+  // Tolerances come first: a folder that is written only in part is then known to be a baseline.
   if (!baseline_.exists()) write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
-  for (const auto& [path, what] : baseline_.damage()) lines_.push_back(fmt::format("damaged: {} {}", path, what));
-  if (lines_.empty()) return lines_;
-  std::string entry =
-      fmt::format("## {:%Y-%m-%d %H:%M} UTC, program {}, {}, seed {}\n\n",
-                  fmt::gmtime(std::chrono::system_clock::now()), origin.commit, origin.renderer, origin.seed);
-  for (const std::string& line : lines_) entry += "- " + line + "\n";
-  const std::string before = read_log(baseline_.log_file());
-  write_text_file(baseline_.log_file(),
-                  (before.empty() ? "# What was accepted into this baseline\n" : before) + "\n" + entry);
   for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
   for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
-  baseline_.seal();
   return lines_;
 }
 

@@ -20,9 +20,8 @@ class Accepter {
   /// Removes a cell or a truth that the run lacks.
   void drop(Comparison& comparison);
 
-  /// Writes what was taken over, one entry of the log, and the checksums of all. Gives the entry's lines.
-  /// Throws Error(kOutput).
-  std::vector<std::string> write(const Origin& origin);
+  /// Writes what was taken over, and says what that was, a line each. Throws Error(kOutput).
+  std::vector<std::string> write();
 
  private:
   Baseline& baseline_;
@@ -34,7 +33,7 @@ class Accepter {
   BaselineCell make_cell(const ActualCell& cell) const;
   CellFile& file(const std::string& scene, const std::string& filter);
   std::map<std::string, TruthImages>& truths(const std::string& scene);
-  void log(Comparison& comparison, const std::string& what);
+  void note(Comparison& comparison, const std::string& what);
 };
 
 }  // namespace shadowbench::regress

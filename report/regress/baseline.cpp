@@ -159,29 +159,6 @@ std::filesystem::path Baseline::stem(const std::string& scene, const std::string
   return folder_ / files::make_file_stem(scene) / files::make_file_stem(filter);
 }
 
-std::string Baseline::name_below(const std::filesystem::path& file) const {
-  return file.lexically_relative(folder_).generic_string();
-}
-
-void Baseline::require_sound(const std::filesystem::path& file) const {
-  if (const auto found = damage_.find(name_below(file)); found != damage_.end())
-    throw Error(ErrorKind::kInput, fmt::format("the file {}; restore it, or accept a run again", found->second),
-                file.string());
-}
-
-void Baseline::seal() {
-  for (const std::filesystem::path& file : {tolerance_file(), log_file(), folder_ / kChecksumFile})
-    damage_.erase(name_below(file));
-  Checksums checksums = compute_checksums(folder_);
-  std::erase_if(damage_, [&](const auto& file) { return !checksums.contains(file.first); });
-  const Checksums before = read_checksums(folder_);
-  for (const auto& [path, what] : damage_) {
-    checksums.erase(path);
-    if (const auto listed = before.find(path); listed != before.end()) checksums.insert(*listed);
-  }
-  write_checksums(folder_, checksums);
-}
-
 Baseline::Index Baseline::read_index() const {
   Index index;
   for (const std::filesystem::path& folder : list_folder(folder_)) {
@@ -189,7 +166,6 @@ Baseline::Index Baseline::read_index() const {
     for (const std::filesystem::path& file : list_folder(folder)) {
       if (file.extension() != ".json" || is_temporary(file)) continue;
       try {
-        require_sound(file);
         for (BaselineCell& cell : read_cell_list(file)) index.cells.push_back(std::move(cell));
       } catch (const Error& error) {
         index.unreadable[(folder.filename() / file.stem()).string()] = error.what();
@@ -201,7 +177,6 @@ Baseline::Index Baseline::read_index() const {
 
 std::vector<BaselineCell> Baseline::read_numbers(const std::string& scene, const std::string& filter) const {
   const std::filesystem::path file = with_extension(stem(scene, filter), ".json");
-  require_sound(file);
   return std::filesystem::exists(file) ? read_cell_list(file) : std::vector<BaselineCell>();
 }
 
@@ -209,7 +184,6 @@ CellFile Baseline::read_cells(const std::string& scene, const std::string& filte
   CellFile file{read_numbers(scene, filter), {}};
   if (file.cells.empty()) return file;
   const std::filesystem::path images = with_extension(stem(scene, filter), ".exr");
-  require_sound(images);
   for (images::Part& part : images::read_exr(images).parts) keep_part(file.images, std::move(part));
   return file;
 }
@@ -217,8 +191,6 @@ CellFile Baseline::read_cells(const std::string& scene, const std::string& filte
 void Baseline::write_cells(const std::string& scene, const std::string& filter, const CellFile& cells) {
   const std::filesystem::path numbers = with_extension(stem(scene, filter), ".json"),
                               images = with_extension(stem(scene, filter), ".exr");
-  damage_.erase(name_below(numbers));
-  damage_.erase(name_below(images));
   if (cells.cells.empty()) {
     remove_file(numbers);
     remove_file(images);
@@ -237,7 +209,6 @@ void Baseline::write_cells(const std::string& scene, const std::string& filter, 
 std::map<std::string, TruthImages> Baseline::read_truths(const std::string& scene) const {
   std::map<std::string, TruthImages> truths;
   const std::filesystem::path file = with_extension(stem(scene, kTruthStem), ".exr");
-  require_sound(file);
   if (!std::filesystem::exists(file)) return truths;
   for (images::Part& part : images::read_exr(file).parts) {
     const std::size_t dot = part.name.rfind('.');
@@ -249,7 +220,6 @@ std::map<std::string, TruthImages> Baseline::read_truths(const std::string& scen
 
 void Baseline::write_truths(const std::string& scene, const std::map<std::string, TruthImages>& truths) {
   const std::filesystem::path file = with_extension(stem(scene, kTruthStem), ".exr");
-  damage_.erase(name_below(file));
   if (truths.empty()) {
     remove_file(file);
     return;

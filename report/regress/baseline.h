@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "report/regress/checksums.h"
 #include "report/regress/compared_metrics.h"
 #include "report/regress/pixel_change.h"
 #include "report/regress/tolerances.h"
@@ -66,27 +65,14 @@ struct CellFile {
 ///   baseline.toml            the tolerances
 ///   SCENE/FILTER.json, .exr  numbers and images of a filter's cells, one part per cell and image
 ///   SCENE/truth.area.exr     truths of the scene's views
-///   accepted.md              what was accepted when
-///   checksums.txt            SHA-256 of all of these
 class Baseline {
  public:
   explicit Baseline(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path tolerance_file() const { return folder_ / "baseline.toml"; }
-  std::filesystem::path log_file() const { return folder_ / "accepted.md"; }
   /// Throws Error(kInput) where the path is no folder.
   bool exists() const;
-
-  /// Compares all files with the list of checksums. Damaged cells and truths cannot be read from then on.
-  const Damage& check() { return damage_ = find_damage(folder_); }
-
-  /// What check() found and nothing has been written in place of.
-  const Damage& damage() const { return damage_; }
-
-  /// Lists the checksums of what was written, and of what is not damaged: a damaged file stays one. Tolerances and log
-  /// are taken as they are. Throws Error(kOutput).
-  void seal();
 
   /// Lists the cells of all filters, and files that cannot be read, with the reason.
   /// Throws Error(kInput) where a folder cannot be listed.
@@ -114,11 +100,8 @@ class Baseline {
 
  private:
   std::filesystem::path folder_;
-  Damage damage_;
 
   std::filesystem::path stem(const std::string& scene, const std::string& filter) const;
-  std::string name_below(const std::filesystem::path& file) const;
-  void require_sound(const std::filesystem::path& file) const;
 };
 
 }  // namespace shadowbench::regress

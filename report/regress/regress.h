@@ -30,8 +30,6 @@ struct RegressReport {
   std::vector<Comparison> comparisons;
   bool is_new = false;                ///< there was no cell in the baseline, and the run's become it
   std::vector<std::string> accepted;  ///< what became of the baseline, one line each
-  Damage damaged;                     ///< files of the baseline that were not as they had been accepted
-  Damage left;                        ///< those that accepting could not replace
   std::string accept_command;         ///< what would accept the differences
   RegressOptions options;
 
@@ -51,8 +49,8 @@ struct RegressOutcome {
 
 /// Compares a run with its baseline, or reports the mistakes in filters' files that ended the run, and writes
 /// regress.html, .md, .json, a picture of each cell that moved, and what else was asked for. Throws Error(kInput) where
-/// run or tolerances cannot be read, where nothing is to be accepted and there is no baseline or one that is not as it
-/// was accepted, or for a name that is chosen and nowhere found; Error(kOutput), also where another process accepts
+/// run or tolerances cannot be read, where nothing is to be accepted and there is no baseline, or for a name that is
+/// chosen and nowhere found; Error(kOutput), also where another process accepts
 /// into the same baseline. Cost: memory of one image file of the run, of one of the baseline, and of all that is
 /// accepted.
 RegressOutcome run_regress(const RegressOptions& options);

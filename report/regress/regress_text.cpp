@@ -100,8 +100,7 @@ std::string describe_ending(const RegressReport& report) {
   if (report.is_new || report.count(Outcome::kBroken) > 0) return "";
   if (!report.options.accept) return report.failed() > 0 ? "if this is meant: " + report.accept_command : "";
   if (report.accepted.empty()) return "nothing to accept";
-  return fmt::format("accepted: {} changes of the baseline, logged in {}", report.accepted.size(),
-                     (report.options.baseline / "accepted.md").string());
+  return fmt::format("accepted: {} changes of {}", report.accepted.size(), report.options.baseline.string());
 }
 
 /// "new baseline of 12 cells and the truth of 2 views: expected"
@@ -169,7 +168,6 @@ std::string describe_excess(const Comparison& comparison) {
 document::Section make_answer(const RegressReport& report) {
   std::string text = describe_counts(report) + ".";
   if (report.failed() > 0 && report.count(Outcome::kBroken) == 0) text += " Worst: " + describe_worst(report) + ".";
-  if (!report.damaged.empty()) text += " Damaged in the baseline: " + describe_damage(report.damaged) + ".";
   document::Table table{"The worst cell of each scene and filter", {{"scene"}, {}}};
   for (const Comparison& each : report.comparisons)  // the worst first
     table.judge(each.scene, each.filter, name_of(each.outcome) + (each.accepted ? ", accepted" : describe_excess(each)),
@@ -217,17 +215,8 @@ std::string make_accept_command(const RegressOptions& options) {
   return text + (options.accept ? "" : "--accept");
 }
 
-std::string describe_damage(const Damage& damage) {
-  std::vector<std::string> named;
-  for (const auto& [path, what] : damage)
-    if (named.size() < kMostFindings) named.push_back(path + " " + what);
-  if (damage.size() > named.size()) named.push_back(fmt::format("{} more files", damage.size() - named.size()));
-  return fmt::format("{}", fmt::join(named, ", "));
-}
-
 std::string make_regress_text(const RegressReport& report) {
   std::string text;
-  for (const auto& [path, what] : report.damaged) text += fmt::format("damaged: {} {}\n", path, what);
   const std::size_t most = report.count(Outcome::kBroken) > 0 ? report.comparisons.size()
                            : report.options.brief             ? kMostListedBriefly
                                                               : kMostListed;
@@ -248,18 +237,12 @@ std::string make_regress_json(const RegressReport& report) {
                            {"compared", report.comparisons.size()}, {"failed", report.failed()},
                            {"summary", describe_counts(report)},    {"accept_command", report.accept_command}};
   document["accepted"] = report.accepted;
-  document["damaged"] = report.damaged;
   document["cells"] = ordered_json::array();
   for (const Comparison& comparison : report.comparisons) document["cells"].push_back(to_json(comparison));
   return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string describe_failure(const RegressReport& report) {
-  if (!report.left.empty())
-    return fmt::format(
-        "{} stays damaged, and the run has nothing to put there: {}; restore it, or remove it and "
-        "accept again",
-        report.options.baseline.string(), describe_damage(report.left));
   if (report.failed() == 0) return "";
   if (report.count(Outcome::kBroken) > 0) {
     std::vector<std::string> files;

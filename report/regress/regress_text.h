@@ -13,9 +13,6 @@ inline constexpr std::size_t kMostListed = 20, kMostListedBriefly = 5;
 /// The command that accepts what differs, as it would be typed.
 std::string make_accept_command(const RegressOptions& options);
 
-/// Names damaged files and what is wrong with them, in a line.
-std::string describe_damage(const Damage& damage);
-
 /// Says for people what differs, the worst first, and how to accept it.
 std::string make_regress_text(const RegressReport& report);
 

@@ -128,13 +128,6 @@ Light place_in_sky(Light light, const SkyAngles& place) {
   return turn_light(std::move(light), [&](const glm::vec3&) { return direction; });
 }
 
-std::vector<Light> make_light_ring(const Light& first, int count) {
-  assert(count >= 1);
-  std::vector<Light> lights(1, first);
-  for (int i = 1; i < count; ++i) lights.push_back(turn_about_vertical(first, glm::radians(360.0 * i / count)));
-  return lights;
-}
-
 Light read_light(const TomlTable& table, const glm::dvec3& origin) {
   Light light;
   light.kind = table.choose("type", list_readers(), "directional")(table);

@@ -70,10 +70,6 @@ Light turn_about_vertical(const Light& light, double angle_rad);
 /// The light moved to a place in the sky; one in the scene as seen from what it goes round.
 Light place_in_sky(Light light, const SkyAngles& place);
 
-/// Turns a light about the vertical (+y): light i of `count` is `first`, turned by i * 360 / count degrees. A light
-/// straight overhead stays where it is. Requires `count` of 1 or more.
-std::vector<Light> make_light_ring(const Light& first, int count);
-
 /// Reads the [light] of a scene file, relative to the scene's origin. Throws kInput.
 Light read_light(const TomlTable& table, const glm::dvec3& origin = glm::dvec3(0.0));
 

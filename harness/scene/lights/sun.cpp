@@ -241,7 +241,7 @@ Sun read_sun(const TomlTable& table) {
   require_light_keys(table, {"direction", "azimuth_deg", "elevation_deg", "angular_diameter_deg", "map_center",
                              "map_width", "map_near", "map_far"});
   const glm::vec3 direction(read_sun_direction(table));
-  return {direction, table.number_f("angular_diameter_deg", {0.0, 90.0}, 0.53)};
+  return {direction, table.number_f("angular_diameter_deg", {0.0, 90.0}, Sun().angular_diameter_deg)};
 }
 
 glm::vec3 to_light(const Sun& sun, const glm::vec3&) { return -sun.direction_ws; }

@@ -5,6 +5,7 @@
 
 #include "filters/store_format.h"
 #include "harness/stress/edge_scene.h"
+#include "harness/stress/onset.h"
 #include "harness/stress/replay.h"
 
 namespace shadowbench::stress {
@@ -69,9 +70,10 @@ std::vector<double> expect_visibility(const EdgeScene& edge, const Setting& sett
 /// of the map overflows.
 std::vector<std::string> remark_underflow(const Setting& setting, const records::StressCase& record) {
   constexpr double kSmallestNormal = 87.3365;  // -ln(2^-126)
-  if (is_log(setting) || !record.broken || record.broken->why.find("dark") == std::string::npos) return {};
-  const double ratio = record.broken->value * static_cast<double>(setting.largest_depth) / kSmallestNormal;
-  if (ratio < 0.98 || ratio > 1.02) return {};
+  constexpr double kLargest = 88.7228;         // ln(2^128)
+  if (is_log(setting) || !record.broken) return {};
+  const double exponent = record.broken->value * static_cast<double>(setting.largest_depth);
+  if (exponent < (1.0 - kOnsetPrecision) * kSmallestNormal || exponent > kLargest) return {};
   return {
       fmt::format("all is dark from {:.4g} on, before the map overflows: there exp(-c z) of the lookup leaves the "
                   "normal 32-bit numbers ({:.2f} / {:g}), and is flushed to 0",

@@ -53,7 +53,9 @@ Json cell_json(const records::CellRecord& cell, const analysis::AdviceRequest& r
   json["absent"] = Json::object();
   set(json, "cost", analysis::cost_spec(request.cheapest).read(cell, light),
       records::explain_absence(cell, analysis::cost_spec(request.cheapest).field));
-  set(json, "time_ms", analysis::frame_time(cell, light), records::explain_absence(cell, "time_ms"));
+  const auto& time = analysis::frame_time(cell, light);
+  set(json, "time_ms", time ? std::optional<records::Quartiles>(*time) : std::nullopt,
+      records::explain_absence(cell, "time_ms"));
   set(json, "ratio_to_none", analysis::frame_ratio(cell, light), records::explain_absence(cell, "ratio_to_none"));
   set(json, "rmse", cell.error.rmse, records::explain_absence(cell, "error.rmse"));
   set(json, "truth_se", cell.truth.se, records::explain_absence(cell, "truth.se"));
@@ -106,28 +108,20 @@ Json settings_json(const records::CellRecord& cell) {
   return settings;
 }
 
-std::string explain_no_interval(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
-  if (request.cheapest != analysis::CostKind::kTime) return "only times have an interval";
-  for (const records::CellRecord* cell : candidate.configuration.cells)
-    if (!analysis::frame_interval(*cell, request.light)) return records::explain_absence(*cell, "ratio_to_none");
-  return "not measured";
-}
-
-Json cost_json(const analysis::Candidate& candidate, const analysis::AdviceRequest& request) {
-  const analysis::Cost& cost = candidate.cost;
+Json cost_json(const analysis::Cost& cost) {
   Json json = {{"mean", cost.mean}, {"quartiles", interval_json(cost.quartiles)}, {"ci95", nullptr}};
   json["absent"] = Json::object();
   if (cost.ci95)
     json["ci95"] = interval_json(*cost.ci95);
   else
-    json["absent"]["ci95"] = explain_no_interval(candidate, request);
+    json["absent"]["ci95"] = "only times have an interval";
   return json;
 }
 
 Json candidate_json(const analysis::Candidate& candidate, const analysis::Advice& advice) {
   Json json = {{"label", candidate.configuration.name}};
   json["settings"] = settings_json(*candidate.configuration.cells.front());
-  json["cost"] = cost_json(candidate, advice.request);
+  json["cost"] = cost_json(candidate.cost);
   json["limits"] = Json::array();
   for (std::size_t i = 0; i < candidate.verdicts.size(); ++i)
     json["limits"].push_back(verdict_json(advice.request.demands[i], candidate.verdicts[i]));

@@ -10,8 +10,8 @@
 
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cell_group.h"
-#include "report/analysis/gains.h"
 #include "report/analysis/picks.h"
+#include "report/analysis/place_state.h"
 #include "report/analysis/trade_measures.h"
 #include "report/pages/answer/answer_data.h"
 #include "report/records/format.h"

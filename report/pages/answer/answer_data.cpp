@@ -10,7 +10,7 @@
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "report/pages/bias_page.h"
 #include "report/pages/trade_charts.h"
 #include "report/records/format.h"

@@ -36,20 +36,8 @@ class Advise : public ProgramTest {
     cell.truth.se = 0.001;
     cell.absent.erase("error");
     cell.penumbra.growth = 1.0;
+    if (filter == "tent3x3") cell.claims = {"contact-hardening"};
     return cell;
-  }
-
-  /// Points the program at filters of our own, of which `soft` claims something.
-  std::string with_claims() const {
-    const std::filesystem::path root = folder() / "root";
-    for (const char* name : {"filters", "shaders", "data/scenes", "data/experiments", "data/gpus"})
-      std::filesystem::create_directories(root / name);
-    const std::string body =
-        "kind = \"other\"\nradius_texels = 0\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";
-    write("root/filters/none.glsl", "/*+++\ntitle = \"N\"\nsource = \"s\"\n" + body);
-    write("root/filters/tent3x3.glsl",
-          "/*+++\ntitle = \"T\"\nsource = \"s\"\nclaims = [\"contact-hardening\"]\n" + body);
-    return root.string();
   }
 };
 
@@ -161,15 +149,13 @@ TEST_F(Advise, BadRuns_AreInputErrors) {
   expect_refusal("advise none.json", 3, {"holds no cell"});
 }
 
-TEST_F(Advise, Requires_ReadsTheClaimsOfTheBuiltInFilters) {
-  setenv("SHADOWBENCH_ROOT", with_claims().c_str(), 1);
+TEST_F(Advise, Requires_ReadsTheClaimsOfTheFilters) {
   const Outcome outcome = run("advise --requires contact-hardening run");
   EXPECT_THAT(outcome.out, StartsWith("tent3x3: ")) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("--requires contact-hardening  shown"));
   EXPECT_THAT(outcome.out, HasSubstr("without --requires contact-hardening  saves 3 ms (CPU)"));
   expect_refusal("advise run --requires temporal", 2,
                  {"no filter claims 'temporal'", "filters claim contact-hardening"});
-  unsetenv("SHADOWBENCH_ROOT");
 }
 
 }  // namespace

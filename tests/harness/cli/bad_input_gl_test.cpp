@@ -60,6 +60,8 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {small("--filters none:"), 2, {"none:", "PARAM=VALUE"}},
       {small("--fit box"), 2, {"'box'", "sphere, tight, view"}},
       {small("--snap"), 2, {"--snap"}},
+      {small("--until-different none,vsm"), 2, {"--until-different is gone", "--phases"}},
+      {small("--lights 1,2"), 2, {"--lights is gone", "several lights"}},
       {small("--snap perhaps"), 2, {"--snap", "perhaps"}},
       {small("--light 120"), 2, {"'120'", "AZIMUTH,ELEVATION"}},
       {small("--light ''"), 2, {"--light", "AZIMUTH,ELEVATION"}},
@@ -125,6 +127,8 @@ TEST_F(BadInput, FolderWithoutOneScene) {
     expect_refusal(std::string("run --out out --scene ") + name, 3, {"models", "2 scenes: a.toml, b.obj"});
 }
 TEST_F(BadInput, MalformedSceneNamesTheLine) {
+  write("lit.toml", "scene = 'cubes'\nlights = [1, 2]\n");
+  expect_refusal("run lit.toml --out out", 3, {"lit.toml:2", "--lights is gone"});
   write("bad.toml", "title = \"x\"\n[camera\n");
   expect_refusal("run --out out --scene bad.toml", 3, {"bad.toml:2"});
 }

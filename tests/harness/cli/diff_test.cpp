@@ -6,13 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "report/images/picture_io.h"
-#include "report/records/json_io.h"
 #include "tests/harness/cli/program.h"
-#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::test {
-
-using namespace records;
 namespace {
 
 using ::testing::HasSubstr;
@@ -214,55 +210,10 @@ TEST_F(Diff, ListMetrics_DefinesWhatARunReports) {
   }
 }
 
-/// Report folders "a" and "b" of one experiment: `vsm` repeats, and `esm` does not where `b` says so.
-class DiffRuns : public ProgramTest {
- protected:
-  void SetUp() override {
-    ProgramTest::SetUp();
-    write_run("a", 4.0, 4.0);
-    write_run("b", 4.01, 8.0);
-  }
-
-  void write_run(const std::string& name, double vsm_ms, double esm_ms) const {
-    records::write_results(folder() / name, records::make_run(),
-                           {records::make_cell("cubes", "vsm", vsm_ms), records::make_cell("cubes", "esm", esm_ms)});
-  }
-};
-
-TEST_F(DiffRuns, CountsIntervalsThatOverlapAndNamesTheOthers) {
-  const Outcome outcome = run("diff a b");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_EQ(
-      outcome.out,
-      "cells        2 in both\noverlapping  1 of 2 95 % intervals of ratios to none\napart, the widest gap first:\n"
-      "  cubes (main), esm (radius 4, store rg32f), map 1024, picture 960 x 540: lookup 1 [0.99, 1.01] against 2 "
-      "[1.98, 2.02]\n");
-  EXPECT_THAT(outcome.err, HasSubstr("1 of 2 ratio intervals overlap; widest apart: cubes (main), esm"));
-  EXPECT_EQ(run("diff a/results.json b/results.json").out, outcome.out);
-  EXPECT_EQ(run("diff a a").exit_code, 0);
-  EXPECT_EQ(run("diff a a").err, "");
-}
-
-TEST_F(DiffRuns, Json_HoldsTheSame) {
-  const nlohmann::json json = nlohmann::json::parse(run("diff --json a b").out);
-  EXPECT_EQ(json["cells"], 2);
-  EXPECT_EQ(json["overlapping"], 1);
-  EXPECT_EQ(json["of"], 2);
-  ASSERT_EQ(json["apart"].size(), 1u);
-  EXPECT_EQ(json["apart"][0]["filter"], "esm");
-  EXPECT_EQ(json["apart"][0]["a"]["median"], 1.0);
-  EXPECT_EQ(json["apart"][0]["b"]["median"], 2.0);
-}
-
-TEST_F(DiffRuns, WhatCannotBeCompared_IsRefused) {
-  write("a.pgm", "P2\n2 1\n255\n51 255\n");
-  expect_refusal("diff a a.pgm", 3, {"'a' is a run's folder or results, and 'a.pgm' is not"});
-  expect_refusal("diff a b --metric mae", 2, {"--metric", "leave it out"});
-  expect_refusal("diff a none.json", 3, {"none.json", "no such folder or file"});
-  std::filesystem::create_directory(folder() / "empty");
-  expect_refusal("diff a empty", 3, {"empty/results.json"});
-  records::write_results(folder() / "nothing", records::make_run(), {});
-  expect_refusal("diff a nothing", 3, {"0 cells in common"});
+TEST_F(Diff, Runs_AreForRegress) {
+  write("run/results.json", "{}");
+  for (const char* words : {"diff run run", "diff a.pgm run", "diff run/results.json a.pgm"})
+    expect_refusal(words, 2, {"run", "'shadowbench regress'"});
 }
 
 }  // namespace

@@ -156,12 +156,5 @@ TEST_F(LayersRun, TheCommandThatFollowsOneMap_SaysItDoesNotTakeMore) {
   EXPECT_THAT(outcome.err, HasSubstr("'lantern' has a map of 6 layers"));
 }
 
-TEST_F(LayersRun, MoreMapsThanAFrameMayHave_AreRefused) {
-  const Outcome outcome = run(std::string(kSmallLayers) + "--scene lantern --filters none --lights 8");
-  EXPECT_EQ(outcome.exit_code, 2);
-  for (const char* part : {"8 lights on lantern have 48 maps (6 each)", "choose 5 lights or fewer"})
-    EXPECT_THAT(outcome.err, HasSubstr(part));
-}
-
 }  // namespace
 }  // namespace shadowbench::test

@@ -75,42 +75,6 @@ TEST_F(Phases, OfOne_SayThatNothingIsKnownOfTheOthers) {
   EXPECT_THAT(read_text(folder() / "out" / "index.html"), Not(HasSubstr("RMSEs of one class and scene apart")));
 }
 
-TEST_F(Phases, AreAddedUntilTwoFiltersAreToldApart) {
-  const Outcome far =
-      run(std::string(kSmall) + "--scene cubes --filters none,vsm --until-different vsm,none --out out");
-  ASSERT_EQ(far.exit_code, 0) << far.err;
-  EXPECT_THAT(far.err, HasSubstr("the RMSE of vsm less that of none is "));
-  EXPECT_THAT(far.err, HasSubstr("so that they differ"));
-  // A copy of a filter is told from it by no number of phases.
-  std::ofstream(folder() / "copy.glsl") << read_text(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) /
-                                                     "filters/none.glsl");
-  const Outcome same =
-      run(std::string(kSmall) +
-          "--scene cubes --filters none --filter-file copy.glsl --until-different none,copy --out two");
-  ASSERT_EQ(same.exit_code, 0) << same.err;
-  EXPECT_THAT(same.err, HasSubstr("16 phases do not tell none and copy apart"));
-  EXPECT_THAT(same.err, HasSubstr("with 64 phases, the most there are: they are not told apart"));
-  EXPECT_EQ(results("two")["cells"][0]["phases"], 64);
-}
-
-TEST_F(Phases, UntilDifferent_RefusesWhatItCannotCompare) {
-  const std::string start = std::string(kSmall) + "--scene cubes --filters none,vsm --out out ";
-  const std::pair<const char*, const char*> wrong[] = {
-      {"--until-different vsm", "'vsm' is not two filters"},
-      {"--until-different vsm,vsm", "is not two filters"},
-      {"--until-different vsm,esm", "esm is not measured in this run; its filters are none, vsm"},
-      {"--until-different vsm,vsm:radius=9", "is not measured in this run"},
-      {"--until-different vsm,nome", "nome"},
-      {"--until-different vsm,none --no-truth", "--no-truth"},
-      {"--until-different vsm,none --shard 1/2", "--shard"}};
-  for (const auto& [options, said] : wrong) {
-    const Outcome outcome = run(start + options);
-    EXPECT_EQ(outcome.exit_code, 2) << options;
-    EXPECT_THAT(outcome.err, HasSubstr(said)) << options;
-    EXPECT_FALSE(std::filesystem::exists(folder() / "out")) << options;
-  }
-}
-
 /// The weights differ under such a lamp: the run says so, errors follow the option, and pictures are held against the
 /// same truth.
 TEST_F(Phases, TruthWeight_ChoosesWhatVisibilityIsHeldAgainst) {

@@ -139,7 +139,7 @@ TEST_F(ExperimentFile, AreFoundByName_OrPath) {
   EXPECT_EQ(find_experiment(shipped, "my/own.toml"), "my/own.toml");
   EXPECT_THAT(error_of([&] { find_experiment(shipped, "quik"); }).what(), HasSubstr("did you mean 'quick'"));
   EXPECT_THAT(error_of([&] { find_experiment(shipped, "xyzzy12"); }).what(),
-              HasSubstr("cascades, default, engines, golden, kinds, lights, paraboloid, quick, sweep, widths"));
+              HasSubstr("cascades, default, engines, golden, kinds, paraboloid, quick, sweep, widths"));
 }
 
 TEST(ShippedExperiments, EnginesListsEveryPreset_WithABiasThatWeHave) {

@@ -61,7 +61,6 @@ const std::map<std::string, std::vector<std::string>>& list_others() {
                                                                          {"frames", {"8"}},
                                                                          {"precision", {"0.5"}},
                                                                          {"budget", {"0.1"}},
-                                                                         {"lights", {"1,4"}},
                                                                          {"gpu", {"none"}},
                                                                          {"seed", {"4294967295"}},
                                                                          {"cell_timeout", {"3"}},

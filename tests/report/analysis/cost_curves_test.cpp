@@ -21,14 +21,14 @@ TEST(WidthCharts, HaveACurveForEachFilter_NarrowBeforeWide) {
   const auto charts = make_width_charts_of(make_crossing_cells("cubes"));
   ASSERT_THAT(charts, SizeIs(1));
   EXPECT_EQ(charts[0].title, "cubes · view main · 960 × 540 · map 1024");
-  EXPECT_THAT(charts[0].places(), ElementsAre(0.0, 2.0, 4.0, 8.0));
+  EXPECT_THAT(charts[0].widths(), ElementsAre(0.0, 2.0, 4.0, 8.0));
   ASSERT_THAT(charts[0].curves, SizeIs(3));
   const CostCurve &taps = charts[0].curves[1], &blurred = charts[0].curves[2];
   EXPECT_EQ(taps.label, "poisson");
   EXPECT_FALSE(taps.prefiltered);
   EXPECT_TRUE(blurred.prefiltered);
   ASSERT_THAT(taps.points, SizeIs(3));
-  EXPECT_EQ(taps.points[2].at, 8.0);
+  EXPECT_EQ(taps.points[2].sigma_texels, 8.0);
   EXPECT_NEAR(taps.points[2].costs[kStaticCost].value, 20.0, 1e-9);
 }
 
@@ -62,46 +62,6 @@ TEST(WidthCharts, OtherParameters_MakeOtherCurves) {
   EXPECT_THAT(charts[0].curves, SizeIs(4));
   EXPECT_EQ(charts[0].curves[1].label, "poisson (taps 16)");
   EXPECT_THAT(charts[0].curves[3].points, SizeIs(3));
-}
-
-/// Under 1 and 2 lights `ratio` times what `none` takes, known to 1 %; medians have drifted by a tenth, ratios have
-/// not.
-CellRecord make_lit_cell(const std::string& filter, double ratio) {
-  CellRecord cell = make_sweep_cell({"cubes", filter, 4.0, filter == "none" ? 1.0 : 2.0});
-  const double drift = filter == "none" ? 1.0 : 1.1, reach = filter == "none" ? 0.0 : 0.01;
-  const Ratio known{ratio, {(1.0 - reach) * ratio, (1.0 + reach) * ratio}};
-  cell.lights.emplace();
-  for (const int count : {1, 2}) {
-    const double still = drift * ratio * count, moving = 2.0 * still;
-    cell.lights->push_back({count,
-                            {still, still - 0.5, still + 0.5, 9},
-                            {moving, moving - 0.5, moving + 0.5, 9},
-                            known,
-                            known,
-                            count * 4194304});
-  }
-  return cell;
-}
-
-TEST(LightCharts, TimesAreRatiosTimesTheReference) {
-  const std::vector<CellRecord> cells = {make_lit_cell("none", 1.0), make_lit_cell("vsm", 1.5)};
-  const auto charts = make_light_charts(cells, make_trade_scopes(cells));
-  ASSERT_THAT(charts, SizeIs(1));
-  EXPECT_THAT(charts[0].places(), ElementsAre(1.0, 2.0));
-  const CurvePoint& point = charts[0].curves[1].points[1];
-  EXPECT_NEAR(point.costs[kStaticCost].value, 3.0, 1e-9);
-  EXPECT_NEAR(point.costs[kStaticCost].low, 0.99 * 3.0, 1e-9);
-  EXPECT_NEAR(point.costs[kMovingCost].high, 1.01 * 6.0, 1e-9);
-}
-
-TEST(LightCharts, WithoutTheReference_TimesAreMediansAndQuartiles) {
-  std::vector<CellRecord> cells = {make_lit_cell("vsm", 1.5), make_cell("cubes", "esm", 2.0)};
-  const auto charts = make_light_charts(cells, make_trade_scopes(cells));
-  ASSERT_THAT(charts.at(0).curves, SizeIs(1)) << "esm was not timed under several lights";
-  EXPECT_NEAR(charts[0].curves[0].points[1].costs[kStaticCost].value, 1.1 * 3.0, 1e-9);
-  EXPECT_NEAR(charts[0].curves[0].points[1].costs[kStaticCost].low, 1.1 * 3.0 - 0.5, 1e-9);
-  cells[0].lights.reset();
-  EXPECT_THAT(make_light_charts(cells, make_trade_scopes(cells)), IsEmpty());
 }
 
 CellRecord make_map_cell(const std::string& fit, int size, const std::string& filter = "vsm") {

@@ -36,11 +36,10 @@ TEST(MixedMachines, WarningCountsTheCellsOfEachKind) {
 
 TEST(MixedMachines, HaveNoTimes_AndSayWhy) {
   std::vector<records::CellRecord> cells = make_mixed_cells();
-  cells[0].lights = std::vector<records::LightCountRecord>{{}};
   cells[0].absent["time_ms.prefilter"] = "none is needed";
   const records::CellRecord cell = withhold_mixed_times(cells).value().front();
-  EXPECT_FALSE(frame_time(cell, LightMotion::kMoving) || frame_time(cell, LightMotion::kStatic) || cell.lights);
-  for (const char* field : {"time_ms.prefilter", "time_ms.moving", "lights"})
+  EXPECT_FALSE(frame_time(cell, LightMotion::kMoving) || frame_time(cell, LightMotion::kStatic));
+  for (const char* field : {"time_ms.prefilter", "time_ms.moving"})
     EXPECT_THAT(records::explain_absence(cell, field), HasSubstr("times do not compare")) << field;
 }
 

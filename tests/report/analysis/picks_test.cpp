@@ -14,7 +14,7 @@
 #include <tuple>
 
 #include "report/analysis/advice_words.h"
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::analysis {

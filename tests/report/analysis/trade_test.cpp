@@ -98,14 +98,6 @@ TEST(TradeMeasures, Time_IsTheFiltersOwn_NotTheWholeLookup) {
   EXPECT_DOUBLE_EQ(moving.value, 9.0);
 }
 
-TEST(TradeMeasures, OfRunsWithoutEmptyLookups_TimesAreSumsOfPasses) {
-  records::CellRecord cell = make_cell("cubes", "vsm", 8.0);
-  const auto scopes = make_trade_scopes({cell});
-  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 1).value, 8.0);
-  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 1).low, 8.0 * 0.98);
-  EXPECT_DOUBLE_EQ(cost_of(scopes[0], 0, 0).value, 11.5);
-}
-
 TEST(TradeMeasures, Rmse_HasItsIntervalOverPhases) {
   records::CellRecord cell = make_sweep_cell({});
   cell.rmse_ci95 = records::Interval{0.095, 0.105};

@@ -48,9 +48,9 @@ TEST(MixedMachines, NoTimeIsSaid_ButInTheTablesOfMeasurements) {
   EXPECT_THAT(usual, Not(HasSubstr("Several kinds")));
 }
 
-TEST(MixedMachines, OneWarningSaysSo_AlsoWhereShardsWarnedBefore) {
+TEST(MixedMachines, OneWarningSaysSo_AlsoWhereTheReportIsWrittenAgain) {
   RunRecord run = make_run();
-  run.warnings = {std::string(kMixedMachines) + ": X (1 cell); Y (2 cells).", "another"};
+  run.warnings = {"another", warn_of_mixed_machines(make_mixed_cells())};
   const auto results = nlohmann::json::parse(write_and_read(make_mixed_cells(), run, "results.json"));
   EXPECT_THAT(results["warnings"], ElementsAre(warn_of_mixed_machines(make_mixed_cells()), "another"));
   EXPECT_FALSE(results["cells"][2]["time_ms"]["moving"].is_null()) << "records keep what was measured";

@@ -131,20 +131,6 @@ TEST(TradeSection, CostOverWidth_IsAChartOfEachStateOfTheLight) {
   EXPECT_EQ(choice.charts[0].series[2].line, document::LineStyle::kSolid) << "prefiltered";
 }
 
-/// Too few cells for a front: what was timed under several lights is drawn all the same.
-TEST(TradeSection, CostOverLights_NeedsNoFront) {
-  std::vector<CellRecord> cells = {make_sweep_cell({})};
-  const Quartiles ms{2.0, 1.5, 2.5, 9};
-  const Ratio one{1.0, {1.0, 1.0}};
-  cells[0].lights = {{1, ms, ms, one, one, 4096}, {4, ms, ms, one, one, 16384}};
-  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
-  const document::Chart& chart = find_choice(section, "lights").charts.at(0);
-  EXPECT_EQ(chart.x_name, "lights, each with a map of its own");
-  EXPECT_THAT(chart.y_name, HasSubstr("CPU time (software rasteriser)"));
-  EXPECT_THAT(chart.series.at(0).points, SizeIs(2));
-  EXPECT_THROW(find_choice(section, "front"), std::runtime_error);
-}
-
 TEST(TradeSection, MapsOfSeveralFits_AreACurveEach) {
   std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({.map_size = 2048}), make_sweep_cell({})};
   cells[2].fit = "view";

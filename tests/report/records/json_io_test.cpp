@@ -76,13 +76,13 @@ void fill_metrics(CellRecord& cell) {
     });
 }
 
-// A cell in which everything that later issues bring exists.
+// A cell that lacks nothing.
 CellRecord make_full_cell() {
   CellRecord cell = make_cell("cubes", "full", 4.0);
   cell.kernel_radius_texels = 4.0;
   cell.kernel = {1.9, "soft"};
   cell.teaching = false;
-  cell.claims = {{"contact-hardening"}};
+  cell.claims = {"contact-hardening"};
   cell.bias = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8, {0.0, 0.9, 1.0}, true, 1.1, 1.2, true, true};
   cell.time_ms.prefilter = Quartiles{1.5, 1.25, 1.75, 3};
   cell.ratio_to_none.static_light = Ratio{1.5, {1.25, 1.75}};
@@ -122,8 +122,6 @@ CellRecord make_full_cell() {
                                   .bound_by = "memory"},
                 ""}},
               {"vega10", {{}, std::nullopt, "no driver"}}};
-  cell.lights = {{1, {1.5, 1.25, 1.75, 9}, {2.5, 2.25, 2.75, 9}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 1024},
-                 {16, {24.0, 20.0, 28.0, 5}, {40.0, 36.0, 44.0, 5}, {1.5, {1.25, 1.75}}, {2.0, {1.75, 2.25}}, 16384}};
   cell.content = "0123";
   cell.machine = {"A CPU", 3, "A GPU", false, TimerKind::kTimerQuery};
   cell.measured_s = 1.25;
@@ -197,48 +195,23 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
   EXPECT_EQ(gpu.estimate->sampling_us, 6.5);
   EXPECT_EQ(gpu.estimate->memory_us, 2.0);
   EXPECT_EQ(gpu.estimate->bound_by, "memory");
-  ASSERT_EQ(back.lights->size(), 2u);
-  EXPECT_EQ(back.lights->back().count, 16);
-  EXPECT_EQ(back.lights->back().static_ms.q3, 28.0);
-  EXPECT_EQ(back.lights->back().moving_ms.n, 5);
-  EXPECT_EQ(back.lights->back().moving_ratio.ci95.low, 1.75);
-  EXPECT_EQ(back.lights->back().maps_bytes, 16384);
   EXPECT_EQ(back.content, "0123");
   EXPECT_EQ(back.machine, (MachineKind{"A CPU", 3, "A GPU", false, TimerKind::kTimerQuery}));
   EXPECT_EQ(back.warnings, (std::vector<std::string>{"one", "two"}));
   EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
 }
 
-TEST(JsonIo, FullCell_HasNoNull) { EXPECT_EQ(to_json(make_full_cell()).at("absent"), json::object()); }
-
-TEST(JsonIo, LaterFields_MayLack) {
-  json written = to_json(make_full_cell());
-  written.erase("claims");
-  EXPECT_FALSE(cell_from_json(written, "here").claims);
-  EXPECT_EQ(cell_from_json(written, "here").fit, "view snapped");
-  written.erase("machine");
-  EXPECT_FALSE(cell_from_json(written, "here").machine);
-  EXPECT_EQ(cell_from_json(written, "here").measured_s, 1.25);
-  written.erase("measured_s");
-  EXPECT_FALSE(cell_from_json(written, "here").measured_s);
-  CellRecord suspect = make_full_cell();
-  suspect.status = CellStatus::kSuspect;
-  suspect.suspect_of = {"it reads nothing", "it is constant"};
-  written = to_json(suspect);
-  EXPECT_EQ(cell_from_json(written, "here").status, CellStatus::kSuspect);
-  EXPECT_EQ(cell_from_json(written, "here").suspect_of, suspect.suspect_of);
-  written.erase("suspect_of");
-  EXPECT_TRUE(cell_from_json(written, "here").suspect_of.empty());
-  RunRecord run = make_run();
-  run.repeat = {40, 118, 120};
-  written = to_json(run);
-  EXPECT_EQ(run_from_json(written, "here").repeat.overlapping, 118);
-  written.erase("repeat");
-  EXPECT_FALSE(run_from_json(written, "here").repeat.of);
-  EXPECT_EQ(run_from_json(written, "here").seed, run.seed);
-  written.erase("seed");
-  EXPECT_THAT(message_of([&] { run_from_json(written, "here"); }), HasSubstr("'seed' is missing"));
+TEST(JsonIo, FilesOfACell_AreAllThatItNames) {
+  CellRecord cell = make_full_cell();
+  cell.accumulation.emplace().picture = "frames.png";
+  const std::vector<std::string> files = list_files(cell);
+  EXPECT_EQ(files.size(), 16u);
+  for (const auto& file : {cell.images.grid, cell.images.frames, cell.images.all_lights, cell.accumulation->picture})
+    EXPECT_THAT(files, ::testing::Contains(file.value()));
+  EXPECT_THAT(files, ::testing::Not(::testing::Contains(cell.images.parts.value())));
 }
+
+TEST(JsonIo, FullCell_HasNoNull) { EXPECT_EQ(to_json(make_full_cell()).at("absent"), json::object()); }
 
 // Expects that reading a cell refuses the lack of exactly what the schema requires of this object in it.
 void expect_required(const json& schema, const json::json_pointer& place) {
@@ -256,42 +229,6 @@ void expect_required(const json& schema, const json::json_pointer& place) {
 
 TEST(JsonIo, ReadingRequires_WhatTheSchemaDoes) {
   expect_required(json::parse(results_schema()).at("$defs").at("cell"), json::json_pointer());
-}
-
-/// Files of this version that were written before lights were counted stay readable, and valid.
-TEST(JsonIo, CellWithoutLights_IsReadAsNotMeasured) {
-  json written = to_json(make_full_cell());
-  written.erase("lights");
-  const CellRecord back = cell_from_json(written, "here");
-  EXPECT_FALSE(back.lights);
-  EXPECT_EQ(to_json(back).at("absent").at("lights"), "not measured");
-  const TemporaryFolder folder("json_no_lights");
-  write_results(folder.path(), make_run(), {make_full_cell()});
-  json results = json::parse(read_text(folder.path() / "results.json"));
-  results["cells"][0].erase("lights");
-  write_text_file(folder.path() / "results.json", results.dump());
-  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
-  results["cells"][0]["lights"] = {{{"count", 0}}};
-  write_text_file(folder.path() / "results.json", results.dump());
-  EXPECT_FALSE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
-}
-
-TEST(JsonIo, RunOfBefore_DoesNotKnowHowFilesWereGiven) {
-  json written = to_json(make_run());
-  EXPECT_EQ(to_json(run_from_json(written, "here")), written);
-  written["scenes"][0].erase("view_words");
-  written.erase("filter_files");
-  const RunRecord back = run_from_json(written, "here");
-  EXPECT_TRUE(back.scenes.front().view_words.empty());
-  EXPECT_TRUE(back.filter_files.empty());
-}
-
-TEST(JsonIo, NotFiniteLights_AreNullWithTheirReason) {
-  CellRecord cell = make_full_cell();
-  cell.lights->back().moving_ms.median = std::numeric_limits<double>::infinity();
-  const json written = to_json(cell);
-  EXPECT_TRUE(written.at("lights").is_null());
-  EXPECT_EQ(written.at("absent").at("lights"), "the value was not finite");
 }
 
 TEST(JsonIo, NotFinite_IsNullWithItsReason) {
@@ -353,7 +290,6 @@ TEST(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
 TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
   const TemporaryFolder folder("json_valid");
   RunRecord run = make_run();
-  run.repeat = {3, 5, 6};
   run.warnings = {"a \"warning\""};
   run.machine.load_at_start = std::nullopt;
   write_results(folder.path(), run, {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()});
@@ -451,7 +387,7 @@ TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
   const TemporaryFolder folder("json_version");
   write_text_file(folder.path() / "results.json", R"({"schema_version": 99})");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
-              HasSubstr("schema_version is 99, and this program reads 3"));
+              HasSubstr(fmt::format("schema_version is 99, and this program reads {}", kSchemaVersion)));
   write_text_file(folder.path() / "results.json", "[]");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr("is missing"));
 }
@@ -513,7 +449,8 @@ TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
 TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
   const TemporaryFolder folder("json_deep");
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
-  write_text_file(folder.path() / "results.json", R"({"schema_version": 3, "commit": )" + deep + "}");
+  write_text_file(folder.path() / "results.json",
+                  fmt::format(R"({{"schema_version": {}, "commit": {}}})", kSchemaVersion, deep));
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
               HasSubstr("nested more than 100 deep"));
   std::istringstream stream(deep);

@@ -101,6 +101,9 @@ inline CellRecord make_cell(const std::string& scene, const std::string& filter,
   cell.nan = 0;
   cell.time_ms.map = Quartiles{3.5, 3.25, 3.75, 9};
   cell.time_ms.lookup = Quartiles{lookup_ms, lookup_ms * 0.98, lookup_ms * 1.02, 9};
+  cell.time_ms.static_light = OwnTime{*cell.time_ms.lookup, {lookup_ms * 0.99, lookup_ms * 1.01}};
+  const double frame_ms = 3.5 + lookup_ms;
+  cell.time_ms.moving = OwnTime{{frame_ms, frame_ms * 0.98, frame_ms * 1.02, 9}, {frame_ms * 0.99, frame_ms * 1.01}};
   cell.ratio_to_none.lookup = Ratio{lookup_ms / 4.0, {lookup_ms / 4.0 * 0.99, lookup_ms / 4.0 * 1.01}};
   cell.cost.fetches = 4.0;
   cell.cost.bytes_per_texel = 4;

@@ -16,18 +16,12 @@ Light make_light(double azimuth_deg, double elevation_deg) {
   return light;
 }
 
-TEST(LightRing, LightsAreEvenlySpaced_AllAsHighAsTheFirst) {
-  for (const int count : {1, 2, 3, 8, 16}) {
-    const std::vector<Light> lights = make_light_ring(make_light(72.0, 38.0), count);
-    ASSERT_EQ(lights.size(), static_cast<std::size_t>(count));
-    EXPECT_EQ(to_light(lights[0], {}), to_light(make_light(72.0, 38.0), {}));
-    for (int i = 0; i < count; ++i) {
-      const glm::vec3 expected = to_light(make_light(72.0 + 360.0 * i / count, 38.0), {});
-      EXPECT_LT(glm::length(to_light(lights[static_cast<std::size_t>(i)], {}) - expected), 1e-6f)
-          << i << " of " << count;
-      EXPECT_EQ(lights[static_cast<std::size_t>(i)].intensity, 3.0f);
-      EXPECT_EQ(light_size(lights[static_cast<std::size_t>(i)]), light_size(lights[0]));
-    }
+TEST(Light, TurnedAboutTheVertical_IsAsHigh) {
+  for (const int degrees : {0, 23, 120, 240}) {
+    const Light light = turn_about_vertical(make_light(72.0, 38.0), glm::radians(static_cast<double>(degrees)));
+    EXPECT_LT(glm::length(to_light(light, {}) - to_light(make_light(72.0 + degrees, 38.0), {})), 1e-6f) << degrees;
+    EXPECT_EQ(light.intensity, 3.0f);
+    EXPECT_EQ(light_size(light), light_size(make_light(72.0, 38.0)));
   }
 }
 

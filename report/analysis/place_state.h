@@ -10,10 +10,6 @@
 
 namespace shadowbench::analysis {
 
-/// The RMSE over cells of several places: the root of the mean square. Nothing where a cell has none,
-/// or there is none.
-std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells);
-
 /// Whether the choice of a filter matters at a place, the most it may first.
 enum class PlaceState {
   kMatters,   ///< a filter's picture differs from the truth's where light and shadow meet, or nobody knows

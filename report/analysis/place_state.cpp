@@ -1,4 +1,4 @@
-#include "report/analysis/gains.h"
+#include "report/analysis/place_state.h"
 
 #include <fmt/format.h>
 
@@ -22,15 +22,6 @@ std::optional<PlaceState> judge_cell(const records::CellRecord& cell) {
 }
 
 }  // namespace
-
-std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells) {
-  std::vector<Estimate> estimates;
-  for (const records::CellRecord* cell : cells) {
-    if (!cell->error.rmse) return std::nullopt;
-    estimates.push_back(estimate_rmse(*cell));
-  }
-  return estimates.empty() ? std::nullopt : std::optional(list_error_measures().front().combine(estimates));
-}
 
 PlaceState judge_place(const std::vector<const records::CellRecord*>& cells, const Place& place) {
   std::optional<PlaceState> known;  // of the cells that say something, that which matters most
