@@ -51,15 +51,6 @@ TEST_F(AddedMetric, IsInTheSchema) {
   EXPECT_EQ(group.at("properties").at("banding").at("maximum"), 1);
 }
 
-TEST_F(AddedMetric, IsEmptyInAReportOfBefore) {
-  nlohmann::json before = records::to_json(cell_);
-  before["key"] = "0123456789abcdef";
-  before.at("artefact").erase("banding");
-  metrics::added_value.reset();
-  records::cell_from_json(before, "here");
-  EXPECT_EQ(metrics::added_value, std::nullopt);
-}
-
 TEST_F(AddedMetric, IsListed) {
   EXPECT_THAT(records::make_metric_text(),
               HasSubstr("artefact.banding  share, 0 .. 1, less is better\n  of the receivers: those in a band\n"));
