@@ -139,6 +139,13 @@ class EarClipper {
     std::iota(left_.begin(), left_.end(), std::size_t{0});
   }
 
+  /// What the parser cuts as well: along the shorter diagonal of four corners, which a dent may leave outside.
+  bool is_convex() const {
+    for (std::size_t i = 0; i < left_.size(); ++i)
+      if (cross(place(i), place(i + 1), place(i + 2)) < 0.0) return false;
+    return true;
+  }
+
   /// Corners 3i to 3i+2 are those of triangle i. A polygon that touches or crosses itself gives some that overlap.
   std::vector<std::size_t> clip() {
     std::vector<std::size_t> triangles;
@@ -216,7 +223,7 @@ class ObjText {
 
   std::string text_, where_;
   std::vector<glm::dvec3> vertices_;
-  std::vector<Line> polygons_;  ///< faces of more than four corners
+  std::vector<Line> polygons_;  ///< faces of more than three corners
 
   [[noreturn]] void fail(const Line& line, const std::string& message) const {
     fail_input(message, fmt::format("{}:{}", where_, line.number));
@@ -257,7 +264,7 @@ class ObjText {
     if (corners > kMostCornersOfAFace)
       fail(line, fmt::format("this face has {} corners; at most {} are read: triangulate it in the modelling program",
                              corners, kMostCornersOfAFace));
-    if (corners > 4) polygons_.push_back(line);
+    if (corners > 3) polygons_.push_back(line);
   }
 
   /// Throws unless all are finite numbers; the parser would read anything else as 0.
@@ -278,8 +285,10 @@ class ObjText {
     const std::vector<std::string> words = list_words(polygon);
     std::vector<glm::dvec3> corners;
     for (std::size_t i = 1; i < words.size(); ++i) corners.push_back(find_vertex(polygon, words[i]));
+    EarClipper clipper(corners);
+    if (corners.size() == 4 && clipper.is_convex()) return text_.substr(polygon.begin, polygon.end - polygon.begin);
     std::string lines;
-    const std::vector<std::size_t> triangles = EarClipper(corners).clip();
+    const std::vector<std::size_t> triangles = clipper.clip();
     for (std::size_t i = 0; i < triangles.size(); i += 3)
       lines += fmt::format("{}f {} {} {}", i > 0 ? "\n" : "", words[triangles[i] + 1], words[triangles[i + 1] + 1],
                            words[triangles[i + 2] + 1]);

@@ -123,6 +123,15 @@ TEST(ObjPolygon, OfEveryShape_IsCoveredOnce) {
   }
 }
 
+/// Its shorter diagonal, along which the parser cuts, lies outside of it.
+TEST(ObjPolygon, OfFourCornersAndADent_IsCoveredOnce) {
+  Polygon dart = {{0, 3, 0}, {-0.5, 0, 0}, {0, 1, 0}, {0.5, 0, 0}};
+  for (int i = 0; i < 4; ++i) {
+    std::ranges::rotate(dart, dart.begin() + 1);
+    expect_covered(dart, "a dart");
+  }
+}
+
 TEST(ObjPolygon, FromEverySide_KeepsItsSense) {
   Polygon turned = make_star(500, 0.5);
   for (glm::dvec3& corner : turned) corner = {0.3 * corner.x, corner.y - corner.x, 0.2 * corner.y};
