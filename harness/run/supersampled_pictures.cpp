@@ -24,9 +24,6 @@ namespace {
 
 /// Samples of a part: their G-buffer takes 268 MB.
 constexpr int kMostSamples = 1 << 23;
-/// Of the truth at a sample; that of a pixel's 16 is as small as it was measured.
-constexpr double kStandardError = 0.02;
-
 /// Samples of a pixel along each axis; 1 where more would not fit.
 int choose_side(const images::Rect& part) {
   for (const int side : {4, 2})
@@ -112,7 +109,7 @@ class SampledView {
     hash.add_values(std::span<const std::uint8_t>(is_known));
     samples.image.content = hash.name();
     std::vector<float> arriving =
-        assets_.tracer().trace_light(samples.image, scene::make_area_light(planned_.scene.light), kStandardError);
+        assets_.tracer().trace_light(samples.image, scene::make_area_light(planned_.scene.light));
     for (std::size_t i = 0; i < is_known.size(); ++i) {
       if (is_known[i] == 0) continue;
       samples.image.points[i].counts = true;

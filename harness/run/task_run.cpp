@@ -193,6 +193,8 @@ class TaskRun {
       measured.attribution_s += *cell.record.measured_s;
     }
     measured.masks = analyser_->masks();
+    assets_.gbuffer(*task_.camera).forget_receivers();
+    if (options_.grids) analyser_.reset();  // no other group needs it
   }
 
   /// Accumulates the first cells over frames: those that are drawn in this process.
@@ -246,6 +248,7 @@ class TaskRun {
   void count_traffic(measure::SceneMeasurement& measured) {
     if (!traffic_) traffic_.emplace(renderer_, options_, task_, assets_, coverage_->record.texels_per_pixel);
     for (measure::MeasuredCell& cell : measured.cells) traffic_->measure(cell);
+    if (options_.grids) traffic_.reset();
   }
 
   /// Has pictures written from now on, beside what is still to be measured, but for the grid, which says all of it.

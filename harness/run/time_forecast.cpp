@@ -69,14 +69,14 @@ double presume_task_s(const PlannedScene& scene, const PlannedTask& task) {
   if (!options.gpus.empty())
     gpus_s = 0.33 * megapixels + (task.scene > 0 ? 0.0 : compile_s * static_cast<double>(options.gpus.size()));
   const double cell_s = cores * (draw_s * (1.0 + 0.5 * (options.phases - 1)) + of_pixels * megapixels) + gpus_s;
-  return cells * cell_s + cores * 1.38 * megapixels * to_trace;  // truth, and what surrounds its receivers
+  return cells * cell_s + cores * 1.15 * megapixels * to_trace;  // truth, and what surrounds its receivers
 }
 
 double presume_report_s(const RunPlan& plan) {
   const options::RunOptions& options = plan.scenes.front().options;
   const bool has_first_pictures = options.pictures && options.truth;
   return 0.02 * plan.own_cells +
-         (has_first_pictures ? scale_by_cores() * kFirstPictures * 2.3 * count_megapixels(options) : 0.0);
+         (has_first_pictures ? scale_by_cores() * kFirstPictures * 1.2 * count_megapixels(options) : 0.0);
 }
 
 TimeForecast forecast_time(const RunPlan& plan) {

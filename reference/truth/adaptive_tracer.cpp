@@ -17,8 +17,6 @@
 namespace shadowbench::truth {
 namespace {
 
-constexpr int kFirstPoints = 4;
-static_assert(kFirstPoints * kScrambles == kRaysOfSettledPixel);
 /// An edge is not judged by fewer points per scramble: small counts make small standard errors by chance.
 constexpr int kEdgePoints = 16;
 /// What doubling its points makes of an edge's standard error: 2^-0.75, as stratified points have it across a smooth
@@ -165,7 +163,11 @@ class AdaptiveTracer {
     const std::vector<float> first = truth_.visibility;
     for_each_tile(kFirstPart, 1.0, [&](const TracedTile& tile) {
       for_each_receiver(tile, [&](std::size_t i) {
-        if (!is_settled(first, static_cast<int>(i))) trace(i, kEdgePoints, samples_.max_points());
+        if (is_settled(first, static_cast<int>(i))) return;
+        if (has_edges_)
+          trace(i, kEdgePoints, samples_.max_points());
+        else
+          ++truth_.rays[i];
       });
     });
     return std::move(truth_);
@@ -178,6 +180,7 @@ class AdaptiveTracer {
   const TraceSettings& settings_;
   const MakeFan& make_fan_;
   const SampleSets* scaled_;
+  const bool has_edges_ = samples_.max_points() >= kEdgePoints;
   TracedVisibility truth_;
 
   /// Pixels are traced in tiles, because rays of neighbouring pixels visit the same parts of the scene.
@@ -270,6 +273,7 @@ class AdaptiveTracer {
       const double error = conclude(pixel, tracer, points);
       if (fan.weighs) conclude(pixel, tracer.arrival());
       if (points == most || (points >= least && foretold <= settings_.standard_error)) return;
+      if (settings_.standard_error >= 1.0 && tracer.spread() > 0.0) return;
       foretold = kGainOfDoubling * error;
     }
   }
@@ -328,7 +332,8 @@ class AdaptiveTracer {
 
 TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& receivers, const SampleSets& samples,
                             const TraceSettings& settings, const MakeFan& make_fan, const SampleSets* scaled) {
-  assert(std::has_single_bit(static_cast<unsigned>(samples.max_points())) && samples.max_points() >= kEdgePoints);
+  assert(std::has_single_bit(static_cast<unsigned>(samples.max_points())));
+  assert(samples.max_points() == kFirstPoints || samples.max_points() >= kEdgePoints);
   assert(std::has_single_bit(static_cast<unsigned>(settings.coarsest)) && settings.coarsest <= kTileSide);
   return AdaptiveTracer(occluders, receivers, samples, settings, make_fan, scaled).run();
 }

@@ -122,12 +122,11 @@ ViewRays CachedTracer::trace_view(const ReceiverImage& receivers, const AreaLigh
   return {std::move(area), std::move(hard), std::move(blockers)};
 }
 
-std::vector<float> CachedTracer::trace_light(const ReceiverImage& receivers, const AreaLight& light,
-                                             double standard_error) {
-  const auto trace = [&] {
-    return Layers{trace_area(occluders(), receivers, light, within(standard_error), samples(light)).ratio};
-  };
-  return find_or_trace(receivers, fmt::format("{} within {}", name_light(light), standard_error), 1, trace).front();
+std::vector<float> CachedTracer::trace_light(const ReceiverImage& receivers, const AreaLight& light) {
+  TraceSettings few = settings_;
+  few.max_points = kFirstPoints;
+  const auto trace = [&] { return Layers{trace_area(occluders(), receivers, light, few).ratio}; };
+  return find_or_trace(receivers, name_light(light) + " by few rays", 1, trace).front();
 }
 
 TracedVisibility CachedTracer::find_or_trace(const ReceiverImage& receivers, const std::string& what,
@@ -158,7 +157,7 @@ TracedVisibility CachedTracer::trace_surroundings(const ReceiverImage& receivers
       receivers, fmt::format("square {} {}", half_width_texels, name_grid(grid)),
       [&] {
         TraceSettings rough = within(1.0);
-        rough.max_points = 16;  // every pixel is content with the first 16 points
+        rough.max_points = kFirstPoints;
         return trace_square(occluders(), receivers, half_width_texels, grid, rough);
       });
 }

@@ -47,8 +47,8 @@ class CachedTracer {
   ViewRays trace_view(const ReceiverImage& receivers, const AreaLight& light);
 
   /// The share of an area light's light that arrives at each receiver, for pictures that are only looked at.
-  /// Cost: 64 rays for most receivers, at the edges of shadows as many as `standard_error` needs.
-  std::vector<float> trace_light(const ReceiverImage& receivers, const AreaLight& light, double standard_error);
+  /// Cost: 64 rays for each receiver, with which a penumbra has a standard error of about 0.01.
+  std::vector<float> trace_light(const ReceiverImage& receivers, const AreaLight& light);
 
   /// Traces a kernel within a standard error of `kKernelStandardError`: a part of an error is the mean over many
   /// pixels, off which its `variance` can be taken. Cost: as trace_view(), about half of its rays.
@@ -58,7 +58,7 @@ class CachedTracer {
   TracedVisibility trace_disks(const ReceiverImage& receivers, std::span<const float> radii_texels,
                                const MapGrid& grid);
 
-  /// Traces a square, with just enough rays to see where they all agree. Cost: 64 to 256 rays a pixel.
+  /// Traces a square, with just enough rays to see where they all agree. Cost: 64 rays a pixel, at edges fewer.
   TracedVisibility trace_surroundings(const ReceiverImage& receivers, double half_width_texels, const MapGrid& grid);
 
  private:

@@ -84,8 +84,10 @@ struct TracingStopped : std::exception {
 
 /// How sure a traced fraction is to be, and what may look on; the result depends on the first three alone.
 struct TraceSettings {
-  double standard_error = 0.005;  ///< wanted for every pixel that is not unanimous; some get a little more or less
-  int max_points = 1024;          ///< per scramble; a power of two, at least 16
+  /// Wanted for every pixel that is not unanimous; some get a little more or less. 1: all that is asked of a pixel is
+  /// whether its rays agree.
+  double standard_error = 0.005;
+  int max_points = 1024;  ///< per scramble; a power of two, at least 16, or 4: first points are all that is traced
   std::uint32_t seed = 1;
   std::function<void(double part)> on_part = {};         ///< hears how much is traced, 0 .. 1, from many threads
   std::function<void(const RayPacket&)> on_packet = {};  ///< hears of every packet, from many threads; for measurement
@@ -103,7 +105,9 @@ struct TracedVisibility {
   std::vector<float> visibility;
   std::vector<float> standard_error;    ///< of the mean over the scrambles; 0 where all rays agree, see `unanimous`
   std::vector<std::uint8_t> unanimous;  ///< all rays of this pixel agree; the truth lies within 3 / rays of them (95 %)
-  std::vector<std::uint32_t> rays;      ///< traced for this pixel; 64: its neighbours agree with it too
+  /// Traced for this pixel; 64: its neighbours agree with it too. One too many where first points are all that is
+  /// traced and they do not.
+  std::vector<std::uint32_t> rays;
   /// Of an area light, shadowed over unshadowed light: the share of what it would bring that arrives, which weighs each
   /// of its points by the cosine at the receiver, the cosine at the light and the inverse squared distance. Of kernels
   /// 1, or empty from the cache.
@@ -113,8 +117,11 @@ struct TracedVisibility {
   std::vector<float> variance = {};
 };
 
+/// Every pixel's, per scramble.
+inline constexpr int kFirstPoints = 4;
+
 /// The number of rays of a pixel that agrees with its neighbours.
-inline constexpr std::uint32_t kRaysOfSettledPixel = 64;
+inline constexpr std::uint32_t kRaysOfSettledPixel = kFirstPoints * kScrambles;
 
 /// Traces the fraction of an area light that each receiver sees.
 ///

@@ -136,13 +136,11 @@ void blend_glyph(Image& canvas, int x, int y, const FT_Bitmap& glyph, const Rgb&
 
 // The longest beginning of a text that fits; at least one character.
 std::string fitting_beginning(const std::string& text, Font font, int width) {
-  std::size_t fit = 0;
-  for (std::size_t end = 1; end <= text.size(); ++end) {
-    if (end < text.size() && is_continuation(text[end])) continue;
-    if (fit > 0 && measure_text(text.substr(0, end), font) > width) break;
-    fit = end;
-  }
-  return text.substr(0, fit);
+  std::vector<std::size_t> ends;
+  for (std::size_t end = 1; end <= text.size(); ++end)
+    if (end == text.size() || !is_continuation(text[end])) ends.push_back(end);
+  const auto fits = [&](std::size_t end) { return measure_text(text.substr(0, end), font) <= width; };
+  return text.substr(0, *(std::partition_point(ends.begin() + 1, ends.end(), fits) - 1));
 }
 
 // The first line of a text that is wider than a line.

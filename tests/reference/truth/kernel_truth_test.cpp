@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -216,6 +217,28 @@ TEST(SquareTruth, IsALinearRamp) {
   expect_agreement(score_seeds(
       [&](std::uint32_t seed) { return trace_square(occluders, image, 2.5, tilted_grid(), {.seed = seed}); }, image,
       [](const glm::dvec3& p) { return std::clamp(0.5 + texels_from_edge(p) / 5.0, 0.0, 1.0); }));
+}
+
+TEST(SquareTruth, OfFirstPointsAlone_SettlesThePixelsThatMoreOfThemSettle) {
+  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
+  const Occluders occluders(meshes);
+  const ReceiverImage image = make_receivers(5.0);
+  std::atomic<int> packets = 0;
+  const TraceSettings first{
+      .standard_error = 1.0, .max_points = kFirstPoints, .on_packet = [&](const RayPacket&) { ++packets; }};
+  const TracedVisibility whole = trace_square(occluders, image, 2.5, tilted_grid(), {}),
+                         few = trace_square(occluders, image, 2.5, tilted_grid(), first);
+  int unsettled = 0, torn = 0;
+  for (std::size_t i = 0; i < image.points.size(); ++i) {
+    const bool is_settled = whole.rays[i] == kRaysOfSettledPixel;
+    ASSERT_EQ(few.rays[i] == kRaysOfSettledPixel, is_settled) << i;
+    if (is_settled) ASSERT_EQ(few.visibility[i], whole.visibility[i]) << i;
+    unsettled += is_settled ? 0 : 1;
+    torn += few.rays[i] < kRaysOfSettledPixel ? 1 : 0;
+  }
+  EXPECT_GT(unsettled, torn);
+  EXPECT_GT(torn, 0) << "the first points that disagree end a pixel";
+  EXPECT_LT(packets, kFirstPoints * static_cast<int>(image.points.size()));
 }
 
 /// Mean squares over an edge of how far an image is from kernels traced with many seeds: as they are, and without the
