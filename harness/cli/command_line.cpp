@@ -147,8 +147,7 @@ void CommandLine::set(const std::string& option, const std::vector<std::string>&
   }
 }
 
-int run_command_line(const Command& program, int argc, char** argv) {
-  const std::vector<std::string> words(argv, argv + argc);
+int run_command_line(const Command& program, const std::vector<std::string>& words) {
   CLI::App app(program.title, program.name);
   Chosen chosen;
   add_command(app, program, chosen);

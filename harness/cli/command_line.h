@@ -53,6 +53,6 @@ struct Command {
 
 /// Reads the command line into the variables of the chosen command's options and does what that command does, or prints
 /// help. Throws Error(kUsage) for words that no option takes, and what the action throws.
-int run_command_line(const Command& program, int argc, char** argv);
+int run_command_line(const Command& program, const std::vector<std::string>& words);
 
 }  // namespace shadowbench::cli

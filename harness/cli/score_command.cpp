@@ -73,7 +73,7 @@ std::filesystem::path run_folder(const std::string& run) { return find_results(r
 /// The options of a run, from the command line that its report keeps. Throws Error(kInput) where that is none of 'run'.
 options::RunOptions reread_options(const std::filesystem::path& folder, const ScoreArguments& arguments) {
   const records::Results results = records::read_results(folder / "results.json");
-  std::vector<std::string> words = results.run.command;
+  const std::vector<std::string>& words = results.run.command;
   if (words.size() < 2 || words[1] != "run")
     throw Error(ErrorKind::kInput, "this report was not made by 'shadowbench run', whose settings are read from it",
                 folder.string());
@@ -88,10 +88,8 @@ options::RunOptions reread_options(const std::filesystem::path& folder, const Sc
   };
   Command program{"shadowbench", ""};
   program.commands = {run};
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
   try {
-    run_command_line(program, static_cast<int>(argv.size()), argv.data());
+    run_command_line(program, words);
   } catch (const Error& error) {
     throw Error(error.kind(),
                 error.message() + "; the run's command is read again: score in the folder in which it was started",

@@ -102,6 +102,7 @@ const label = () => {
 };
 const refresh = async () => {
   const mine = ++turn;
+  root.ariaBusy = true;
   const { place, layer, mode } = state;
   for (const name of Object.keys(selects)) selects[name].value = state[name];
   for (const option of [...selects.left, ...selects.right]) option.disabled = !findEntry(Number(option.value), place);
@@ -120,7 +121,8 @@ const refresh = async () => {
   label();
   fitCanvases();
   showCrops();
-  listKnownLayers(mine);
+  await listKnownLayers(mine);
+  if (mine === turn) root.ariaBusy = false;
 };
 const change = (changes) => {
   const moves = "place" in changes && changes.place !== state.place;

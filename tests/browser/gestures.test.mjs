@@ -7,6 +7,12 @@ import { changePage, colours, drag, folderOf, hashOf, kNarrow, kWide, labels, me
 
 const kPage = pageOf("several");
 
+// The browser hands the page a turn of the wheel some time after it was told of it.
+const wheel = async (page, by) => {
+  await page.evaluate(() => { window.wheeled = new Promise((resolve) => addEventListener("wheel", () => resolve(), { once: true, capture: true })); });
+  await page.mouse.wheel(0, by);
+  await page.evaluate(() => window.wheeled);
+};
 test("Gestures_PanSplitCropAndPinch", async () => {
   const { page, messages, shoot, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,slider,120,67.5,4", hasTouch: true });
   await page.waitForSelector(".viewer .strip button canvas");
@@ -16,12 +22,10 @@ test("Gestures_PanSplitCropAndPinch", async () => {
   const [,,,,, x, y] = (await hashOf(page)).split(",").map(Number);
   assert.ok(Math.abs(x - (120 - 50 * step)) < 1 && Math.abs(y - (67.5 + 20 * step)) < 1, `${x} ${y}`);
   const caption = page.locator(".viewer caption"), spot = await caption.textContent();
-  await page.mouse.wheel(0, -200);
-  await page.waitForTimeout(100);
+  await wheel(page, -200);
   await page.mouse.move(box.x + 150.4, box.y + 80);
   assert.equal(await caption.textContent(), spot, "the wheel keeps the pixel under the pointer");
-  await page.mouse.wheel(0, 200);
-  await page.waitForTimeout(100);
+  await wheel(page, 200);
   await drag(page, middle, [box.x + box.width / 4, middle[1]]);
   assert.ok(Math.abs(await page.getByRole("slider", { name: "Split" }).inputValue() - 25) <= 1);
   await page.getByRole("slider", { name: "Split" }).focus();
@@ -71,7 +75,7 @@ test("WithoutTruthOrValues_ThePicturesStay_AndWithNothingTheViewerIsHidden", asy
   };
   const bare = changePage("several", "bare.html", clear);
   const { page, messages, close } = await openViewer(bare);
-  await page.waitForTimeout(800);
+  await settle(page);
   assert.match((await labels(page))[0], /Left: .none/);
   assert.ok(Object.keys(await colours(page)).length > 5, "a picture is drawn");
   await page.getByRole("button", { name: "Difference" }).click();

@@ -5,15 +5,14 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
 import { compareShots, kMesa, measure, openLive, press, withBrowser } from "./live_support.mjs";
-import { pageOf, pick, readData, splitWords } from "./support.mjs";
+import { pageOf, pick, readData, settle, splitWords } from "./support.mjs";
 
 const kScene = new URL("../../data/scenes/teaching/three_lights.toml", import.meta.url);
 // The right side's picture with camera and light turned so, and the page.
 const drawTurned = async (browser, run, place, filter, camera, light) => {
   const fields = [place, filter, filter, 0.5, ...camera, ...light].map(encodeURIComponent).join();
   const { page, messages, close } = await openLive(pageOf(run), browser, { hash: `#live=${fields}` });
-  await page.waitForFunction(() => document.querySelector(".live-stage canvas").width > 1);
-  await page.waitForTimeout(1500);
+  await settle(page);
   const picture = await page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL().split(",")[1]);
   const said = await page.locator(".live").textContent(), command = await page.locator(".live code").textContent(), data = await readData(page);
   assert.deepEqual(messages, []);

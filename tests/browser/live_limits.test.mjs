@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
 import { compareShots, keepTime, kMesa, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { dragOver, folderOf, kNarrow, kWide, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
+import { dragOver, folderOf, kNarrow, kWide, measureOverflow, open, pageOf, pick, readData, runProgram, settle } from "./support.mjs";
 
 const kMostSeconds = 10;
 
@@ -44,7 +44,7 @@ test("APageOfManyConfigurations_DrawsSoon", (context) => withBrowser(kMesa, asyn
 test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa, async (browser) => {
   const { page, messages, shoot, close } = await openLive(pageOf("waves"), browser, { init: keepTime }), label = (await readData(page)).configurations[1].label;
   const settled = async () => {
-    await page.waitForTimeout(900);
+    await settle(page);
     return page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL());
   };
   await pick(page, "Right", { label }, ".live");

@@ -5,11 +5,11 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
 import { compareShots, kMesa, measure, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, readData, splitWords } from "./support.mjs";
+import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, readData, settle, splitWords } from "./support.mjs";
 
 const canvasOf = (page) => page.locator(".live-stage canvas");
 const settled = async (page) => {
-  await page.waitForTimeout(800);
+  await settle(page);
   await page.evaluate(() => document.querySelector(".live-stage").scrollIntoView({ block: "center" }));
   return (await canvasOf(page).screenshot()).toString("base64");
 };
@@ -64,7 +64,6 @@ test("ALink_HoldsAllThatIsSeen", () => withBrowser(kMesa, async (browser) => {
   // A link of another run, and links that nobody could have made.
   for (const bad of [hash, "#live=cubes,nobody,nobody,x,1e9,,2,3,right:radius:2", "#live=cubes,none,none,0.5,0,0,0,0,left:constructor:1,left:radius:1e99,left", "#live="]) {
     const other = await openLive(pageOf("untrue"), browser, { hash: bad });
-    await other.page.waitForFunction(() => document.querySelector(".live-stage canvas").width > 1);
     await settled(other.page);
     assert.deepEqual(other.messages, [], bad);
     await other.close();
@@ -160,7 +159,7 @@ test("MapAndBias_AreThoseThatTheProgramDraws_AndALinkHoldsThem", (context) => wi
   const labels = await other.page.locator(".live select").nth(2).locator("option").allTextContents(), stays = [];
   for (const label of labels.filter((each) => !sized.includes(each) && each !== "truth")) {
     await pick(other.page, "Right", { label }, ".live");
-    await other.page.waitForTimeout(300);
+    await settle(other.page);
     if ((await other.page.locator(".live details", { hasText: "Map and bias" }).textContent()).includes("The map's size stays: its passes are")) stays.push(label);
   }
   assert.ok(stays.length > 0 && stays.length < 8, stays.join());

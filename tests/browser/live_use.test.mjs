@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
 import { changeFrames, keepContexts, keepTime, kMesa, kMsPerLetter, kOwn, loadTimes, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { dragOver, folderOf, kNarrow, measureOverflow, open, pageOf, pick, readData, runProgram } from "./support.mjs";
+import { dragOver, folderOf, kNarrow, measureOverflow, open, pageOf, pick, readData, runProgram, settle } from "./support.mjs";
 
 const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
 
@@ -103,7 +103,7 @@ test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () 
     await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the mean of 256 maps"), null, { timeout: 60000 });
   };
   await pick(page, "Right", { label: "pcss" }, ".live");
-  await page.waitForTimeout(500);
+  await settle(page);
   const before = await look();
   await turn();
   const turned = await look();
@@ -114,7 +114,7 @@ test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () 
   await shoot("live.sun");
   await page.locator(".live").getByRole("button", { name: "As it was" }).click();
   await page.waitForFunction(() => !document.querySelector(".live").textContent.includes("No rays were traced"));
-  await page.waitForTimeout(500);
+  await settle(page);
   assert.equal(await note.textContent(), "");
   assert.equal(await look(), before);
 
@@ -135,7 +135,7 @@ test("Layers_AreVisibility_ItsErrorAgainstTheTruth_AndTheMap", (context) => with
   const look = async (layer, split) => {
     await pick(page, "Layer", layer, ".live");
     await slider.fill(`${split}`);
-    await page.waitForTimeout(700);
+    await settle(page);
     return page.locator(".live-stage canvas").evaluate((canvas) => {
       const { width, height } = canvas, context = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d");
       context.drawImage(canvas, 0, 0);
@@ -186,7 +186,7 @@ test("AContextThatIsLost_IsSaid_AndDrawsAgainOnceItIsBack", () => withBrowser(kM
 
 test("OnAPhone_NothingIsWiderThanTheScreen", () => withBrowser(kOwn, async (browser) => {
   const { page, shoot, close } = await openLive(pageOf("several"), browser, { viewport: kNarrow });
-  await page.waitForTimeout(1000);
+  await settle(page);
   assert.ok((await measureOverflow(page)) <= 0);
   await shoot("live.phone");
   await close();

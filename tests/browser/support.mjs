@@ -29,7 +29,7 @@ export const splitWords = (command) => execFileSync("sh", ["-c", command.replace
 // its own scripts.
 export const open = async (file, { hash = "", waits = true, browser = common, init, ...options } = {}) => {
   const context = await browser.newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
-  page.setDefaultTimeout(15000);
+  page.setDefaultTimeout(60000);  // a busy machine opens pages slowly
   if (init) await page.addInitScript(init);
   // Chromium's own word on its software rasteriser, which draws the section Live wherever that is near, is no fault of a page.
   page.on("console", (message) => /GL Driver Message \(OpenGL, Performance/.test(message.text()) || messages.push(message.text()));
@@ -51,7 +51,13 @@ export const showCrops = async (page) => {
   await page.locator(".viewer .strip [data-who]").first().scrollIntoViewIfNeeded();
   await page.waitForSelector(".viewer .strip [data-who] canvas");
 };
-export const settle = (page) => page.waitForTimeout(250);
+// Until what was asked for is loaded and drawn, in the viewer and live: both say that they are busy.
+const nextFrame = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+export const settle = async (page, timeout = 60000) => {
+  await nextFrame(page);
+  await page.waitForFunction(() => !document.querySelector("[aria-busy=true]"), null, { timeout });
+  await nextFrame(page);
+};
 export const measureOverflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
 export const readData = (page) => page.evaluate(() => JSON.parse(document.getElementById("run").textContent));
 

@@ -93,8 +93,11 @@ const openLive = (holder) => {
     ...{ camera: [0, 0], light: [0, 0], parameters: new Map(), map: {}, drags: "camera", layer: "picture" },
   };
 
+  let shows = 0;
   const show = async () => {
     if (engine.isBusy) return;
+    ++shows;
+    holder.ariaBusy = true;
     const sides = [
       [state.left, 0, state.split],
       [state.right, state.split, 1],
@@ -110,7 +113,8 @@ const openLive = (holder) => {
       }
       if (value) drawn.push(value);
     }
-    if (drawn.some(({ isUnfinished }) => isUnfinished)) requestAnimationFrame(show);
+    const isUnfinished = drawn.some((each) => each.isUnfinished);
+    if (isUnfinished) requestAnimationFrame(show);
     const maps = drawn.findLast((each) => each.maps)?.maps;
     if (maps) messages.push(`No rays were traced there: instead of the truth this is the mean of ${maps} maps.`);
     const { value: frame } = await attempt(engine.load(state.right, state.place));
@@ -125,6 +129,7 @@ const openLive = (holder) => {
       "aria-label",
       `Left ${nameOf(state.left)}, right ${nameOf(state.right)}, on ${run.places[state.place].title}`,
     );
+    holder.ariaBusy = --shows > 0 || isUnfinished;
   };
   const showCommand = async () => {
     const { right, place } = state;

@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <wordexp.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
+
+#include "harness/cli/program.h"
 
 namespace shadowbench::test {
 
@@ -62,12 +66,17 @@ class ProgramTest : public ::testing::Test {
            arguments.substr(3);
   }
 
-  /// Runs `shadowbench ARGUMENTS` through the shell; `environment` as in "NAME=value NAME=value".
+  /// Runs `shadowbench ARGUMENTS`, which the shell would split into words: in a process of its own where it has an
+  /// `environment` of its own, as in "NAME=value NAME=value", and within this one otherwise.
   Outcome run(const std::string& arguments, const std::string& environment = "") const {
     return run_as_it_stands(with_test_defaults(arguments), environment);
   }
 
   Outcome run_as_it_stands(const std::string& arguments, const std::string& environment = "") const {
+    return environment.empty() ? run_within(arguments) : run_process(arguments, environment);
+  }
+
+  Outcome run_process(const std::string& arguments, const std::string& environment = "") const {
     const std::string command = "cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' " +
                                 environment + " '" SHADOWBENCH_PROGRAM "' " + arguments +
                                 " >stdout.txt 2>stderr.txt </dev/null";
@@ -92,6 +101,25 @@ class ProgramTest : public ::testing::Test {
   }
 
  private:
+  Outcome run_within(const std::string& arguments) const {
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(folder_);
+    setenv("XDG_CACHE_HOME", cache_folder().c_str(), 1);
+    std::vector<std::string> words{SHADOWBENCH_PROGRAM};
+    wordexp_t split{};
+    EXPECT_EQ(wordexp(arguments.c_str(), &split, WRDE_NOCMD | WRDE_UNDEF), 0) << arguments;
+    words.insert(words.end(), split.we_wordv, split.we_wordv + split.we_wordc);
+    wordfree(&split);
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int exit_code = cli::run_program(words);
+    const Outcome outcome{exit_code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
+    std::filesystem::current_path(before);
+    write("stdout.txt", outcome.out);
+    write("stderr.txt", outcome.err);
+    return outcome;
+  }
+
   std::filesystem::path folder_;
 };
 
