@@ -149,6 +149,7 @@ class BiasSweep {
     record_.light = name_light(scene_);
     record_.view = camera().name;
     record_.map_size = options_.map_sizes.front();
+    record_.fit = scene::describe_fit(options_.fit);
     record_.width = options_.width;
     record_.height = options_.height;
     const records::GlRecord gl = run::describe_gl(renderer_);

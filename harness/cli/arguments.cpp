@@ -54,6 +54,7 @@ void add_as_run(Command& command, const char* name, Variable variable) {
 
 void add_picture_options(Command& command, PictureArguments& arguments) {
   command.add("--map-size", &arguments.map_size, "texels along a side of the shadow map");
+  command.add("--fit", &arguments.fit, "how the light's map is fitted, as for 'run'").such_as(scene::list_fit_names());
   command.add("--size", &arguments.size, "picture size in pixels, WIDTHxHEIGHT");
 }
 
@@ -67,6 +68,8 @@ std::filesystem::path choose_cache(const DrawingArguments& arguments) {
 void take_picture_options(const PictureArguments& arguments, options::RunOptions& options) {
   take_drawing_options(arguments, options);
   options.map_sizes = {parse_count(arguments.map_size, "--map-size")};
+  options.fit = scene::parse_fit_rule(arguments.fit);
+  options.fits = {options.fit};
   std::tie(options.width, options.height) = parse_picture_size(arguments.size);
 }
 

@@ -32,6 +32,7 @@ struct DrawingArguments {
 struct PictureArguments : DrawingArguments {
   std::string filters;
   std::string map_size = "1024";
+  std::string fit = "tight";
   std::string size;
 };
 

@@ -92,6 +92,7 @@ void add_command(CLI::App& app, const Command& command, Chosen& chosen) {
 
 /// What does the work of a command that is gone, for one version.
 const std::map<std::string, std::string> kInstead = {
+    {"flicker", "'shadowbench run', which measures it in every cell, as error.flicker"},
     {"submit", "harness/slurm.sh (share/doc/shadowbench/slurm.sh where it is installed)"},
     {"status", "squeue, which shows the jobs of harness/slurm.sh"}};
 

@@ -15,7 +15,6 @@ Command make_advise_command();
 Command make_tune_command();
 Command make_stress_command();
 Command make_regress_command();
-Command make_flicker_command();
 Command make_export_command();
 Command make_score_command();
 Command make_view_command();

@@ -30,10 +30,10 @@ int run(const std::vector<std::string>& words) {
       "unknown name or a value out of range; 3 an input file is missing, malformed or not finite; 4 there is no OpenGL "
       "context; 5 a filter's file; 6 "
       "output cannot be written; 70 a bug in the program.";
-  program.commands = {make_run_command(),     make_list_command(),     make_diff_command(),   make_bias_command(),
-                      make_merge_command(),   make_advise_command(),   make_tune_command(),   make_stress_command(),
-                      make_regress_command(), make_flicker_command(),  make_export_command(), make_score_command(),
-                      make_view_command(),    make_gpu_facts_command()};
+  program.commands = {make_run_command(),      make_list_command(),   make_diff_command(),  make_bias_command(),
+                      make_merge_command(),    make_advise_command(), make_tune_command(),  make_stress_command(),
+                      make_regress_command(),  make_export_command(), make_score_command(), make_view_command(),
+                      make_gpu_facts_command()};
   return run_command_line(program, words);
 }
 

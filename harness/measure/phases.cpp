@@ -53,13 +53,15 @@ void note_errors(records::CellRecord& record, const std::vector<metrics::ErrorSt
     replicates[i / group] += phases[i].rmse / static_cast<double>(group);
   record.phases = static_cast<std::int64_t>(phases.size());
   const auto interval = metrics::find_mean_interval(replicates);
-  if (!interval) return;
+  if (!interval) {
+    record.absent["error.rmse_ci95"] = record.absent["error.rmse_replicates"] = kOnePhase;
+    return;
+  }
   record.rmse_ci95 = records::Interval{interval->low, interval->high};
   record.rmse_replicates = std::move(replicates);
 }
 
 void note_flicker(records::CellRecord& record, const std::optional<metrics::Change>& change) {
-  if (!record.rmse_ci95) record.absent["error.rmse_ci95"] = record.absent["error.rmse_replicates"] = kOnePhase;
   const bool is_few = record.phases.value_or(1) < static_cast<std::int64_t>(kFewestOfPairs);
   if (is_few || !change || !change->reach) {
     record.absent["error.flicker"] = record.absent["error.flicker_ci95"] = kFewPhases;
@@ -68,6 +70,14 @@ void note_flicker(records::CellRecord& record, const std::optional<metrics::Chan
   record.error.flicker = change->value;
   record.flicker_ci95 =
       records::Interval{std::max(0.0, change->value - *change->reach), change->value + *change->reach};
+}
+
+void note_step(records::CellRecord& record, const std::optional<metrics::Change>& change) {
+  record.absent["error.flicker_ci95"] = "the flicker is of one step of the camera";
+  if (change)
+    record.error.flicker = change->value;
+  else
+    record.absent["error.flicker"] = "no receiver is finite both before and after a step of the camera";
 }
 
 }  // namespace shadowbench::measure

@@ -11,6 +11,7 @@
 #include "harness/measure/phases.h"
 #include "harness/render/shade_pass.h"
 #include "harness/scene/scene.h"
+#include "harness/scene/view_clip.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::measure {
@@ -79,6 +80,28 @@ LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Cam
   std::vector<scene::LightFrustum> layers =
       fit_map_layers(options_, {scene_, light, camera, map_size, pad_texels_, shift_texels},
                      [&]() -> const render::GBuffer& { return gbuffer(camera); });
+  return draw_map(std::move(layers), map_size);
+}
+
+std::optional<LightMap> SceneAssets::make_stepped_map(const scene::Camera& camera, int map_size) {
+  if (!scene::follows_camera(scene_.light, options_.fit)) return std::nullopt;
+  const LightMap& before = light_map(camera, map_size);
+  scene::Camera moved = camera;
+  moved.position_ws += glm::vec3(kCameraStepTexels * before.frustum().texel_size_ws * scene::ViewAxes(camera).right);
+  std::optional<render::GBuffer> seen;
+  std::vector<scene::LightFrustum> layers = fit_map_layers(
+      options_,
+      {scene_, scene_.light, moved, map_size, pad_texels_, list_phase_shifts(options_.phases, options_.seed).front()},
+      [&]() -> const render::GBuffer& {
+        draw_view(seen.emplace(options_.width, options_.height), moved);
+        return *seen;
+      });
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    if (scene::has_same_grid(before.layers[i], layers[i])) layers[i] = before.layers[i];
+  return draw_map(std::move(layers), map_size);
+}
+
+LightMap SceneAssets::draw_map(std::vector<scene::LightFrustum> layers, int map_size) {
   render::ShadowMap map(map_size, options_.map, static_cast<int>(layers.size()));
   LightMap made{std::move(layers), std::move(map)};
   made.map.set_border(options_.range.border);
@@ -88,13 +111,6 @@ LightMap SceneAssets::make_light_map(const scene::Light& light, const scene::Cam
 
 void SceneAssets::redraw(LightMap& light, const render::MapBias& bias) {
   for (const scene::LightFrustum& layer : light.layers) light.map.draw(renderer_.shaders, geometry_, layer, bias);
-}
-
-void require_one_layer(const LightMap& light, const std::string& command, const std::string& scene) {
-  if (light.layers.size() == 1) return;
-  throw Error(ErrorKind::kUsage, fmt::format("{}: the light of the scene '{}' has a map of {} layers, and this command "
-                                             "follows one; choose a scene with a sun or a spot light",
-                                             command, scene, light.layers.size()));
 }
 
 images::Image read_linear_depth(const render::ShadowMap& map) {

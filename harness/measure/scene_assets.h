@@ -35,6 +35,9 @@ struct MapFit {
 std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const MapFit& fit,
                                                 const std::function<const render::GBuffer&()>& gbuffer);
 
+/// A step of the camera, after which a grid that follows it lies about as far from where it was as two phases do.
+inline constexpr double kCameraStepTexels = 0.5;
+
 /// What all cells of one scene share: its geometry, one G-buffer per view, one depth map per size. Each is drawn when
 /// it is first asked for and kept, since neither light nor casters change during a run.
 class SceneAssets {
@@ -52,6 +55,11 @@ class SceneAssets {
   /// Throws Error(kUsage) when the GL cannot give a map of this size.
   LightMap make_light_map(const scene::Light& light, const scene::Camera& camera, int map_size,
                           const glm::dvec2& shift_texels = glm::dvec2(0.0));
+
+  /// The light's map, in the first of the run's phases, after the camera has moved to its right by kCameraStepTexels of
+  /// the map's first layer. A layer whose grid moved by whole texels stays where it was. Nothing where the map does not
+  /// follow the camera. Throws as light_map().
+  std::optional<LightMap> make_stepped_map(const scene::Camera& camera, int map_size);
 
   render::GBuffer& gbuffer(const scene::Camera& camera);
 
@@ -86,13 +94,11 @@ class SceneAssets {
   std::map<const scene::Camera*, render::GBuffer> gbuffers_;
   std::map<const scene::Camera*, SceneTruth> truths_;
 
+  LightMap draw_map(std::vector<scene::LightFrustum> layers, int map_size);
   /// Throws Error(kUsage) where culling left the map empty.
   void require_casters(const LightMap& light) const;
   SceneTruth make_truth(const scene::Camera& camera);
 };
-
-/// Throws Error(kUsage), with the name of the command, for a light whose map has layers.
-void require_one_layer(const LightMap& light, const std::string& command, const std::string& scene);
 
 /// Reads a map back as a picture of linear depth, rows top to bottom.
 images::Image read_linear_depth(const render::ShadowMap& map);

@@ -268,8 +268,8 @@ class SceneBench {
     for (std::size_t i = 0; i < result.cells.size(); ++i) result.cells[i].empty_frame = drawn[empty.of_filter[i]];
   }
 
-  /// Draws every filter again with the map's grid moved by parts of a texel. The passes stay turned to the last of
-  /// them.
+  /// Draws every filter again with the map's grid moved by parts of a texel, and after a step of the camera. The passes
+  /// stay turned to the last of these maps.
   void draw_phases(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
     const gl::Recorder::Pause pause(renderer_.recorder.get());
     const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases, options_.seed);
@@ -277,15 +277,22 @@ class SceneBench {
     for (std::size_t phase = 1; phase < shifts.size(); ++phase) {
       gbuffer_.forget_receivers();  // no phase asks for those of another
       const LightMap moved = assets_.make_light_map(task_.scene->light, *task_.camera, task_.map_size, shifts[phase]);
-      for (std::size_t i = 0; i < filters.size(); ++i) {
-        render::FilterPasses& filter = *filters[i];
-        const auto encoded = filter.make_encoded_targets();
-        filter.turn_to(
-            filter.prepare(make_filter_light(options_, task_.scene->light, moved.layers, filter.request()), encoded));
-        result.cells[i].phases.push_back(draw_visibility(filter, moved.map, gbuffer_, target_));
-      }
+      for (std::size_t i = 0; i < filters.size(); ++i)
+        result.cells[i].phases.push_back(draw_turned(*filters[i], moved));
     }
     gbuffer_.forget_receivers();
+    if (!options_.truth && !options_.part.is_worker()) return;
+    if (const auto moved = assets_.make_stepped_map(*task_.camera, task_.map_size)) {
+      for (std::size_t i = 0; i < filters.size(); ++i) result.cells[i].stepped = draw_turned(*filters[i], *moved);
+      gbuffer_.forget_receivers();
+    }
+  }
+
+  images::Image draw_turned(render::FilterPasses& filter, const LightMap& light) {
+    const auto encoded = filter.make_encoded_targets();
+    filter.turn_to(
+        filter.prepare(make_filter_light(options_, task_.scene->light, light.layers, filter.request()), encoded));
+    return draw_visibility(filter, light.map, gbuffer_, target_);
   }
 };
 

@@ -33,6 +33,8 @@ struct MeasuredCell {
   images::Image picture;                  ///< linear RGB
   images::Image visibility;               ///< 1 lit .. 0 blocked
   std::vector<images::Image> phases;      ///< the same, with the map's grid moved to each of the other phases
+  images::Image stepped;                  ///< the same as the first, with the map after a step of the camera; empty
+                                          ///< where the map does not follow it, or where no truth is wanted
   images::Image unbiased;                 ///< visibility without any depth bias; empty where no truth is wanted
   std::vector<images::Image> cascades;    ///< visibility by each cascade alone, also beyond its slice of the view;
                                           ///< none without cascades, or where no truth is wanted

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtx/component_wise.hpp>
 #include <iterator>
@@ -141,9 +142,8 @@ std::vector<metrics::ErrorStats> measure_phases(const images::Image& visibility,
   return phases;
 }
 
-images::Image score(records::CellRecord& record, const images::Image& visibility,
-                    std::span<const images::Image> other_phases, const images::Image& picture,
-                    const SceneTruth& truth) {
+images::Image score(records::CellRecord& record, const ScoredImages& drawn, const SceneTruth& truth) {
+  const auto& [visibility, other_phases, stepped, picture] = drawn;
   std::vector<metrics::ErrorStats> phases;
   if (truth.absent.empty()) phases = measure_phases(visibility, {}, truth, truth.mask);
   if (phases.empty()) {
@@ -163,7 +163,12 @@ images::Image score(records::CellRecord& record, const images::Image& visibility
   for (const images::Image& phase : other_phases)
     if (!phase.empty()) images.emplace_back(phase.texels);
   note_growth(record, images, truth);
-  note_flicker(record, metrics::measure_change(images, group, truth.mask));
+  if (stepped.empty()) {
+    note_flicker(record, metrics::measure_change(images, group, truth.mask));
+  } else {
+    note_step(record, metrics::measure_change(std::array<std::span<const float>, 2>{visibility.texels, stepped.texels},
+                                              1, truth.mask));
+  }
   // Of the pictures as they are saved, so that `diff` finds the same.
   images::Image flip;
   if (const auto seen = view_picture(images::round_to_half(picture)); seen && truth.area_seen) {

@@ -79,8 +79,8 @@ void visit_drawn(Cell& cell, const KeptParts& kept, const Visit& visit) {
     visit(error_part(cell.label, records::list_error_parts()[p]), cell.error_parts[p]);
 }
 
-/// The same for what else is known of its pixels. A worker hands its phases to the run that scores them; nobody else
-/// has them still.
+/// The same for what else is known of its pixels. A worker hands its phases, and what a step of the camera changed, to
+/// the run that scores them; nobody else has them still.
 template <class Cell, class Visit>
 void visit_known(Cell& cell, const Visit& visit) {
   for (const images::StabilityImage& each : images::list_stability_images())
@@ -88,6 +88,7 @@ void visit_known(Cell& cell, const Visit& visit) {
   for (const images::UncertaintyImage& each : images::list_uncertainty_images())
     visit(fmt::format("{}.{}", cell.label, each.id), cell.uncertainty.*each.image);
   for (std::size_t i = 0; i < cell.phases.size(); ++i) visit(fmt::format("{}.phase.{}", cell.label, i), cell.phases[i]);
+  visit(cell.label + ".stepped", cell.stepped);
 }
 
 constexpr const char* kConvention =

@@ -98,7 +98,9 @@ class Tuner {
   std::string evaluations_;  ///< rows of evaluations.csv
   int done_ = 0;
 
-  static std::vector<TunedFilter> list_filters(const std::vector<filters::FilterRequest>& requests) {
+  /// What is left of filters that have nothing to tune. Throws Error(kUsage) where none is left.
+  std::vector<TunedFilter> list_filters(const std::vector<filters::FilterRequest>& requests) const {
+    std::string nothing;
     std::vector<TunedFilter> tuned;
     for (const filters::FilterRequest& request : requests) {
       const auto is_same = [&](const TunedFilter& known) { return known.request.spec.id == request.spec.id; };
@@ -108,15 +110,16 @@ class Tuner {
                                                    request.spec.id));
       }
       if (list_searched_params(request).empty()) {
-        throw Error(
-            ErrorKind::kUsage,
-            fmt::format(
-                "there is nothing to tune of '{}': it has no numeric parameter with a range that is not const and not "
-                "set already; choose another filter (see 'list filters')",
-                request.label()));
+        nothing = fmt::format(
+            "there is nothing to tune of '{}': it has no numeric parameter with a range that is not const and not set "
+            "already",
+            request.label());
+        progress_.note(nothing);
+        continue;
       }
       tuned.push_back({request, {}, {}});
     }
+    if (tuned.empty()) throw Error(ErrorKind::kUsage, nothing + "; choose another filter (see 'list filters')");
     return tuned;
   }
 
@@ -127,6 +130,7 @@ class Tuner {
     record_.renderer = fmt::format("{} ({})", gl.renderer, gl.backend);
     record_.metric = metric_.name;
     record_.map_size = run.map_sizes.front();
+    record_.fit = scene::describe_fit(run.fit);
     record_.width = run.width;
     record_.height = run.height;
     record_.widest_kernel = find_widest_kernel(run.filters);
@@ -268,6 +272,7 @@ class Tuner {
       for (const std::vector<TuneView>& group : group_by_light(select_views(false))) {
         const std::unique_ptr<TuneScene> tune_scene = make_tune_scene(scene, group);
         views += tune_scene->views().size();
+        if (tune_scene->views().empty()) continue;
         for (TunedFilter& filter : filters_) score(filter, *tune_scene, false);
       }
       require_views(scene, views, "unseen");

@@ -84,15 +84,21 @@ TuneScene::TuneScene(measure::Renderer& renderer, const TuneSettings& settings, 
       scene_(turn_scene(scene, views)),
       assets_(renderer, *settings.options, scene_, cache, settings.pad_texels),
       target_("visibility", GL_R32F, settings.options->width, settings.options->height) {
-  light_ = &assets_.light_map(scene_.cameras.front(), settings.options->map_sizes.front());
+  const std::int64_t own = count_receivers(scene.cameras.front());
   for (const scene::Camera& camera : scene_.cameras) {
+    if (const std::int64_t count = count_receivers(camera); 2 * count < own) {
+      left_out_.push_back(fmt::format("{}, {}: {} receivers, less than half the {} of the scene's own view",
+                                      scene_.name, camera.name, count, own));
+      continue;
+    }
     on_view(fmt::format("truth of {}, {}", scene_.name, camera.name));
-    View view{&camera, &assets_.truth(camera), std::nullopt};
+    measure::LightMap& light = assets_.light_map(camera, settings.options->map_sizes.front());
+    View view{&camera, &assets_.truth(camera), &light, std::nullopt};
     if (view.truth->absent.empty() && is_artefact(settings.metric->kind))
       view.masks = measure::find_artefact_masks(
           assets_.tracer(),
           measure::list_traced_layers(renderer.shaders, assets_.gbuffer(camera),
-                                      measure::make_unbiased_light(*settings.options, scene_.light, light_->layers)),
+                                      measure::make_unbiased_light(*settings.options, scene_.light, light.layers)),
           *view.truth, settings.pad_texels);
     const std::string reason = explain_absent(view);
     if (reason.empty())
@@ -112,38 +118,42 @@ std::string TuneScene::explain_absent(const View& view) const {
                      acne ? "lit" : "blocked", settings_.metric->name, metrics::kFewestReceivers);
 }
 
-render::LightLayers TuneScene::make_light(const filters::FilterRequest& request) const {
-  return measure::make_filter_light(*settings_.options, scene_.light, light_->layers, request);
+std::int64_t TuneScene::count_receivers(const scene::Camera& camera) {
+  return std::ranges::count(measure::read_view_receivers(assets_.gbuffer(camera), scene_.light).mask(), 1);
+}
+
+render::LightLayers TuneScene::make_light(const filters::FilterRequest& request, const measure::LightMap& light) const {
+  return measure::make_filter_light(*settings_.options, scene_.light, light.layers, request);
 }
 
 render::FilterPasses TuneScene::make_passes(const filters::FilterRequest& request) {
-  return render::FilterPasses(renderer_.shaders, request, light_->map, make_light(request));
+  const measure::LightMap& light = *views_.front().light;
+  return render::FilterPasses(renderer_.shaders, request, light.map, make_light(request, light));
 }
 
 std::optional<std::vector<double>> TuneScene::score(render::FilterPasses& passes, const filters::ParamValues& values) {
   filters::FilterRequest request = passes.request();
   request.values = values;
-  passes.retune(renderer_.shaders, values, make_light(request));
-  passes.prefilter(light_->map);
-  if (measure::count_broken_texels(passes, light_->map) > 0) return std::nullopt;
   std::vector<Shot> shots(views_.size());
+  const measure::LightMap* drawn = nullptr;
   for (std::size_t i = 0; i < views_.size(); ++i) {
+    measure::LightMap& light = *views_[i].light;
+    if (drawn != &light) {
+      passes.retune(renderer_.shaders, values, make_light(request, light));
+      passes.prefilter(light.map);
+      if (measure::count_broken_texels(passes, light.map) > 0) return std::nullopt;
+    }
+    drawn = &light;
     render::GBuffer& gbuffer = assets_.gbuffer(*views_[i].camera);
-    passes.lookup(gbuffer, light_->map, target_);
+    passes.lookup(gbuffer, light.map, target_);
     shots[i].visibility = render::read_image(target_.texture(), 1);
-    if (settings_.metric->kind != TuneMetricKind::kFlip) continue;
-    shots[i].picture = render::shade(renderer_.shaders, gbuffer, target_.texture(), scene_, *views_[i].camera);
-  }
-  if (settings_.metric->kind == TuneMetricKind::kLeak) {
-    measure::draw_without_bias(
-        renderer_, *settings_.options, assets_, *light_, passes,
-        [&] {
-          passes.prefilter(light_->map);
-          for (std::size_t i = 0; i < views_.size(); ++i) {
-            passes.lookup(assets_.gbuffer(*views_[i].camera), light_->map, target_);
-            shots[i].unbiased = render::read_image(target_.texture(), 1);
-          }
-        });
+    if (settings_.metric->kind == TuneMetricKind::kFlip)
+      shots[i].picture = render::shade(renderer_.shaders, gbuffer, target_.texture(), scene_, *views_[i].camera);
+    if (settings_.metric->kind != TuneMetricKind::kLeak) continue;
+    measure::draw_without_bias(renderer_, *settings_.options, assets_, light, passes, [&] {
+      shots[i].unbiased = measure::draw_visibility(passes, light.map, gbuffer, target_);
+    });
+    drawn = nullptr;  // the prefilter is that of the map without bias
   }
   std::vector<double> scores(views_.size());
   tbb::parallel_for(std::size_t{0}, scores.size(),

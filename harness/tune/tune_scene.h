@@ -42,11 +42,13 @@ struct TuneSettings {
       0.0;  ///< around the scene in the map, and the widest kernel that the guard of artefacts allows for
 };
 
-/// One scene under one light with some of its views, ready to score any setting of any filter. Draws the map and the
-/// views and traces their truth once; scoring draws the prefilter once and one lookup for each view, and times nothing.
+/// One scene under one light with some of its views, ready to score any setting of any filter. Draws the maps and the
+/// views and traces their truth once; scoring draws the prefilter once for each map and one lookup for each view, and
+/// times nothing.
 class TuneScene {
  public:
-  /// `on_view` hears of each view before it is traced. All but the scene must outlive this object.
+  /// `on_view` hears of each view before it is traced. All but the scene must outlive this object. A view with less
+  /// than half the receivers of the scene's own is left out: it shows too little of what is tuned for.
   TuneScene(measure::Renderer& renderer, const TuneSettings& settings, truth::TruthCache& cache,
             const scene::Scene& scene, const std::vector<TuneView>& views,
             const std::function<void(const std::string&)>& on_view);
@@ -57,6 +59,7 @@ class TuneScene {
   struct View {
     const scene::Camera* camera = nullptr;
     const measure::SceneTruth* truth = nullptr;
+    measure::LightMap* light = nullptr;  ///< which the view shares with the others unless the fit follows the camera
     std::optional<metrics::ArtefactMasks> masks;  ///< only where the metric needs them
   };
   const std::vector<View>& views() const { return views_; }
@@ -79,14 +82,14 @@ class TuneScene {
   TuneSettings settings_;
   scene::Scene scene_;
   measure::SceneAssets assets_;
-  measure::LightMap* light_ = nullptr;
   render::ImageTarget target_;
   std::vector<View> views_;
   std::vector<std::string> left_out_;
 
   /// Gives why a view has no such metric; empty where it has.
   std::string explain_absent(const View& view) const;
-  render::LightLayers make_light(const filters::FilterRequest& request) const;
+  render::LightLayers make_light(const filters::FilterRequest& request, const measure::LightMap& light) const;
+  std::int64_t count_receivers(const scene::Camera& camera);
 };
 
 }  // namespace shadowbench::tune

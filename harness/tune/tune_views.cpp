@@ -39,9 +39,11 @@ std::string describe_tune_views(bool training) {
 
 glm::vec3 find_pivot(const scene::Scene& scene, const scene::Camera& camera) {
   const scene::Bounds bounds = scene.bounds();
+  const glm::vec3& eye = camera.position_ws;
+  if (glm::all(glm::greaterThan(eye, bounds.min)) && glm::all(glm::lessThan(eye, bounds.max))) return eye;
   const glm::vec3 middle = 0.5f * (bounds.min + bounds.max);
-  const float distance = glm::dot(middle - camera.position_ws, camera.forward_ws);
-  return distance > 0.0f ? camera.position_ws + distance * camera.forward_ws : middle;
+  const float distance = glm::dot(middle - eye, camera.forward_ws);
+  return distance > 0.0f ? eye + distance * camera.forward_ws : middle;
 }
 
 scene::Camera turn_camera(const scene::Camera& camera, const glm::vec3& pivot_ws, double degrees) {

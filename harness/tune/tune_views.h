@@ -9,7 +9,7 @@ namespace shadowbench::tune {
 
 /// A way to look at a scene other than its own: from elsewhere, or under another light.
 struct TuneView {
-  double camera_turn_deg = 0.0;  ///< of the first camera, about the vertical axis through what it looks at
+  double camera_turn_deg = 0.0;  ///< of the first camera, about the vertical axis through find_pivot()
   double light_turn_deg = 0.0;   ///< added to the light's azimuth
   bool training = false;         ///< parameters are chosen by it; else they are only scored on it
 
@@ -24,7 +24,8 @@ const std::vector<TuneView>& tune_views();
 std::string describe_tune_views(bool training);
 
 /// The point of a camera's central ray that is nearest to the middle of the scene's bounds; where that lies
-/// behind the camera, the middle itself.
+/// behind the camera, the middle itself. Of a camera that stands within the bounds its own place: elsewhere it might
+/// stand in a wall, or beside the ground.
 glm::vec3 find_pivot(const scene::Scene& scene, const scene::Camera& camera);
 
 /// A camera turned about the vertical axis through a point; positive turns it as an azimuth grows, from +z to +x.

@@ -63,9 +63,11 @@ std::vector<Metric> list_errors() {
        "the fraction of the filter's own kernel, laid on the receiver's tangent plane, that sees the light's centre",
        kError, kTabled},
       {"error.flicker", at<&V::error, &ErrorRecord::flicker>, "visibility", kPositive, kLess, "flicker",
-       "root mean square of what a receiver's visibility changes by from one place of the map's texel grid to another, "
-       "over receivers and pairs of places: what is seen while the map slides by fractions of a texel, in which the "
-       "truth does not change",
+       "root mean square of what a receiver's visibility changes by while the truth does not: where the map follows "
+       "the "
+       "camera, by a step of the camera to its right by half a texel of the nearest map, under the cell's own fit and "
+       "snapping; where it does not, from one place of the map's texel grid to another, over pairs of places, as under "
+       "a turning light",
        kNotKept, kUntabled, "--max-flicker"},
       {"truth.se", at<&V::truth, &TruthRecord::se>, "visibility", kPositive, kLess, "standard error of the truth",
        "standard error of the truth, root mean square over receivers", kKept},

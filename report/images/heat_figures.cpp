@@ -18,7 +18,6 @@ constexpr Rgb kZeroTexel{0.93f, 0.94f, 0.95f};
 constexpr Rgb kNotCounted{0.72f, 0.74f, 0.77f};
 constexpr Rgb kGround{0.90f, 0.91f, 0.92f};
 constexpr double kLeastVarianceDecade = -10.0;  // of the colour bar; the largest is 0
-constexpr double kLeastFlicker = 1e-3;
 
 float worst_if_nan(float value, float badness) {
   return std::isnan(value) ? std::numeric_limits<float>::infinity() : badness;
@@ -78,14 +77,6 @@ Stack show_bound(const Image& shortfall, const Image& violation, const std::stri
 }
 
 /// Pale for little: the palest of the map would be lost on the ground, which stands for what is below the scale.
-ColorScale make_flicker_scale() {
-  ColorScale scale{[](double flicker) { return place_flicker(flicker).value_or(std::nan("")); },
-                   [map = color_map("inferno")](float place) { return map(0.95f * (1.0f - place)); },
-                   {{0.001, "0.001"}, {0.01, "0.01"}, {0.1, "0.1"}, {1.0, "1"}}};
-  scale.off_bar = [](float) { return kGround; };
-  return scale;
-}
-
 float rank_difference(float value) {
   if (std::isinf(value)) return -1.0f;
   return worst_if_nan(value, std::abs(value));
@@ -122,20 +113,6 @@ std::vector<Stack> show_difference(const Image& difference, const Image& flip) {
   stacks.push_back(show_heat("FLIP", "0: an observer who flips between the pictures sees no change", flip,
                              rank_difference, make_linear_scale(0.0, most, 2, color_map("magma"))));
   return stacks;
-}
-
-std::optional<double> place_flicker(double flicker) {
-  if (!(flicker >= kLeastFlicker)) return std::nullopt;
-  return std::min(1.0, 1.0 - std::log10(flicker) / std::log10(kLeastFlicker));
-}
-
-Stack show_flicker(const std::string& title, const Image& flicker) {
-  const auto size = [](float value) { return value; };  // a single pixel that flickers is seen
-  return {{title, "", color_values(fit_worst(flicker, {kColumnWidth, kColumnWidth}, size), make_flicker_scale())}};
-}
-
-Cell show_flicker_scale() {
-  return make_color_bar(make_flicker_scale(), "grey: less than 0.001; the largest is shown where pixels share one");
 }
 
 }  // namespace shadowbench::images

@@ -39,13 +39,4 @@ std::vector<Stack> show_stability(const StabilityImages& images, const std::arra
 /// `flip`: 1 channel, [0,1], or empty.
 std::vector<Stack> show_difference(const Image& difference, const Image& flip);
 
-/// Maps a flicker to the pictures' logarithmic scale: 0.001 to 0, 1 to 1. Nothing for less.
-std::optional<double> place_flicker(double flicker);
-
-/// Shows flicker by pixel, 1 channel, finite and not negative, on the scale of place_flicker().
-Stack show_flicker(const std::string& title, const Image& flicker);
-
-/// That scale, for the legend.
-Cell show_flicker_scale();
-
 }  // namespace shadowbench::images

@@ -134,8 +134,8 @@ std::vector<std::pair<std::string, std::string>> list_bias_facts(const records::
   return {{"scene", sweep.title.empty() ? sweep.scene : sweep.scene + ": " + sweep.title},
           {"light", sweep.light},
           {"view", fmt::format("{}, {} x {} pixels", sweep.view, sweep.width, sweep.height)},
-          {"shadow map", fmt::format("{0} x {0} texels of {1} m, depth range {2:.3g} m", sweep.map_size,
-                                     describe_texels(sweep), sweep.depth_range_m)},
+          {"shadow map", fmt::format("{0} x {0} texels of {1} m, fit {3}, depth range {2:.3g} m", sweep.map_size,
+                                     describe_texels(sweep), sweep.depth_range_m, sweep.fit)},
           {"steepest lit surfaces",
            fmt::format(
                "{:.3g}th percentile of slope: |dz/du| + |dz/dv| = {:.3g} of depth per texel, {:.3g} degrees between "

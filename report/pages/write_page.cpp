@@ -63,7 +63,6 @@ const std::vector<PageFile>& list_pages() {
       {"run", "", "index.html", "summary.md", "the run: cost, error and trade"},
       {"frames", "", "frames.html", "frames.md", "accumulation over frames"},
       {"stress", "stress", "stress.html", "stress.md", "stress: where filters break"},
-      {"flicker", "flicker", "flicker.html", "flicker.md", "flicker in motion"},
       {"bias", "bias", "bias.html", "bias.md", "depth bias"},
       {"tune", "tune", "tune.html", "tune.md", "tuned parameters"},
       {"regress", "regress", "regress.html", "regress.md", "comparison with the baseline"}};

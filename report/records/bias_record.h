@@ -51,8 +51,9 @@ struct BiasSweepRecord {
   std::string refused;  ///< why the light has no answer; empty: it has one
   std::string view;
   int map_size = 0;
-  int width = 0;   ///< pixels
-  int height = 0;  ///< pixels
+  std::string fit;  ///< of the light's map
+  int width = 0;    ///< pixels
+  int height = 0;   ///< pixels
   std::string renderer;
   std::vector<std::string> filters;  ///< labels; their place gives them their colour
   double percentile = 0.0;           ///< [0,1]: the theoretical amount is enough for this share of the lit receivers

@@ -15,7 +15,7 @@ nlohmann::json to_json(const CellRecord& cell);
 /// Writes a run's head as JSON, without its cells.
 nlohmann::json to_json(const RunRecord& run);
 
-/// Writes the fields that stress.json and flicker.json begin with.
+/// Writes the fields that stress.json begins with.
 nlohmann::json to_json(const Provenance& provenance, int schema_version);
 
 /// Reads a cell; `where` names its file in messages. Throws Error(kInput) where a field is missing or holds another

@@ -173,6 +173,7 @@ std::string make_tuned_json(const TunedRecord& record) {
                     {"renderer", record.renderer},
                     {"metric", record.metric},
                     {"map_size", record.map_size},
+                    {"fit", record.fit},
                     {"size", {record.width, record.height}},
                     {"pad_texels", record.pad_texels},
                     {"widest_kernel", record.widest_kernel},

@@ -75,6 +75,7 @@ struct TunedRecord {
   std::string renderer;
   std::string metric;
   int map_size = 0;
+  std::string fit;             ///< of the light's map
   int width = 0;               ///< pixels
   int height = 0;              ///< pixels
   double pad_texels = 0.0;     ///< texels around the scene in the map

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { kNarrow, kWide, listViolations, measureOverflow, open, pageOf, settle } from "./support.mjs";
 
 const kPages = [...["several", "odd", "untrue", "single", "mixed"].map((run) => [run, "index.html"]),
-  ...["stress", "flicker", "bias", "tune"].map((name) => [name, name + ".html"])];
+  ...["stress", "bias", "tune"].map((name) => [name, name + ".html"])];
 
 for (const [run, file] of kPages) {
   test(`OnEveryScreenInBothThemes_NothingIsInaccessibleOrTooWide: ${run}`, async () => {

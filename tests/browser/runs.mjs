@@ -43,7 +43,6 @@ const kRuns = {
   waves: ["run", "--scene", "waves.obj", ...kSmall, "--filters", "none,tent3x3,vsm"],
   hundreds: ["run", "--scene", "cubes", "--size", "96x54", "--map-size", "64", "--rounds", "1", ...kLean, "--filters", kMany],
   stress: ["stress", "--filters", "vsm", "--axes", "vsm-cancellation"],
-  flicker: ["flicker", "--filters", "none,vsm", "--frames", "3", "--map-size", "128", "--size", "96x54"],
   bias: ["bias", "--filters", "none,tent3x3", "--map-size", "128", "--size", "160x90"],
   tune: ["tune", "--filter", "vsm", "--scene", "cubes", "--budget", "2", "--map-size", "128", "--size", "96x54"],
 };

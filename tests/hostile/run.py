@@ -47,7 +47,6 @@ CHEAP = ["--scene", "cubes", "--map-size", "16", "--size", "16x9", "--gl", "soft
 WRITERS = [RUN, ["merge", "whole", "--out", "out"], ["export", "cubes", "--out", "out", "--gl", "software"],
            ["stress", "--axes", "taps", "--filters", "poisson:taps=8", "--out", "out", "--gl", "software"],
            ["bias", *CHEAP, "--filters", "none", "--out", "out"],
-           ["flicker", *CHEAP, "--filters", "none", "--frames", "2", "--out", "out"],
            ["tune", *CHEAP, "--filters", "vsm", "--budget", "3", "--out", "out"],
            ["regress", "whole", "--baseline", "base", "--out", "out"],
            ["diff", "whole/cubes.exr#none.visibility", "whole/cubes.exr#none.visibility", "--html", "out"]]
@@ -81,7 +80,6 @@ WORDS = {"--map-format": ["d32", "", "D16 ", "r32f", "d16,d24"], "--fit": ["box"
 # Commands that work without a further word take minutes: these words, which may be overruled, keep them short.
 SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-size", "128", "--gl", "software"],
          "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "software"],
-         "flicker": ["--filters", "none", "--frames", "2", "--size", "16x9", "--map-size", "16", "--gl", "software"],
          "tune": ["--scene", "cubes", "--budget", "1", "--size", "16x9", "--map-size", "16", "--gl", "software"]}
 COMMANDS = ["run", "list", "diff", "bias", "merge", "advise", "tune", "stress", "regress", "flicker", "nosuch",
             ""]

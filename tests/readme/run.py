@@ -41,7 +41,6 @@ CHEAPER = {
     "run": [("--size", "96x54"), ("--map-size", "128"), ("--rounds", "6"), ("--scene", "cubes"), ("--filters", "none,vsm"),
             ("--gpu", "none")],
     "bias": [("--size", "96x54"), ("--map-size", "128"), ("--filters", "none")],
-    "flicker": [("--size", "96x54"), ("--map-size", "128"), ("--frames", "3"), ("--filters", "none,vsm")],
     "stress": [("--axes", "vsm-cancellation")],
     "view": [("--size", "96x54"), ("--close-after", "0.5")],
     "tune": [("--size", "96x54"), ("--map-size", "128"), ("--scene", "cubes"), ("--budget", "3")],

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "harness/measure/timing/statistics.h"
 #include "reference/metrics/error_stats.h"
@@ -78,25 +81,30 @@ std::vector<records::ResolveRecord> AccumulationMeter::follow(FrameDrawing& draw
                                                               std::vector<images::Image>& last) {
   std::vector<render::ResolvePass> resolves = make_resolves(bench_);
   std::vector<records::ResolveRecord> records(resolves.size());
-  std::vector<metrics::FlickerMeter> flicker(resolves.size(), metrics::FlickerMeter(truth_.mask));
+  std::vector<std::vector<double>> changes(resolves.size());  // squared, of each step
   last.resize(resolves.size());
   const int frames = bench_.options.frames;
   for (int frame = 0; frame < frames; ++frame) {
     drawing.draw(show_frame(frame, sequence.jitter), resolves);
     for (std::size_t i = 0; i < resolves.size(); ++i) {
-      last[i] = render::read_image(resolves[i].texture(), 1);
+      const images::Image before = std::exchange(last[i], render::read_image(resolves[i].texture(), 1));
       records[i].rmse.push_back(find_rmse(last[i], sequence.truth, truth_));
       if (!sequence.converged.empty()) {
         if (frame == 0) records[i].noise.emplace();
         records[i].noise->push_back(find_rmse(last[i], sequence.converged, truth_));
       }
-      if (frame + 1 >= frames / 2) flicker[i].add(last[i].texels, sequence.truth.texels);
+      if (frame < std::max(1, frames / 2)) continue;
+      const std::array<std::span<const float>, 2> step{before.texels, last[i].texels};
+      if (const auto change = metrics::measure_change(step, 1, truth_.mask))
+        changes[i].push_back(change->value * change->value);
     }
   }
   for (std::size_t i = 0; i < records.size(); ++i) {
     records[i].rule = list_resolve_rules()[i].name;
     records[i].jitter = sequence.jitter;
-    if (const auto stats = flicker[i].finish()) records[i].flicker = stats->change;
+    if (!changes[i].empty())
+      records[i].flicker =
+          std::sqrt(std::reduce(changes[i].begin(), changes[i].end()) / static_cast<double>(changes[i].size()));
   }
   return records;
 }

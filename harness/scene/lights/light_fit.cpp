@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <glm/gtx/component_wise.hpp>
 #include <limits>
 #include <span>
 
@@ -92,6 +93,15 @@ PerspectiveMap make_planes(const Beam& beam, const AxisExtent& extent) {
   if (extent.farthest <= 0.0) return {beam, 0.5 * beam.reference_m, 2.0 * beam.reference_m};
   const double far_m = extent.farthest * (1.0 + kPadding);
   return {beam, std::max(extent.nearest * (1.0 - kPadding), kLeastNear * far_m), far_m};
+}
+
+/// Whether two layers serve the same receivers, but for rounding: a camera's place is in single precision.
+bool is_alike(const LayerShare& a, const LayerShare& b) {
+  const auto *one = std::get_if<ViewSlice>(&a), *other = std::get_if<ViewSlice>(&b);
+  if (!one || !other) return a == b;
+  const auto is_near = [](double x, double y) { return std::abs(x - y) <= 1e-4 * std::abs(x); };
+  return is_near(one->fade_in_begin, other->fade_in_begin) && is_near(one->fade_in_end, other->fade_in_end) &&
+         is_near(one->fade_out_begin, other->fade_out_begin) && is_near(one->fade_out_end, other->fade_out_end);
 }
 
 }  // namespace
@@ -188,6 +198,18 @@ LightFrustum fit_light(const Scene& scene, const FitRequest& request) {
 std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& request) {
   const Light& light = request.light ? *request.light : scene.light;
   return std::visit([&](const auto& kind) { return fit_layers(kind, find_window(light), scene, request); }, light.kind);
+}
+
+bool follows_camera(const Light& light, const FitRule& rule) {
+  return rule.follows_view() && !light.map_window && !find_beam(light);
+}
+
+bool has_same_grid(const LightFrustum& a, const LightFrustum& b) {
+  constexpr double kRounding = 1e-6;  // of a texel
+  if (is_curved(a.shape) || is_curved(b.shape) || !is_alike(a.share, b.share)) return false;
+  if (std::abs(a.texel_size_ws - b.texel_size_ws) > kRounding * a.texel_size_ws) return false;
+  const glm::dvec2 moved = glm::dvec2(a.light_from_world[3] - b.light_from_world[3]) / a.texel_size_ws;
+  return glm::compMax(glm::abs(moved - glm::round(moved))) < kRounding;
 }
 
 int count_layers(const Light& light, const FitRule& rule) {

@@ -163,6 +163,13 @@ truth::MapGrid make_map_grid(const LightFrustum& frustum);
 /// Cost: one or two passes over the vertices.
 std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& request);
 
+/// Whether the light's map follows the camera. If not, one map serves all cameras.
+bool follows_camera(const Light& light, const FitRule& rule);
+
+/// Whether two fits of one light have the same texels: they differ by whole texels, which change no filter's weights,
+/// and in how they share receivers out by no more than rounding.
+bool has_same_grid(const LightFrustum& a, const LightFrustum& b);
+
 /// How many layers that makes.
 int count_layers(const Light& light, const FitRule& rule);
 

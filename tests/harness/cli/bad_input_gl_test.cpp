@@ -110,7 +110,8 @@ TEST_F(BadInput, OtherSpellingOfFilters) {
   expect_refusal(small("--filter pcf2x3"), 2, {"'pcf2x3'"});
   expect_refusal(small("--filter=pcf2x3"), 2, {"'pcf2x3'"});
   expect_refusal("tune --filter pcf2x3", 2, {"'pcf2x3'"});
-  for (const char* command : {"run", "tune", "stress", "bias", "flicker"}) {
+  expect_refusal("flicker --frames 2", 2, {"is gone", "error.flicker"});
+  for (const char* command : {"run", "tune", "stress", "bias"}) {
     const std::string help = run(command + std::string(" --help")).out;
     EXPECT_NE(help.find("--filters "), std::string::npos) << command;
     EXPECT_EQ(help.find("--filter "), std::string::npos) << command;

@@ -35,7 +35,6 @@ std::vector<std::string> list_commands() {
           "merge whole",
           "bias --scene cubes --filters none --map-size 64 --size 160x90",
           "stress --axes taps --filters poisson:taps=8",
-          "flicker --scene cubes --filters none --map-size 32 --size 32x18 --frames 2",
           "tune --filters vsm --scene cubes --map-size 64 --size 64x36 --budget 3"};
 }
 

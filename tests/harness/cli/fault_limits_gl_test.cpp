@@ -95,8 +95,7 @@ TEST_F(FaultLimits, RefusedContext_IsOneMessage) {
               has_osmesa ? "osmesa: OSMesa gives" : "egl: no device"}};
   for (const Refusal& each : refusals) {
     std::vector<std::string> commands = {"run --scene cubes"};
-    if (each.backend == std::string("glfw"))
-      commands.insert(commands.end(), {"bias", "flicker", "stress", "tune --filters vsm"});
+    if (each.backend == std::string("glfw")) commands.insert(commands.end(), {"bias", "stress", "tune --filters vsm"});
     for (const std::string& command : commands) {
       const std::string line = std::string("env ") + each.environment + " '" SHADOWBENCH_PROGRAM "' " + command +
                                " --out out --gl " + each.backend;

@@ -122,8 +122,7 @@ TEST_F(FaultSignal, WhileAUsersFilterIsMeasured_NoChildStays) {
 }
 
 TEST_F(FaultSignal, OtherCommands_SayThatTheyWereStopped) {
-  const char* commands[] = {"bias --size 320x180 --out out", "stress --out out", "flicker --out out",
-                            "tune --filters vsm --out out"};
+  const char* commands[] = {"bias --size 320x180 --out out", "stress --out out", "tune --filters vsm --out out"};
   for (const char* each : commands) {
     const pid_t pid = start(each);
     ASSERT_TRUE(wait_until([&] {

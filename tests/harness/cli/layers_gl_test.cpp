@@ -149,12 +149,5 @@ TEST_F(LayersRun, ALampInsideACaster_IsWarnedOf) {
   EXPECT_THAT(all()["warnings"].dump(), HasSubstr("the light reaches no surface in view"));
 }
 
-TEST_F(LayersRun, TheCommandThatFollowsOneMap_SaysItDoesNotTakeMore) {
-  const Outcome outcome =
-      run("flicker --scene lantern --motion light --frames 2 --filters none --size 64x36 --out out");
-  EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("'lantern' has a map of 6 layers"));
-}
-
 }  // namespace
 }  // namespace shadowbench::test

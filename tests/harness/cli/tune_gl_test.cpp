@@ -54,6 +54,19 @@ TEST_F(TuneCommand, FindsParametersThatAreBetterOnUnseenViews) {
   for (const auto& param : vsm["searched"]) EXPECT_EQ(vsm["params"][param["name"].get<std::string>()], param["found"]);
 }
 
+/// Of the filters given one has nothing to tune.
+TEST_F(TuneCommand, UnderCascades_GoesOnWithoutWhatCannotBeTuned) {
+  const Outcome outcome =
+      run("tune --out out --scene avenue --fit cascades:count=2 --map-size 128 --size 96x54 --filters none,poisson "
+          "--budget 3");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("there is nothing to tune of 'none'"));
+  const nlohmann::json tuned = read_tuned();
+  EXPECT_EQ(tuned["fit"], "cascades:count=2,split=0.5,blend=0.1,depths=all");
+  ASSERT_EQ(tuned["filters"].size(), 1u);
+  EXPECT_EQ(tuned["filters"][0]["id"], "poisson");
+}
+
 /// exp(c) of the cleared depth 1 is infinite in r32f above c = 88.72, wherever the image shows it or not.
 TEST_F(TuneCommand, SettingsThatOverflowTheMap_CountAsWhollyWrong) {
   ASSERT_EQ(tune("--filters esm:radius=0 --budget 3").exit_code, 0);

@@ -72,6 +72,15 @@ TEST(Phases, BelowEight_FlickerIsAbsent) {
   EXPECT_TRUE(enough.absent.empty());
 }
 
+TEST(Phases, FlickerOfAStep_NeedsNoOthers_AndHasNoInterval) {
+  records::CellRecord record;
+  note_step(record, metrics::Change{0.01});
+  EXPECT_EQ(record.error.flicker, 0.01);
+  EXPECT_NE(record.absent.at("error.flicker_ci95"), "");
+  note_step(record, std::nullopt);
+  EXPECT_NE(record.absent.at("error.flicker"), "");
+}
+
 TEST(Phases, EveryErrorOfTheTable_IsItsMeanOverThem_AndTheLargestIsTheLargest) {
   std::vector<metrics::ErrorStats> phases(4);
   for (const metrics::Metric& metric : metrics::metric_table())

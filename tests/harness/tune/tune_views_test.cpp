@@ -74,6 +74,12 @@ TEST(FindPivot, WithTheSceneBehindTheCamera_IsItsMiddle) {
   expect_near(find_pivot(scene, camera), 0.5f * (bounds.min + bounds.max));
 }
 
+TEST(FindPivot, OfACameraWithinTheScene_IsItsOwnPlace) {
+  const scene::Scene scene = load_scene("avenue");
+  const scene::Camera& camera = scene.cameras.front();
+  expect_near(find_pivot(scene, camera), camera.position_ws);
+}
+
 TEST(MakeTuneScene, TurnsTheLightInAzimuth_AndNamesItsCameras) {
   scene::Scene scene = load_scene("cubes");
   scene.light.kind = scene::Sun{glm::vec3(scene::light_direction(70.0, 40.0))};

@@ -11,69 +11,7 @@
 namespace shadowbench::metrics {
 namespace {
 
-using ::testing::DoubleEq;
 using ::testing::DoubleNear;
-using ::testing::ElementsAre;
-using ::testing::FloatEq;
-
-/// One receiver's values over frames, for an image and the truth.
-FlickerStats measure_one(const std::vector<float>& image, const std::vector<float>& truth) {
-  FlickerMeter meter({1});
-  for (std::size_t t = 0; t < image.size(); ++t) meter.add({&image[t], 1}, {&truth[t], 1});
-  return *meter.finish();
-}
-
-TEST(Flicker, ImageThatChangesAsTheTruth_HasNone) {
-  const FlickerStats stats = measure_one({0.0f, 0.25f, 1.0f}, {0.0f, 0.25f, 1.0f});
-  EXPECT_EQ(stats.flicker, 0.0);
-  EXPECT_THAT(stats.change, DoubleEq(std::sqrt((0.0625 + 0.5625) / 2.0)));
-  EXPECT_EQ(stats.change, stats.truth_change);
-  EXPECT_THAT(stats.step_change, ElementsAre(0.25, 0.75));
-}
-
-TEST(Flicker, ConstantError_IsNone) { EXPECT_EQ(measure_one({0.25f, 0.5f, 0.75f}, {0.0f, 0.25f, 0.5f}).flicker, 0.0); }
-
-TEST(Flicker, IsTheChangeThatTheTruthDoesNotHave) {
-  const FlickerStats stats = measure_one({0.0f, 1.0f, 0.0f}, {0.5f, 0.5f, 0.5f});
-  EXPECT_EQ(stats.flicker, 1.0);
-  EXPECT_EQ(stats.change, 1.0);
-  EXPECT_EQ(stats.truth_change, 0.0);
-  EXPECT_THAT(stats.truth_step_change, ElementsAre(0.0, 0.0));
-}
-
-/// An image that stands still under a truth that moves is wrong in time too.
-TEST(Flicker, MissingChange_CountsToo) { EXPECT_EQ(measure_one({0.5f, 0.5f}, {0.0f, 0.5f}).flicker, 0.5); }
-
-TEST(Flicker, GoingBackAndForth_IsCounted_WanderingOneWayAndNoiseAreNot) {
-  const auto returning = [](const std::vector<float>& values) { return measure_one(values, values).returning; };
-  EXPECT_EQ(returning({0.0f, 0.3f, 0.6f, 1.0f}), 0.0);
-  EXPECT_EQ(returning({1.0f, 0.98f, 1.0f, 0.97f, 1.0f}), 0.0) << "below kReturn";
-  EXPECT_EQ(returning({0.0f, 0.3f, 0.27f, 0.6f}), 0.0) << "came back by less than kReturn";
-  EXPECT_EQ(returning({0.0f, 0.3f, 0.2f, 0.6f}), 1.0);
-  EXPECT_EQ(returning({0.0f, 0.3f, 0.28f, 0.26f, 0.24f}), 1.0) << "a slow return is one";
-  EXPECT_EQ(returning({1.0f, 0.0f, 1.0f}), 1.0);
-}
-
-TEST(Flicker, OnlyTheMaskCounts) {
-  FlickerMeter meter({0, 1, 1, 0});
-  const std::vector<float> still = {0.0f, 0.0f, 0.0f, 0.0f}, changed = {1.0f, 0.0f, 1.0f, 1.0f};
-  meter.add(still, still);
-  meter.add(changed, still);
-  const FlickerStats stats = *meter.finish();
-  EXPECT_EQ(stats.receivers, 2);
-  EXPECT_THAT(stats.step_change, ElementsAre(DoubleEq(std::sqrt(0.5)))) << "root mean squares, as the change is";
-  EXPECT_THAT(stats.flicker, DoubleEq(std::sqrt(0.5)));
-  EXPECT_THAT(stats.by_pixel, ElementsAre(FloatEq(0.0f), FloatEq(0.0f), FloatEq(1.0f), FloatEq(0.0f)));
-}
-
-TEST(Flicker, NotFinite_IsLeftOutAndCounted) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const FlickerStats stats = measure_one({0.0f, nan, 0.0f, 0.5f}, {0.0f, 0.0f, 0.0f, 0.0f});
-  EXPECT_EQ(stats.not_finite, 2);
-  EXPECT_THAT(stats.flicker, DoubleNear(0.5, 1e-12));
-  EXPECT_THAT(stats.change, DoubleNear(0.5, 1e-12));
-  EXPECT_EQ(stats.step_change.size(), 3u);
-}
 
 TEST(Flicker, ChangeBetweenPlacesOfTheGrid_IsOverAllPairs) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -125,17 +63,6 @@ TEST(Flicker, ChangeDependsOnNoCountOfPlaces_AndIsWithinItsInterval) {
     EXPECT_NEAR(mean_square, 0.5, 0.03) << groups << " groups of " << of_group;
     EXPECT_GE(covered, 0.88 * kTrials) << groups << " groups of " << of_group;
   }
-}
-
-TEST(Flicker, OneFrame_OrNoReceiver_HasNoAnswer) {
-  FlickerMeter one({1});
-  const std::vector<float> value = {1.0f};
-  one.add(value, value);
-  EXPECT_FALSE(one.finish());
-  FlickerMeter none({0});
-  none.add(value, value);
-  none.add(value, value);
-  EXPECT_FALSE(none.finish());
 }
 
 }  // namespace

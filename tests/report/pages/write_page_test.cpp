@@ -43,29 +43,29 @@ TEST_F(WritePage, WritesHtmlAndMarkdown) {
 }
 
 TEST_F(WritePage, LinksThePagesThatLieInTheSameReport) {
-  write("flicker", "flicker");
+  write("bias", "bias");
   write_text_file(report_ / "index.html", "");
   EXPECT_THAT(write("stress", "stress"),
-              AllOf(HasSubstr("href=\"../index.html\""), HasSubstr("href=\"../flicker/flicker.html\""),
-                    Not(HasSubstr("href=\"../bias/bias.html\""))));
+              AllOf(HasSubstr("href=\"../index.html\""), HasSubstr("href=\"../bias/bias.html\""),
+                    Not(HasSubstr("href=\"../tune/tune.html\""))));
 }
 
 TEST_F(WritePage, LinksPagesThatWereWrittenEarlier_WithTheNewOne) {
-  write("flicker", "flicker");
-  EXPECT_THAT(read("flicker", "flicker"), Not(HasSubstr("stress.html")));
+  write("bias", "bias");
+  EXPECT_THAT(read("bias", "bias"), Not(HasSubstr("stress.html")));
   write("stress", "stress");
-  EXPECT_THAT(read("flicker", "flicker"), HasSubstr("href=\"../stress/stress.html\""));
+  EXPECT_THAT(read("bias", "bias"), HasSubstr("href=\"../stress/stress.html\""));
 }
 
 TEST_F(WritePage, LinksPagesOfOneFolder) {
-  write("all", "flicker");
-  EXPECT_THAT(write("all", "stress"), HasSubstr("href=\"flicker.html\""));
+  write("all", "bias");
+  EXPECT_THAT(write("all", "stress"), HasSubstr("href=\"bias.html\""));
 }
 
 TEST_F(WritePage, LinksNoPipe) {
   std::filesystem::create_directories(report_ / "stress");
   ASSERT_EQ(mkfifo((report_ / "stress" / "stress.html").c_str(), 0600), 0);
-  EXPECT_THAT(write("flicker", "flicker"), Not(HasSubstr("stress.html")));
+  EXPECT_THAT(write("bias", "bias"), Not(HasSubstr("stress.html")));
 }
 
 /// A folder of the user's choice may lie beside somebody else's index.html.
