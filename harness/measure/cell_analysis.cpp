@@ -179,6 +179,11 @@ void CellAnalyser::note_cascades(MeasuredCell& cell) const {
     cascade.end_m = std::get<scene::ViewSlice>(light_.layers[i].share).end_m;
     cascade.texels_per_m = 1.0 / light_.layers[i].texel_size_ws;
     cascade.share = receivers > 0.0 ? static_cast<double>(count) / receivers : 0.0;
+    if (count == 0)
+      record.warnings.push_back(
+          fmt::format("{}: cascade {}, which ends at {} m, has no receiver, and its map is drawn for nothing: move "
+                      "splits, near or far",
+                      record.scene, i + 1, records::format_number(cascade.end_m)));
     if (count >= metrics::kFewestReceivers)
       cascade.rmse = find_mean_rmse(measure_phases(cell.visibility, cell.phases, truth_, own));
     cascade.acne = metrics::rate_acne(image, truth_.rays.area.visibility, masks.acne);

@@ -157,6 +157,7 @@ SceneTruth SceneAssets::make_truth(const scene::Camera& camera) {
   SceneTruth truth;
   if (!options_.truth) {
     truth.absent = "the run was made with --no-truth";
+    if (options_.all_parts) truth.receivers = read_view_receivers(gbuffer(camera), scene_.light);
     return truth;
   }
   render::GBuffer& view = gbuffer(camera);

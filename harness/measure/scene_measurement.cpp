@@ -64,6 +64,7 @@ class SceneBench {
     if (const std::string wide = describe_wide_scene(*task_.scene, light_.frustum().texel_size_ws);
         options_.truth && !wide.empty())
       for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(wide);
+    warn_of_small_map(result);
     renderer_.context->require_no_gl_errors();
     return result;
   }
@@ -223,6 +224,17 @@ class SceneBench {
         "smaller --perspective-depth",
         task_.scene->name, render::describe_map(light_.map.settings()), records::format_number(step_m),
         records::format_number(bias_m), records::format_number(0.5 * step_m)));
+    for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
+  }
+
+  /// Half of a map at most is padding, and kernels wider than that read beyond it.
+  void warn_of_small_map(SceneMeasurement& result) const {
+    const double pad_texels = padding_texels(options_);
+    if (limit_padding(pad_texels, task_.map_size) >= pad_texels) return;
+    const std::string warning(
+        fmt::format("{}: a map of {} texels a side has no room for the {} texels that kernels need on each: "
+                    "choose --map-size {:.0f} or more",
+                    task_.scene->name, task_.map_size, records::format_number(pad_texels), 4.0 * pad_texels + 1.0));
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }
 

@@ -76,6 +76,7 @@ struct RunOptions {
   std::vector<std::string> filter_files;  ///< of the user, as they were named
   std::string kernel_width;  ///< of filters that were told none: see filters::set_widths(); empty: their own
   std::vector<int> map_sizes = {1024};
+  bool equal_bytes = false;               ///< layers of a map share the texels that one map of that size has
   std::vector<PictureSize> sizes = {{}};  ///< of all pictures of a run
   int width = 960;                        ///< of the pictures that are drawn at present, in pixels
   int height = 540;

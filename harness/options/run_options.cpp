@@ -183,6 +183,11 @@ std::vector<RunOption> list_run_options() {
       .names(ValueKind::kScene);
   t.add("--ground", "put a floor under a bare model", &RunOptions::ground);
   t.add("--map-size", "texels along a side of the shadow map; several with commas", &RunOptions::map_sizes);
+  t.add(
+      "--equal-bytes",
+      "let the layers of a map, cascades or a cube's faces, together have the texels of one map of --map-size, so that "
+      "fits compare at equal bytes",
+      &RunOptions::equal_bytes);
   t.add("--pad-texels",
         "texels around the scene in the map (default: what the widest kernel of the run needs); set it where runs "
         "of different filters are compared",

@@ -213,7 +213,7 @@ void write_float_images(const options::RunOptions& options, const measure::Scene
   for (const measure::MeasuredCell& cell : measured.cells) visit_drawn(cell, kept, add);
   for (const measure::MeasuredCell& cell : measured.cells) visit_known(cell, add);
   if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
-  if (truth.absent.empty() && kept.receivers) add_receiver_parts(parts, truth.receivers.image);
+  if (kept.receivers) add_receiver_parts(parts, truth.receivers.image);
   if (truth.absent.empty() && kept.picture) add_part(parts, kTruthPicturePart, truth.area_picture);
   if (kept.receivers) parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
   add_part(parts, kAmbientPart, measured.ambient);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/content_hash.h"
@@ -139,6 +140,12 @@ void require_views(const options::RunOptions& options, const std::vector<Planned
   }
 }
 
+/// Texels along a side of each layer, where one map is to have `map_size`.
+int choose_layer_size(const PlannedScene& planned, int map_size) {
+  const int layers = scene::count_layers(planned.scene.light, planned.options.fit);
+  return planned.options.equal_bytes ? static_cast<int>(map_size / std::sqrt(layers)) : map_size;
+}
+
 class Planner {
  public:
   Planner(const options::RunOptions& options, const std::string& renderer) : options_(options), renderer_(renderer) {}
@@ -166,7 +173,8 @@ class Planner {
     PlannedScene& scene = plan_.scenes[index];
     std::vector<measure::SceneTask> tasks;
     for (const scene::Camera* camera : choose_views(options_, scene.scene))
-      for (const int map_size : options_.map_sizes) tasks.push_back({&scene.scene, camera, map_size, options_.filters});
+      for (const int map_size : options_.map_sizes)
+        tasks.push_back({&scene.scene, camera, choose_layer_size(scene, map_size), options_.filters});
     take_light_widths(scene, tasks);
     const std::string content = name_scene_content(scene.options, scene.scene, shaders_);
     for (const measure::SceneTask& task : tasks) add_task(index, task, content);

@@ -70,6 +70,7 @@ options::RunOptions make_worker_options(const options::RunOptions& options, cons
   own.filters = {tell_radius(request)};
   own.kernel_width.clear();
   own.map_sizes = {task.map_size};
+  own.equal_bytes = false;
   own.sizes = {{options.width, options.height}};
   own.fits = {options.fit};
   own.pad_texels = measure::padding_texels(options);

@@ -197,6 +197,48 @@ void warn_of_rounding(Scene& scene) {
       2.0 * scene.rounding_m));
 }
 
+/// Where a scene's own floor is, over a lattice of places: the first surface below the middle of its height.
+std::vector<glm::dvec3> find_floor(const EdgeMeter& meter, const Bounds& bounds) {
+  constexpr int kPlaces = 16;
+  const glm::dvec3 low(bounds.min), size = glm::dvec3(bounds.max) - low;
+  std::vector<SceneRay> rays;
+  for (int x = 0; x < kPlaces; ++x)
+    for (int z = 0; z < kPlaces; ++z)
+      rays.push_back({low + size * glm::dvec3((x + 0.5) / kPlaces, 0.5, (z + 0.5) / kPlaces), {0.0, -1.0, 0.0}});
+  std::vector<glm::dvec3> floor;
+  for (const truth::ReceiverPoint& each : meter.trace(rays))
+    if (each.counts && each.normal_ws.y > 0.7f) floor.emplace_back(each.position_ws);
+  return 2 * floor.size() > rays.size() ? floor : std::vector<glm::dvec3>();
+}
+
+/// How far one sees along a level ray: to a surface, or to where the scene ends.
+double measure_way(const SceneRay& ray, const truth::ReceiverPoint& met, const Bounds& bounds) {
+  if (met.counts) return glm::distance(ray.origin, glm::dvec3(met.position_ws));
+  double way = std::numeric_limits<double>::max();
+  for (const int axis : {0, 2})
+    if (const double step = ray.direction[axis]; step != 0.0)
+      way = std::min(way,
+                     (static_cast<double>(step > 0.0 ? bounds.max[axis] : bounds.min[axis]) - ray.origin[axis]) / step);
+  return way;
+}
+
+bool is_much_longer(const Bounds& bounds) {
+  const glm::vec3 size = bounds.max - bounds.min;
+  return long_axis_deg(bounds) && std::max(size.x, size.z) > kElongated * size.y;
+}
+
+/// Gives a scene that one walks through its camera, where that shows the edge of a shadow.
+void stand_inside(Scene& scene, const ViewFreedom& free) {
+  if (!is_much_longer(scene.bounds()) || scene.triangle_count() > kMostTriangles) return;
+  const std::optional<Camera> camera = find_walk_through(scene);
+  if (!camera) return;
+  Scene seen = scene;
+  seen.cameras = {*camera};
+  if (choose_view(seen, {.sun = free.sun}).edges.at_edge == 0) return;
+  scene.cameras = seen.cameras;
+  scene.notes.emplace_back("camera in the scene at eye height, along the longest way that it sees");
+}
+
 std::string name_angles(const SkyAngles& angles) {
   return fmt::format("azimuth {}, elevation {}", angles.azimuth_deg, angles.elevation_deg);
 }
@@ -282,12 +324,35 @@ Camera frame_camera(const Scene& scene, const SkyAngles& from, double aspect, st
   return camera;
 }
 
+std::optional<Camera> find_walk_through(const Scene& scene) {
+  constexpr int kTurns = 16;
+  const Bounds bounds = scene.bounds();
+  const EdgeMeter meter(scene);
+  const double height = static_cast<double>(bounds.max.y - bounds.min.y);
+  const glm::dvec3 eye(0.0, std::clamp(1.7, 0.05 * height, 0.25 * height), 0.0);
+  std::vector<SceneRay> rays;
+  for (const glm::dvec3& place : find_floor(meter, bounds))
+    for (int i = 0; i < kTurns; ++i) rays.push_back({place + eye, light_direction(360.0 * i / kTurns, 0.0)});
+  if (rays.empty()) return std::nullopt;
+  const std::vector<truth::ReceiverPoint> met = meter.trace(rays);
+  std::vector<double> ways;  // less the distance from the middle of the scene
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const glm::dvec3 aside = glm::cross(rays[i].origin - 0.5 * glm::dvec3(bounds.min + bounds.max), rays[i].direction);
+    ways.push_back(measure_way(rays[i], met[i], bounds) - std::abs(aside.y));
+  }
+  const SceneRay& longest = rays[static_cast<std::size_t>(std::ranges::max_element(ways) - ways.begin())];
+  Camera camera;
+  camera.position_ws = glm::vec3(longest.origin);
+  camera.forward_ws = glm::vec3(longest.direction);
+  camera.vertical_fov_rad = static_cast<float>(glm::radians(kVerticalFovDeg));
+  return camera;
+}
+
 bool would_be_thin(const Bounds& bounds, const SkyAngles& from) {
   constexpr double kFarthestOffDeg = 35.0;
-  const glm::vec3 size = bounds.max - bounds.min;
-  const std::optional<double> axis_deg = long_axis_deg(bounds);
-  if (!axis_deg || std::max(size.x, size.z) <= kElongated * size.y) return false;
-  return std::abs(std::cos(glm::radians(from.azimuth_deg - *axis_deg))) <= std::cos(glm::radians(kFarthestOffDeg));
+  if (!is_much_longer(bounds)) return false;
+  return std::abs(std::cos(glm::radians(from.azimuth_deg - *long_axis_deg(bounds)))) <=
+         std::cos(glm::radians(kFarthestOffDeg));
 }
 
 ViewAngles usual_view(const Bounds& bounds) {
@@ -382,6 +447,7 @@ Scene complete(Scene scene, Completion completion, const std::string& where) {
   ViewFreedom free{.sun = completion.needs_sun && !completion.light};
   if (completion.ground) free.ground_y = ground_height(scene);
   scene = validate(with_placed_lights(std::move(scene), completion), where);
+  if (scene.cameras.empty() && scene.other_lights.empty() && !completion.ground) stand_inside(scene, free);
   for (const Scene& lit : separate_lights(scene)) {
     free.camera = lit.cameras.empty();
     if (free.camera || free.sun) choose_for_light(scene, lit, free, completion.aspect);

@@ -29,6 +29,11 @@ bool would_be_thin(const Bounds& bounds, const SkyAngles& from);
 /// Requires at least one vertex. Reads the meshes and the light of `scene` only.
 Camera frame_camera(const Scene& scene, const SkyAngles& from, double aspect, std::optional<float> ground_y);
 
+/// Returns a camera that stands in a scene, as one walks through it: at eye height above a floor of its own, from where
+/// one sees farthest, looking along that way. Eyes are 1.7 m high, but 1/20 to 1/4 of the scene's height. Nothing where
+/// the scene has no floor under most of its middle. Cost: 4096 rays.
+std::optional<Camera> find_walk_through(const Scene& scene);
+
 /// Returns the height of a floor just below the meshes: near enough to look like contact, far enough not to coincide.
 float ground_height(const Scene& scene);
 
@@ -91,8 +96,10 @@ struct Completion {
 };
 
 /// Returns a checked scene that has all it lacked: a sun, a camera for each light that has none, by choose_view(),
-/// which a note names, and a floor. Of several lights each has its camera, called as the light. Cameras and lights that
-/// the scene has, and a place that was asked for, stay as they are; lights of intensity 0 are left out with a warning.
+/// which a note names, and a floor. The camera of a scene that is three times as long as wide and high, with a floor of
+/// its own, is that of find_walk_through(), if it shows the edge of a shadow. Of several lights each has its camera,
+/// called as the light. Cameras and lights that the scene has, and a place that was asked for, stay as they are; lights
+/// of intensity 0 are left out with a warning.
 ///
 /// Requires validated geometry. Throws kInput, at `where`, as validate() does.
 Scene complete(Scene scene, Completion completion, const std::string& where);

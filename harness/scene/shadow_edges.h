@@ -49,6 +49,9 @@ class EdgeMeter {
   /// Points of the surfaces that a lamp shines on, but for those beyond twice their median distance.
   std::vector<glm::vec3> find_lit_points(const Beam& lamp) const;
 
+  /// What each ray meets: a point that does not count where that is nothing.
+  std::vector<truth::ReceiverPoint> trace(std::span<const SceneRay> rays) const;
+
   static constexpr int kCoarseWidth = 96;
 
   /// Counts in a picture of so many pixels across and the given width / height. Two pixels beside each other touch an
@@ -78,8 +81,6 @@ class EdgeMeter {
   };
 
   std::vector<const Part*> parts() const;
-  /// What each ray meets: a point that does not count where that is nothing.
-  std::vector<truth::ReceiverPoint> trace(std::span<const SceneRay> rays) const;
   truth::ReceiverImage look(const Camera& camera, double aspect, int width) const;
   Edges find_edges(truth::ReceiverImage& seen, const Light& light) const;
 };

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "report/analysis/cell_group.h"
+#include "report/analysis/cost_curves.h"
 #include "report/analysis/place_state.h"
 #include "report/analysis/trade_measures.h"
 #include "report/records/absence.h"
@@ -80,6 +81,11 @@ std::string list_settings_that_vary(const std::set<std::string>& values) {
 
 // Settings that belong to the question more than to the answer.
 void add_setting_notes(std::vector<std::string>& notes, const std::vector<const records::CellRecord*>& cells) {
+  if (std::ranges::any_of(cells, [](const records::CellRecord* cell) {
+        const records::BiasRecord& bias = cell->bias;
+        return bias.constant.world > 0.0 || bias.slope.world > 0.0 || bias.normal_offset.world > 0.0;
+      }))
+    notes.emplace_back("A bias in metres is right for one texel size alone: in texels it follows the map.");
   std::set<std::string> sizes, lights;
   for (const records::CellRecord* cell : cells) {
     sizes.insert(fmt::format("{}x{}", cell->width, cell->height));
@@ -276,6 +282,7 @@ std::vector<std::string> list_advice_notes(const Advice& advice, const records::
         fmt::format("Left out, as another is no dearer and has no larger RMSE: {}.", list_names(advice.beaten)));
   for (std::string& note : list_run_notes(advice, gl)) notes.push_back(std::move(note));
   add_notes_of_nothing_to_see(notes, advice);
+  if (std::string best = describe_best_map(list_judged_cells(advice)); !best.empty()) notes.push_back(std::move(best));
   if (advice.keeping.empty()) return notes;
   for (const records::CellRecord* cell : advice.keeping.front().configuration.cells) {
     if (cell->nan.value_or(0) == 0) continue;

@@ -42,21 +42,31 @@ std::vector<CostChart> make_width_charts(const std::vector<records::CellRecord>&
 
 /// What a filter got and paid with one map, in a frame that draws the map.
 struct MapPoint {
-  std::string fit;
-  int size = 0;  ///< texels along a side
+  std::string kind;  ///< of its fit: "cascades"
+  std::string name;  ///< of its fit: "4 cascades, split 0.8"
+  int size = 0;      ///< texels along a side
+  double bytes = 0.0;
   Estimate cost, rmse;
+  double seam = 0.0;  ///< between cascades
 };
 
-/// The maps of one filter in one scene and view, all else being equal.
+/// The maps of one filter in one scene and view, all else being equal; or of all filters everywhere: least bytes, mean
+/// cost, root mean square of errors, worst seam.
 struct MapFamily {
   std::string title;           ///< "vsm (radius 4) on cubes"
-  std::vector<MapPoint> maps;  ///< by ascending size
+  std::vector<MapPoint> maps;  ///< by ascending bytes
 };
 
 /// The cost of map families: time of map, prefilter and filter.
-Measure make_map_measure(const std::vector<records::CellRecord>& cells);
+Measure make_map_measure(const std::vector<const records::CellRecord*>& cells);
 
-/// Lists the families with maps of several fits. Suspect cells, and those without error or time, are left out.
-std::vector<MapFamily> list_map_families(const std::vector<records::CellRecord>& cells);
+/// Lists the families with maps of several fits; of several the first is that of all filters, with the maps that all
+/// have. Suspect cells, and those without error, bytes or time, are left out.
+std::vector<MapFamily> list_map_families(const std::vector<const records::CellRecord*>& cells);
+
+/// Says in one sentence which map has the least error at each number of bytes that maps of several fits have, and what
+/// the best of every other fit has at the most. Of maps whose errors are tied it is that with the least seam. Empty
+/// where no two fits have maps of as many bytes.
+std::string describe_best_map(const std::vector<const records::CellRecord*>& cells);
 
 }  // namespace shadowbench::analysis

@@ -12,6 +12,10 @@
 namespace shadowbench::analysis {
 namespace {
 
+// What is tied with the least RMSE and larger than this many times that is no best one: too few phases were measured.
+constexpr double kMostOfTie = 1.1;
+constexpr const char* kNoBest = "; no best one is named, as RMSEs are too uncertain: take more --phases";
+
 bool are_costs_told_apart(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
   return !compare_costs(cheaper, dearer, kind).tied;
 }
@@ -29,6 +33,7 @@ std::optional<std::size_t> find_best(const std::vector<Candidate>& keeping) {
   const Candidate& least = *std::ranges::min_element(keeping, {}, value);
   const auto best = std::ranges::find_if(
       keeping, [&](const Candidate& each) { return !is_clearly_less_error(*least.rmse, *each.rmse); });
+  if (value(*best) > kMostOfTie * value(least)) return std::nullopt;
   return static_cast<std::size_t>(best - keeping.begin());
 }
 
@@ -94,6 +99,7 @@ std::vector<Pick> choose_picks(const Advice& advice) {
   std::vector<Pick> picks = {{{kFast}, 0, explain_fast(advice)}};
   const bool has_others = keeping.size() + advice.beaten.size() + advice.no_gain.size() > 1;
   const auto least = has_others ? find_best(keeping) : std::nullopt;
+  if (!least && has_others && keeping.back().rmse) picks.front().why += kNoBest;
   if (!least) return picks;
   const std::size_t best = avoid_seam(keeping, *least, kind);
   if (best == 0) {

@@ -23,11 +23,12 @@ struct Pick {
 
 /// Lists them, the cheapest first; none is beaten by a candidate that keeps the demands. *Fast* is the first that is
 /// advised. *Best* is the cheapest whose RMSE over the places is not clearly above the least; there is none where no
-/// RMSE is known. *Balanced* is, of those between the two, the one furthest below the straight line from fast to best
-/// in the plane of cost and RMSE (the knee; Satopaa et al. 2011, Finding a "Kneedle" in a Haystack); its RMSE is
-/// clearly less than that of the fast one, and its cost clearly less than that of the best. Costs that cannot be
-/// compared leave it out. Where the cost and RMSE of another cannot be told from a pick's, that with the smaller seam
-/// between cascades is picked; a seam that is seen is said. Requires one that keeps the demands.
+/// RMSE is known, or that RMSE is more than a tenth above the least all the same, as too few phases tell. *Balanced*
+/// is, of those between the two, the one furthest below the straight line from fast to best in the plane of cost and
+/// RMSE (the knee; Satopaa et al. 2011, Finding a "Kneedle" in a Haystack); its RMSE is clearly less than that of the
+/// fast one, and its cost clearly less than that of the best. Costs that cannot be compared leave it out. Where the
+/// cost and RMSE of another cannot be told from a pick's, that with the smaller seam between cascades is picked; a seam
+/// that is seen is said. Requires one that keeps the demands.
 std::vector<Pick> list_picks(const Advice& advice);
 
 /// Says which filters on smaller maps a candidate beats: "its larger map beats pcss, map 1024"; empty where it is none.

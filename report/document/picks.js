@@ -6,7 +6,9 @@ const pickThree = (keeping, { hasOthers, rmseOf, costOf, areTied, seamOf, why })
   const known = hasOthers && keeping.every((each) => rmseOf(each));
   const least = known && keeping.reduce((a, b) => (rmseOf(b).value < rmseOf(a).value ? b : a));
   const cheapest = known && keeping.find((each) => !isErrorLess(rmseOf(least), rmseOf(each)));
-  if (!cheapest) return [{ columns: [0], ...fast, why }];
+  const isVague = cheapest && rmseOf(cheapest).value > 1.1 * rmseOf(least).value;
+  const vague = isVague ? "; no best one is named, as RMSEs are too uncertain: take more --phases" : "";
+  if (!cheapest || isVague) return [{ columns: [0], ...fast, why: why + vague }];
   const areAlike = (a, b) =>
     a === b ||
     (!isErrorLess(rmseOf(a), rmseOf(b)) &&

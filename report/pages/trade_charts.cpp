@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <span>
 
 #include "report/analysis/cell_group.h"
@@ -240,28 +241,38 @@ class WidthChart {
   const analysis::Measure& cost_ = chart_.costs[light_];
 };
 
-/// The maps of a filter: RMSE over the cost of a frame that draws the map, a curve for each fit.
+/// The maps of a filter: RMSE over their bytes, a curve for each fit.
 document::Chart make_map_chart(const analysis::MapFamily& family, const analysis::Measure& cost,
                                const records::GlRecord& gl) {
   document::Chart made;
   made.title = family.title;
   made.id = "maps." + files::make_file_stem(made.title);
-  made.x_name = analysis::name_axis(cost, gl);
+  made.x_name = "bytes of the map, all layers";
   made.y_name = analysis::list_error_measures()[0].name;
-  std::vector<double> costs, ends;
+  std::vector<double> bytes;
+  std::map<std::string, double> least;
   for (const analysis::MapPoint& map : family.maps) {
-    costs.push_back(map.cost.value);
-    ends.insert(ends.end(), {map.cost.low, map.cost.high});
-    auto series = std::ranges::find(made.series, map.fit, &ChartSeries::title);
+    bytes.push_back(map.bytes);
+    auto series = std::ranges::find(made.series, map.name, &ChartSeries::title);
     if (series == made.series.end()) {
-      made.series.push_back(start_series(map.fit, document::style_of(made.series.size())));
+      made.series.push_back(start_series(map.name, document::style_of(made.series.size())));
       series = std::prev(made.series.end());
       series->line = document::LineStyle::kSolid;
     }
-    series->points.push_back({map.cost, map.rmse, fmt::format("{}", map.size)});
+    series->points.push_back(
+        {exactly(map.bytes),
+         map.rmse,
+         fmt::format("{}", map.size),
+         {map.name, fmt::format("{0} × {0} texels a layer", map.size),
+          fmt::format("RMSE {}, seam {}", records::format_number(map.rmse.value), records::format_number(map.seam)),
+          say_value(cost, map.cost, gl)}});
+    least[map.name] = -map.rmse.value;  // of its largest map
   }
-  made.x = document::choose_axis(costs, ends, document::TickKind::kNumber);
+  made.x = document::choose_axis(bytes, bytes, document::TickKind::kBytes);
   made.y = choose_y_axis(made.series);
+  std::vector<std::pair<double, std::string>> weights;
+  for (const auto& [name, weight] : least) weights.emplace_back(weight, name);
+  document::show_most_telling(made, weights);
   return made;
 }
 

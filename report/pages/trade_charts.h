@@ -23,7 +23,8 @@ document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>&
 document::ChartChoice make_width_choice(const std::vector<analysis::CostChart>& charts,
                                         const std::vector<std::string>& filters, const records::GlRecord& gl);
 
-/// Draws RMSE over cost for the maps of every family, a curve for each fit. `cost` is make_map_measure().
+/// Draws RMSE over bytes for the maps of every family, a curve for each fit; their cost, which make_map_measure()
+/// measures, is told beside.
 document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const analysis::Measure& cost,
                                       const records::GlRecord& gl);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "filters/kernel_width.h"
+#include "report/analysis/configuration.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/text_tables.h"
 #include "report/pages/trade_charts.h"
@@ -74,7 +75,7 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
   Trade trade;
   trade.scopes = analysis::make_trade_scopes(cells);
   trade.has_fronts = analysis::has_trade(trade.scopes);
-  trade.map_families = analysis::list_map_families(cells);
+  trade.map_families = analysis::list_map_families(analysis::point_to(cells));
   if (!trade.has_fronts && trade.map_families.empty()) return std::nullopt;
   if (trade.has_fronts) trade.width_charts = analysis::make_width_charts(cells, trade.scopes);
   return trade;
@@ -87,8 +88,11 @@ document::Section make_trade_section(const records::RunRecord& run, const std::v
   if (trade.has_fronts) add_fronts(section.blocks, run, cells, trade);
   add_charts(section.blocks, "Cost over the kernel width", make_width_choice(trade.width_charts, filters, run.gl),
              nullptr);
-  add_charts(section.blocks, "Error and cost of maps of several fits",
-             make_map_choice(trade.map_families, analysis::make_map_measure(cells), run.gl), kMapsNote);
+  add_charts(section.blocks, "Error of maps of several fits, over their bytes",
+             make_map_choice(trade.map_families, analysis::make_map_measure(analysis::point_to(cells)), run.gl),
+             kMapsNote);
+  if (std::string best = analysis::describe_best_map(analysis::point_to(cells)); !best.empty())
+    section.blocks.emplace_back(document::Paragraph{std::move(best)});
   return section;
 }
 

@@ -14,6 +14,9 @@ constexpr int kFewestOfAnyBudget = 3;
 /// Looks at the intervals again after an eighth more rounds: every look is a chance to stop where one is narrow by
 /// chance.
 constexpr int kRoundsPerLook = 8;
+/// How wide the 95 % interval of the map's time may be, and the rounds that the map gets where it is wider.
+constexpr double kMapPrecision = 0.1;
+constexpr std::size_t kFewestOfMap = 15;
 
 /// Fisher and Yates; std::shuffle differs between standard libraries.
 void shuffle(std::vector<std::size_t>& order, std::mt19937_64& generator) {
@@ -42,6 +45,7 @@ class Rounds {
       run_round(true);
       if (is_enough(round)) break;
     }
+    while (!is_map_timed()) times_.map.push_back(passes_.draw_map());
     return std::move(times_);
   }
 
@@ -73,6 +77,15 @@ class Rounds {
       if (filters_[i].prefilter) times_.filters[i].prefilter.push_back(prefilter_ms);
       times_.filters[i].lookup.push_back(lookup_ms);
     }
+  }
+
+  /// Whether the map's interval is narrow, or the map had its rounds and a filter's budget.
+  bool is_map_timed() const {
+    const std::size_t rounds = times_.map.size();
+    if (limits_.is_fixed() || rounds >= static_cast<std::size_t>(limits_.most)) return true;
+    const records::Ratio time = find_ratio(times_.map, std::vector<double>(rounds, 1.0));
+    if (time.ci95.high - time.ci95.low <= kMapPrecision * time.median) return true;
+    return rounds >= kFewestOfMap && std::accumulate(times_.map.begin(), times_.map.end(), 0.0) >= limits_.budget_ms;
   }
 
   /// The filters that still take part, and behind them the empty lookups, in an order of this round's own.
@@ -183,7 +196,7 @@ void note_times(records::CellRecord& record, const RoundTimes& rounds, const Tim
   const std::vector<double>& empty = rounds.empties[cell.empty];
   const std::vector<double> moving = add_moving(rounds.map, times);
   const auto count = static_cast<std::ptrdiff_t>(times.lookup.size());
-  record.time_ms.map = summarise({rounds.map.begin(), rounds.map.begin() + count});
+  record.time_ms.map = summarise(rounds.map);
   record.time_ms.lookup = summarise(times.lookup);
   record.time_ms.empty = summarise({empty.begin(), empty.begin() + count});
   record.time_ms.static_light = find_difference(times.lookup, empty);

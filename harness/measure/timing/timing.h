@@ -33,7 +33,7 @@ struct FilterTimes {
 
 /// Times of a set of filters that took turns; entry i of every list comes from round i.
 struct RoundTimes {
-  std::vector<double> map;                   ///< as many entries as there were rounds
+  std::vector<double> map;                   ///< of every round, and of more until its interval is 10 % wide
   std::vector<FilterTimes> filters;          ///< in the order given
   std::vector<std::vector<double>> empties;  ///< of lookups that read nothing of the map, in the order given
   double spent_ms = 0.0;                     ///< of all passes, those that warm up included

@@ -89,16 +89,21 @@ TEST_F(LayersRun, CascadesShareTheErrorOfTheirCell_AndEndWhereTheyAreAskedTo) {
               HasSubstr("directional_shadow_max_distance 200, splits 0.2000"));
   EXPECT_EQ(run("advise out --max-rmse-cascade 0").exit_code, 1);
   EXPECT_EQ(run("advise out --max-rmse-cascade 1 --max-seam 1").exit_code, 0);
-  EXPECT_TRUE(run_cells("--fresh --scene avenue --filters none --fit tight")[0]["error"]["rmse_cascade"].is_null());
+  const json others = run_cells("--fresh --scene avenue --filters none --fit tight --fit cascades:splits=0.1");
+  EXPECT_TRUE(others[0]["error"]["rmse_cascade"].is_null());
+  EXPECT_THAT(others[1]["warnings"].dump(), HasSubstr("cascade 1, which ends at 0.1 m, has no receiver"));
 }
 
 TEST_F(LayersRun, FitsAreAnAxis) {
   const json cells = run_cells(
-      "--grids --no-attribution --phases 1 --scene avenue --filters none --fit tight --fit view --fit cascades");
+      "--grids --no-attribution --phases 1 --scene avenue --filters none --fit tight --fit view --fit cascades "
+      "--equal-bytes");
   std::set<std::string> fits, keys;
   for (const json& cell : cells) {
     fits.insert(cell["fit"]);
     keys.insert(cell["key"]);
+    EXPECT_EQ(cell["cost"]["map_bytes"], 4 * 64 * 64);
+    EXPECT_EQ(cell["map_size"], cell["fit"].get<std::string>().starts_with("cascades") ? 32 : 64);
     EXPECT_TRUE(std::filesystem::exists(folder() / "out" / cell["images"]["depth_map"].get<std::string>()));
   }
   EXPECT_THAT(fits, testing::ElementsAre("cascades:count=4,split=0.5,blend=0.1,depths=all", "tight", "view"));

@@ -366,6 +366,7 @@ TEST_F(Command, MapOfOneTexel_Works) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json written = results(folder());
   for (const nlohmann::json& cell : written["cells"]) EXPECT_EQ(cell["nan"], 0);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("a map of 1 texels a side has no room for the"));
 }
 
 TEST_F(Command, ListFilters_ShowsWhatTheFrontMatterSays) {

@@ -78,6 +78,17 @@ TEST(Rounds, BudgetIsSpent_AllStop_AndSaySo) {
 }
 
 /// Lookups right after a prefilter are slow for a while; those of filters without one are timed as they come.
+TEST(Rounds, ANoisyMap_IsDrawnUntilItsIntervalIsNarrow_OrItsOwnBudgetIsSpent) {
+  const auto count_maps = [](std::vector<double> times, double budget_ms) {
+    std::size_t turn = 0;
+    TimedPasses passes{.filters = {{{}, [] { return 1.0; }}}, .draw_map = [&] { return times[turn++ % times.size()]; }};
+    return run_rounds(passes, {.limits = {.budget_ms = budget_ms}}).map.size();
+  };
+  EXPECT_EQ(count_maps({5.0}, 1.0), 3u);
+  EXPECT_EQ(count_maps({1.0, 9.0}, 1.0), 15u);
+  EXPECT_EQ(count_maps({1.0, 9.0}, 300.0), 60u);
+}
+
 TEST(Rounds, LookupsSettleAfterAPrefilter) {
   int since = 0, alone = 0;
   const TimedFilter slow{[&] { return since = 0, 10.0; }, [&] { return ++since > 3 ? 2.0 : 7.0; }},

@@ -274,5 +274,13 @@ TEST_F(Attributed, WithoutAttribution_ArtefactsAreStillCounted) {
   EXPECT_EQ(cells[0]["artefact"]["acne"], 0.0);
 }
 
+TEST_F(Attributed, WithoutTruth_ReceiversAreKeptAllTheSame) {
+  run("cubes", "none", 64);
+  const std::vector<float> with = part("receiver.position");
+  options_.truth = options_.attribution = false;
+  run("cubes", "none", 64);
+  EXPECT_EQ(part("receiver.position"), with);
+}
+
 }  // namespace
 }  // namespace shadowbench::test

@@ -77,6 +77,33 @@ TEST(ViewChoice, ChosenSun_ShinesOnSidesThatAreSeen) {
   }
 }
 
+/// A floor with a row of boxes on either side.
+Scene make_street(float length_m) {
+  std::vector<Mesh> meshes = {make_plane({8.0f, length_m}, 1)};
+  for (double z = 2.0 - 0.5 * static_cast<double>(length_m); z < 0.5 * static_cast<double>(length_m); z += 5.0)
+    for (const double x : {-3.0, 3.0}) meshes.push_back(moved(make_box({1.0f, 6.0f, 1.0f}, 1), {x, 3.0, z}));
+  return make_bare(meshes);
+}
+
+TEST(Completion, CameraOfAStreet_StandsInItAtEyeHeight_AndLooksAlongIt) {
+  const Scene street = complete(make_street(80.0f), {.needs_sun = true}, "x");
+  const Camera& camera = street.cameras.at(0);
+  EXPECT_NEAR(camera.position_ws.y, 1.5, 1e-3) << "a quarter of its height";
+  EXPECT_LT(std::abs(camera.position_ws.x), 2.5f) << "between the boxes";
+  EXPECT_LT(std::abs(camera.position_ws.z), 40.0f);
+  EXPECT_GT(std::abs(camera.forward_ws.z), 0.99f);
+  EXPECT_LT(camera.position_ws.z * camera.forward_ws.z, -30.0f) << "from one end to the other";
+  EXPECT_THAT(street.notes, testing::Contains(HasSubstr("at eye height")));
+  const Scene square = complete(make_street(20.0f), {.needs_sun = true}, "x");
+  EXPECT_GT(square.cameras.at(0).position_ws.y, 6.0f) << "no longer than wide and high";
+}
+
+TEST(Completion, WithoutAFloorOfItsOwn_TheCameraStaysOutside) {
+  Scene row = make_street(80.0f);
+  row.meshes.erase(row.meshes.begin());
+  EXPECT_GT(complete(row, {.needs_sun = true}, "x").cameras.at(0).position_ws.y, 6.0f);
+}
+
 TEST(ViewChoice, IsTheSameAgain) {
   const ViewChoice first = choose_view(make_box_on_floor(), kAllFree),
                    second = choose_view(make_box_on_floor(), kAllFree);

@@ -67,6 +67,7 @@ TEST(WidthCharts, OtherParameters_MakeOtherCurves) {
 CellRecord make_map_cell(const std::string& fit, int size, const std::string& filter = "vsm") {
   CellRecord cell = make_sweep_cell({.scene = "avenue", .filter = filter, .map_size = size});
   cell.fit = fit;
+  cell.cost.map_bytes = std::int64_t{4} * size * size;
   return cell;
 }
 
@@ -75,12 +76,12 @@ TEST(MapFamilies, HoldTheMapsOfOneFilterInOnePlace) {
                                          make_map_cell("view", 1024),         make_map_cell("tight", 1024, "esm"),
                                          make_map_cell("view", 512, "esm"),   make_map_cell("tight", 1024, "none"),
                                          make_map_cell("tight", 2048, "none")};
-  const auto families = list_map_families(cells);
-  ASSERT_THAT(families, SizeIs(2)) << "none has one fit alone";
+  const auto families = list_map_families(point_to(cells));
+  ASSERT_THAT(families, SizeIs(2)) << "none has one fit alone, and no two fits are common to both";
   EXPECT_EQ(families[0].title, "vsm on avenue");
   ASSERT_THAT(families[0].maps, SizeIs(3));
   EXPECT_EQ(families[0].maps[0].size, 1024);
-  EXPECT_EQ(families[0].maps[1].fit, "view fit");
+  EXPECT_EQ(families[0].maps[1].name, "view fit");
   EXPECT_EQ(families[0].maps[2].size, 2048);
   EXPECT_NEAR(families[0].maps[0].cost.value, 4.0, 1e-9);
   EXPECT_NEAR(families[0].maps[0].rmse.value, 0.1, 1e-9);
@@ -92,7 +93,48 @@ TEST(MapFamilies, WithoutErrorTimesOrTrust_CellsAreLeftOut) {
   cells[1].error.rmse.reset();
   cells[2].time_ms = {};
   cells[3].status = CellStatus::kSuspect;
-  EXPECT_THAT(list_map_families(cells), IsEmpty());
+  EXPECT_THAT(list_map_families(point_to(cells)), IsEmpty());
+}
+
+/// A map of four cascades, as large as one of twice the side.
+CellRecord make_cascades(const std::string& split, double rmse, double seam, const std::string& filter = "vsm") {
+  CellRecord cell = make_map_cell("cascades:count=4,split=" + split, 1024, filter);
+  cell.cost.map_bytes = 4 * *cell.cost.map_bytes - 3;
+  cell.error.rmse = rmse;
+  cell.artefact.seam = seam;
+  return cell;
+}
+
+CellRecord with_rmse(CellRecord cell, double rmse) {
+  cell.error.rmse = rmse;
+  return cell;
+}
+
+TEST(BestMap, IsTheLeastWrongOfAsManyBytes_AndOfTiesTheOneWithTheLeastSeam) {
+  const std::vector<CellRecord> cells = {with_rmse(make_map_cell("view", 2048), 0.10),
+                                         with_rmse(make_map_cell("lispsm", 2048), 0.06),
+                                         with_rmse(make_map_cell("lispsm", 1024), 0.08),
+                                         with_rmse(make_map_cell("view", 1024), 0.2),
+                                         make_cascades("0.5", 0.05, 0.01),
+                                         make_cascades("1", 0.0498, 0.03)};
+  EXPECT_EQ(
+      describe_best_map(point_to(cells)),
+      "Best map at 16 MiB: 4 cascades, split 0.5, 1024 texels a side, RMSE 0.05, seam 0.01, tied with 1 other (0.06 "
+      "by lispsm fit; 0.1 by view fit); at 4 MiB: lispsm fit, 1024 texels a side, RMSE 0.08.");
+  EXPECT_EQ(describe_best_map({&cells[1], &cells[3]}), "") << "nothing has as many bytes";
+  EXPECT_EQ(describe_best_map({&cells[0], &cells[3]}), "") << "one fit";
+}
+
+TEST(BestMap, OfSeveralFilters_TakesTheRootMeanSquareOfTheMapsThatAllHave) {
+  const std::vector<CellRecord> cells = {with_rmse(make_map_cell("view", 2048), 0.03), make_cascades("1", 0.04, 0.0),
+                                         with_rmse(make_map_cell("view", 2048, "esm"), 0.05),
+                                         make_cascades("1", 0.01, 0.0, "esm"), make_cascades("0.5", 0.001, 0.0)};
+  const auto families = list_map_families(point_to(cells));
+  ASSERT_THAT(families, SizeIs(3));
+  EXPECT_EQ(families[0].title, "all filters");
+  ASSERT_THAT(families[0].maps, SizeIs(2)) << "esm was not measured with a split of 0.5";
+  EXPECT_NEAR(families[0].maps[0].rmse.value, std::sqrt(0.5 * (0.04 * 0.04 + 0.01 * 0.01)), 1e-9);
+  EXPECT_THAT(describe_best_map(point_to(cells)), testing::StartsWith("Best map at 16 MiB: 4 cascades, split 1,"));
 }
 
 }  // namespace

@@ -99,6 +99,13 @@ TEST(Picks, OfErrorsAndCostsThatCannotBeToldApart_TheSmallerSeamIsBest_AndASeamT
   EXPECT_THAT(list_names(advice.keeping), ElementsAre("pcf", "blended")) << "its seam is smaller: nothing beats it";
 }
 
+TEST(Picks, WhatIsMuchMoreWrong_IsNoBestOne_ThoughTooFewPhasesTellIt) {
+  std::vector<records::CellRecord> cells = make_cells({{"none", 1, 0.09}, {"lispsm", 2, 0.0714}, {"psm", 3, 0.0443}});
+  EXPECT_THAT(list_picks(cells), testing::Contains("best: psm"));
+  for (records::CellRecord& cell : cells) cell.rmse_ci95 = records::Interval{0.0, 2.0};
+  EXPECT_THAT(list_picks(cells), ElementsAre("fast: none"));
+}
+
 TEST(Picks, NoneAlone_IsWhatThereIs) {
   EXPECT_THAT(list_picks(make_cells({{"none", 1, 0.08}})), ElementsAre("fast: none"));
 }
