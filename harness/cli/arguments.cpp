@@ -54,7 +54,7 @@ void add_as_run(Command& command, const char* name, Variable variable) {
 
 void add_picture_options(Command& command, PictureArguments& arguments) {
   command.add("--map-size", &arguments.map_size, "texels along a side of the shadow map");
-  command.add("--fit", &arguments.fit, "how the light's map is fitted, as for 'run'").such_as(scene::list_fit_names());
+  command.add("--fit", &arguments.fit, "how the light's map is fitted, as for 'run'");
   command.add("--size", &arguments.size, "picture size in pixels, WIDTHxHEIGHT");
 }
 
