@@ -25,6 +25,7 @@ const kLean = ["--phases", "1", "--no-attribution", "--no-grids", "--gpu", "none
 const kSmall = ["--size", "160x90", "--map-size", "128", "--rounds", "2", ...kLean];
 const kMany = ["none", ...Array.from({ length: 399 }, (_, i) => `vsm:bleed_reduction=${(i + 1) / 1000}`)].join();
 const kPanes = ["run", "--scene", "panes", ...kSmall, "--filters", "none,tent3x3,vsm", "--blend-casters"];
+const kFits = ["tight", "view", "focused", "lispsm", "psm", "tsm", "logpsm", "cascades:count=4,split=practical", "cascades:count=4,split=logarithmic"];
 const kRuns = {
   several: ["run", "--scene", "cubes", "--scene", "ball", "--size", "240x135", "--map-size", "128", "--rounds", "2", "--stability",
     "--uncertainty", "--filters", "none,pcf2x2,tent3x3,box4x4,box3x3,vsm,vsm:radius=1,esm:radius=1"],
@@ -37,7 +38,7 @@ const kRuns = {
   live: ["run", "--scene", "cubes", "--scene", "lantern", "--filters", "all", ...kSmall],
   ball: ["run", "--scene", "ball", "--filters", "none,pcss,vsm", "--size", "240x135", "--map-size", "512", "--rounds", "2", ...kLean],
   lamps: ["run", "--scene", "three_lights", "--filters", "none,tent3x3,vsm,pcss", ...kSmall],
-  fits: ["run", "cascades", "--filters", "none,vsm", ...kSmall],
+  fits: ["run", "--scene", "avenue", ...kFits.flatMap((fit) => ["--fit", fit]), "--filters", "none,vsm", ...kSmall],
   hashed: [...kPanes, "hashed"],
   dither: [...kPanes, "dither"],
   waves: ["run", "--scene", "waves.obj", ...kSmall, "--filters", "none,tent3x3,vsm"],
