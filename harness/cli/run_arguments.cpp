@@ -73,11 +73,6 @@ std::string apply_experiment(const CommandLine& line, RunArguments& arguments) {
   const auto take = [&](const options::ExperimentSetting& setting) {
     if (!line.has(setting.option)) line.set(setting.option, setting.values, setting.where);
   };
-  for (const options::RunOption& option : arguments.told)
-    if (std::holds_alternative<std::vector<std::string>>(option.told) && line.has(option.name) &&
-        std::ranges::count(option.choices, arguments.experiment) > 0)
-      fail(
-          fmt::format("{0} takes one value each time: to add '{1}', write {0} {1}", option.name, arguments.experiment));
   const options::Experiment experiment = read(arguments.experiment);
   std::ranges::for_each(experiment.settings, take);
   arguments.engines = experiment.engines;

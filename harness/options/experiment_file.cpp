@@ -229,9 +229,12 @@ std::filesystem::path find_experiment(const std::filesystem::path& folder, const
   const std::vector<std::string> known = list_experiments(folder);
   if (std::find(known.begin(), known.end(), name) != known.end()) return folder / (name + ".toml");
   const std::optional<std::string> nearest = nearest_name(name, known);
-  throw Error(ErrorKind::kUsage, fmt::format("unknown experiment '{}'{}; a file of your own ends in .toml", name,
-                                             nearest ? fmt::format("; did you mean '{}'?", *nearest)
-                                                     : fmt::format(": there are {}", fmt::join(known, ", "))));
+  throw Error(
+      ErrorKind::kUsage,
+      fmt::format(
+          "unknown experiment '{}'{}; a file of your own ends in .toml, and an option takes one value each time", name,
+          nearest ? fmt::format("; did you mean '{}'?", *nearest)
+                  : fmt::format(": there are {}", fmt::join(known, ", "))));
 }
 
 Experiment read_experiment(const std::filesystem::path& file) { return ExperimentReader(file).read(); }

@@ -58,7 +58,7 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {small("--fit cascades:"), 2, {"--fit", "nothing follows the ':'"}},
       {small("--bias front-cull:"), 2, {"--bias front-cull", "nothing follows the ':'"}},
       {small("--filters none:"), 2, {"none:", "PARAM=VALUE"}},
-      {small("--fit tight view"), 2, {"--fit takes one value each time", "write --fit view"}},
+      {small("--fit tight view"), 2, {"unknown experiment 'view'", "one value each time"}},
       {small("--fit box"), 2, {"'box'", "sphere, tight, view"}},
       {small("--snap"), 2, {"--snap"}},
       {small("--until-different none,vsm"), 2, {"--until-different is gone", "--phases"}},
