@@ -17,6 +17,7 @@ import json
 import math
 import os
 import random
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -111,6 +112,8 @@ def write_shards(base, folder, arguments):
     for shard in shards:
         (shard / "cells").mkdir(parents=True)
         (shard / "images").mkdir()
+        if (folder / "live").exists():
+            shutil.copytree(folder / "live", shard / "live", copy_function=os.link)
     for i, (cell, links) in enumerate(list_cells(base, arguments)):
         shard = shards[i % len(shards)]
         for name, real in links.items():

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/harness/cli/program.h"
@@ -65,6 +66,20 @@ TEST_F(TuneCommand, UnderCascades_GoesOnWithoutWhatCannotBeTuned) {
   EXPECT_EQ(tuned["fit"], "cascades:count=2,split=0.5,blend=0.1,depths=all");
   ASSERT_EQ(tuned["filters"].size(), 1u);
   EXPECT_EQ(tuned["filters"][0]["id"], "poisson");
+}
+
+/// The camera stands by the edge of the ground and looks along it: turned away from it, it sees next to none.
+TEST_F(TuneCommand, AViewOfFewReceivers_IsLeftOutAndNamed) {
+  std::string scene = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes/teaching/avenue.toml");
+  const std::size_t place = scene.find("position"), light = scene.find("vertical_fov_deg");
+  ASSERT_LT(place, light);
+  scene.replace(place, light - place, "position = [29.5, 1.7, -60]\ntarget = [29.5, 0.9, -75]\n");
+  std::ofstream(folder() / "edge.toml") << scene;
+  const Outcome outcome =
+      run("tune --out out --scene edge.toml --map-size 128 --size 96x54 --filters poisson --budget 1");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read_text(folder() / "out" / "tune.md"), HasSubstr("receivers, less than half the "));
+  EXPECT_LT(read_tuned()["filters"][0]["views"].size(), 9u);
 }
 
 /// exp(c) of the cleared depth 1 is infinite in r32f above c = 88.72, wherever the image shows it or not.

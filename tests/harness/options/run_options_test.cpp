@@ -37,6 +37,7 @@ void tell(RunOption& option, const std::vector<std::string>& texts) {
 const std::map<std::string, std::vector<std::string>>& list_others() {
   static const std::map<std::string, std::vector<std::string>> others = {{"scene", {"cubes", "edge"}},
                                                                          {"ground", {"true"}},
+                                                                         {"equal_bytes", {"true"}},
                                                                          {"map_size", {"256,512"}},
                                                                          {"pad_texels", {"12.5"}},
                                                                          {"view", {"007"}},
