@@ -38,7 +38,7 @@ const kRuns = {
   live: ["run", "--scene", "cubes", "--scene", "lantern", "--filters", "all", ...kSmall],
   ball: ["run", "--scene", "ball", "--filters", "none,pcss,vsm", "--size", "240x135", "--map-size", "512", "--rounds", "2", ...kLean],
   lamps: ["run", "--scene", "three_lights", "--filters", "none,tent3x3,vsm,pcss", ...kSmall],
-  fits: ["run", "--scene", "avenue", ...kFits.flatMap((fit) => ["--fit", fit]), "--filters", "none,vsm", ...kSmall],
+  fits: ["run", "--scene", "avenue", ...kFits.flatMap((fit) => ["--fit", fit]), "--filters", "none,vsm", "--width", "own", ...kSmall],
   hashed: [...kPanes, "hashed"],
   dither: [...kPanes, "dither"],
   waves: ["run", "--scene", "waves.obj", ...kSmall, "--filters", "none,tent3x3,vsm"],
