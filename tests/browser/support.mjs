@@ -51,11 +51,14 @@ export const showCrops = async (page) => {
   await page.locator(".viewer .strip [data-who]").first().scrollIntoViewIfNeeded();
   await page.waitForSelector(".viewer .strip [data-who] canvas");
 };
-// Until what was asked for is loaded and drawn, in the viewer and live: both say that they are busy.
+const kLinkAfterMs = 310; // base.js writes links 300 ms after the last change
+// Until what was asked for is loaded and drawn, in the viewer and live, which say that they are busy, and its link is written:
+// timers of a page end in the order of their times.
 const nextFrame = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 export const settle = async (page, timeout = 60000) => {
   await nextFrame(page);
   await page.waitForFunction(() => !document.querySelector("[aria-busy=true]"), null, { timeout });
+  await page.evaluate((ms) => new Promise((resolve) => setTimeout(resolve, ms)), kLinkAfterMs);
   await nextFrame(page);
 };
 export const measureOverflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
