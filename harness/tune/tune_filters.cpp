@@ -100,7 +100,7 @@ class Tuner {
 
   /// What is left of filters that have nothing to tune. Throws Error(kUsage) where none is left.
   std::vector<TunedFilter> list_filters(const std::vector<filters::FilterRequest>& requests) const {
-    std::string nothing;
+    std::vector<std::string> untuned;
     std::vector<TunedFilter> tuned;
     for (const filters::FilterRequest& request : requests) {
       const auto is_same = [&](const TunedFilter& known) { return known.request.spec.id == request.spec.id; };
@@ -110,16 +110,16 @@ class Tuner {
                                                    request.spec.id));
       }
       if (list_searched_params(request).empty()) {
-        nothing = fmt::format(
+        untuned.push_back(fmt::format(
             "there is nothing to tune of '{}': it has no numeric parameter with a range that is not const and not set "
             "already",
-            request.label());
-        progress_.note(nothing);
+            request.label()));
         continue;
       }
       tuned.push_back({request, {}, {}});
     }
-    if (tuned.empty()) throw Error(ErrorKind::kUsage, nothing + "; choose another filter (see 'list filters')");
+    if (tuned.empty()) throw Error(ErrorKind::kUsage, untuned.back() + "; choose another filter (see 'list filters')");
+    for (const std::string& each : untuned) progress_.note(each);
     return tuned;
   }
 

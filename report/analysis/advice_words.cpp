@@ -282,7 +282,8 @@ std::vector<std::string> list_advice_notes(const Advice& advice, const records::
         fmt::format("Left out, as another is no dearer and has no larger RMSE: {}.", list_names(advice.beaten)));
   for (std::string& note : list_run_notes(advice, gl)) notes.push_back(std::move(note));
   add_notes_of_nothing_to_see(notes, advice);
-  if (std::string best = describe_best_map(list_judged_cells(advice)); !best.empty()) notes.push_back(std::move(best));
+  if (std::string best = describe_best_map(list_map_families(list_judged_cells(advice))); !best.empty())
+    notes.push_back(std::move(best));
   if (advice.keeping.empty()) return notes;
   for (const records::CellRecord* cell : advice.keeping.front().configuration.cells) {
     if (cell->nan.value_or(0) == 0) continue;

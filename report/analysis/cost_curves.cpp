@@ -161,8 +161,7 @@ std::vector<MapFamily> list_map_families(const std::vector<const records::CellRe
   return families;
 }
 
-std::string describe_best_map(const std::vector<const records::CellRecord*>& cells) {
-  const std::vector<MapFamily> families = list_map_families(cells);
+std::string describe_best_map(const std::vector<MapFamily>& families) {
   if (families.empty()) return {};
   const MapFamily& family = families.front();
   std::string text;

@@ -118,11 +118,11 @@ TEST(BestMap, IsTheLeastWrongOfAsManyBytes_AndOfTiesTheOneWithTheLeastSeam) {
                                          make_cascades("0.5", 0.05, 0.01),
                                          make_cascades("1", 0.0498, 0.03)};
   EXPECT_EQ(
-      describe_best_map(point_to(cells)),
+      describe_best_map(list_map_families(point_to(cells))),
       "Best map at 16 MiB: 4 cascades, split 0.5, 1024 texels a side, RMSE 0.05, seam 0.01, tied with 1 other (0.06 "
       "by lispsm fit; 0.1 by view fit); at 4 MiB: lispsm fit, 1024 texels a side, RMSE 0.08.");
-  EXPECT_EQ(describe_best_map({&cells[1], &cells[3]}), "") << "nothing has as many bytes";
-  EXPECT_EQ(describe_best_map({&cells[0], &cells[3]}), "") << "one fit";
+  EXPECT_EQ(describe_best_map(list_map_families({&cells[1], &cells[3]})), "") << "nothing has as many bytes";
+  EXPECT_EQ(describe_best_map(list_map_families({&cells[0], &cells[3]})), "") << "one fit";
 }
 
 TEST(BestMap, OfSeveralFilters_TakesTheRootMeanSquareOfTheMapsThatAllHave) {
@@ -134,7 +134,8 @@ TEST(BestMap, OfSeveralFilters_TakesTheRootMeanSquareOfTheMapsThatAllHave) {
   EXPECT_EQ(families[0].title, "all filters");
   ASSERT_THAT(families[0].maps, SizeIs(2)) << "esm was not measured with a split of 0.5";
   EXPECT_NEAR(families[0].maps[0].rmse.value, std::sqrt(0.5 * (0.04 * 0.04 + 0.01 * 0.01)), 1e-9);
-  EXPECT_THAT(describe_best_map(point_to(cells)), testing::StartsWith("Best map at 16 MiB: 4 cascades, split 1,"));
+  EXPECT_THAT(describe_best_map(list_map_families(point_to(cells))),
+              testing::StartsWith("Best map at 16 MiB: 4 cascades, split 1,"));
 }
 
 }  // namespace
