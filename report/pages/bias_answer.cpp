@@ -154,7 +154,7 @@ std::vector<records::BiasToShip> list_bias_to_ship(const std::vector<records::Bi
   std::vector<records::BiasToShip> ships;
   for (const records::BiasSweepRecord& sweep : sweeps) {
     for (const std::string& filter : sweep.filters) {
-      records::BiasToShip ship{sweep.scene, sweep.light, sweep.map_size, filter};
+      records::BiasToShip ship{sweep.scene, sweep.light, sweep.map_size, sweep.fit, filter};
       for (const records::BiasModeRecord& mode : sweep.modes) {
         const auto curve = std::ranges::find(mode.curves, filter, &records::BiasCurve::filter);
         if (curve == mode.curves.end()) continue;

@@ -80,8 +80,9 @@ std::optional<Need> find_need(const records::BiasSweepRecord& sweep, const char*
 document::Section make_engine_section(const records::BiasSweepRecord& sweep) {
   document::Section section{"engines", "In the units of engines", {}};
   if (sweep.texel_m.least < (1.0 - 1e-6) * sweep.texel_m.most) {
-    section.blocks.emplace_back(document::Paragraph{
-        "Left out: under a lamp a texel grows with the distance, and engines approximate it each in its own way."});
+    section.blocks.emplace_back(
+        document::Paragraph{"Left out: texels differ in size, as under a lamp or in cascades, and each engine "
+                            "approximates that in its own way."});
     return section;
   }
   records::TextTable table{{"filter"}, {}};

@@ -9,7 +9,7 @@
 namespace shadowbench::records {
 namespace {
 
-constexpr const char* kBiasSchema = "shadowbench bias 1";
+constexpr const char* kBiasSchema = "shadowbench bias 2";
 
 }  // namespace
 
@@ -17,6 +17,7 @@ void visit_fields(Is<BiasToShip> auto& ship, auto&& visit) {
   visit("scene", ship.scene);
   visit("light", ship.light);
   visit("map_size", ship.map_size);
+  visit("fit", ship.fit);
   visit("label", ship.filter);
   visit("filter", ship.id);
   visit("params", ship.params);

@@ -74,6 +74,7 @@ struct BiasToShip {
   std::string scene;  ///< as cells of a run name it
   std::string light;  ///< as its sweep names it
   int map_size = 0;
+  std::string fit;        ///< of the light's map
   std::string filter;     ///< label
   std::string id = {};    ///< of the filter
   ParamMap params = {};   ///< complete
@@ -82,7 +83,8 @@ struct BiasToShip {
 
   /// Whether it was measured as this cell was, but for the bias.
   bool is_of(const CellRecord& cell) const {
-    return scene == cell.scene && map_size == cell.map_size && id == cell.filter && params == cell.params;
+    return scene == cell.scene && map_size == cell.map_size && fit == cell.fit && id == cell.filter &&
+           params == cell.params;
   }
 };
 

@@ -107,7 +107,7 @@ TEST(RunPage, HostileNames_AreEscaped) {
 /// A row of the answer, and words of the configuration for the script that makes it anew.
 TEST(RunPage, TheBiasToShip_HasARow_WhereItWasSwept) {
   const std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 1.0)};
-  records::BiasToShip ship{"cubes", "a sun",         cells[0].map_size, "none",
+  records::BiasToShip ship{"cubes", "a sun",         cells[0].map_size, cells[0].fit, "none",
                            "none",  cells[0].params, "plane:texels=1",  0.01};
   const auto write = [&] {
     return document::write_html(make_run_page(make_run(), cells, make_trade(cells), {}, {ship}));

@@ -19,8 +19,9 @@ TEST(BiasToShip, IsReadFromTheReportsFolder_AsItWasWritten) {
   EXPECT_TRUE(list_bias_to_ship(report.path(), warnings).empty());
   std::filesystem::create_directories(report.path() / "bias");
   const auto write = [&](const std::string& text) { std::ofstream(report.path() / "bias" / "bias.json") << text; };
-  const BiasToShip ship{"city.sun",       "sun", 512, "vsm (radius=6)", "vsm", {{"radius", 6.0}, {"store", "rg32f"}},
-                        "plane:texels=1", {}};
+  const BiasToShip ship{
+      "city.sun",       "sun", 512, "tight", "vsm (radius=6)", "vsm", {{"radius", 6.0}, {"store", "rg32f"}},
+      "plane:texels=1", {}};
   write(make_bias_json({ship}));
   const auto read = list_bias_to_ship(report.path(), warnings);
   ASSERT_EQ(read.size(), 1u);
@@ -29,12 +30,16 @@ TEST(BiasToShip, IsReadFromTheReportsFolder_AsItWasWritten) {
   CellRecord cell;
   cell.scene = "city.sun";
   cell.map_size = 512;
+  cell.fit = "tight";
   cell.filter = "vsm";
   cell.params = ship.params;
   EXPECT_TRUE(read[0].is_of(cell));
+  cell.fit = "cascades";
+  EXPECT_FALSE(read[0].is_of(cell));
+  cell.fit = "tight";
   cell.params["radius"] = 5.0;
   EXPECT_FALSE(read[0].is_of(cell));
-  for (const char* text : {"no JSON", "{}", R"({"schema": "shadowbench bias 1", "bias_to_ship": [{"scene": 3}]})"}) {
+  for (const char* text : {"no JSON", "{}", R"({"schema": "shadowbench bias 2", "bias_to_ship": [{"scene": 3}]})"}) {
     warnings.clear();
     write(text);
     EXPECT_TRUE(list_bias_to_ship(report.path(), warnings).empty());
