@@ -47,7 +47,7 @@ std::string check_value(const Option& option, const std::string& value) {
                                           : option.required         ? "one"
                                                                     : "one, or leave the option out");
   if (option.is_flag())
-    return value == "true" || value == "false" ? "" : fmt::format("takes no value, not '{}'", value);
+    return value == "true" || value == "false" ? "" : fmt::format("takes no value but true or false, not '{}'", value);
   if (!option.choices.empty() && std::ranges::find(option.choices, value) == option.choices.end())
     return fmt::format("'{}' must be one of {}", value, fmt::join(option.choices, ", "));
   return {};

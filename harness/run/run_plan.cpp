@@ -140,10 +140,16 @@ void require_views(const options::RunOptions& options, const std::vector<Planned
   }
 }
 
-/// Texels along a side of each layer, where one map is to have `map_size`.
+/// Texels along a side of each layer, where one map is to have `map_size`. Throws Error(kUsage) where none is left.
 int choose_layer_size(const PlannedScene& planned, int map_size) {
+  if (!planned.options.equal_bytes) return map_size;
   const int layers = scene::count_layers(planned.scene.light, planned.options.fit);
-  return planned.options.equal_bytes ? static_cast<int>(map_size / std::sqrt(layers)) : map_size;
+  const int size = static_cast<int>(map_size / std::sqrt(layers));
+  if (size < 1)
+    throw Error(ErrorKind::kUsage, fmt::format("--equal-bytes: a map of {0} x {0} texels is too small for {1} layers: "
+                                               "choose --map-size {1} or more",
+                                               map_size, layers));
+  return size;
 }
 
 class Planner {

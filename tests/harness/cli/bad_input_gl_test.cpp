@@ -61,6 +61,7 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {small("--fit tight view"), 2, {"unknown experiment 'view'", "one value each time"}},
       {small("--fit box"), 2, {"'box'", "sphere, tight, view"}},
       {small("--snap"), 2, {"--snap"}},
+      {"run --out out --scene avenue --fit cascades --equal-bytes --map-size 1", 2, {"--equal-bytes", "--map-size 4"}},
       {small("--until-different none,vsm"), 2, {"--until-different is gone", "--phases"}},
       {small("--lights 1,2"), 2, {"--lights is gone", "several lights"}},
       {small("--snap perhaps"), 2, {"--snap", "perhaps"}},
