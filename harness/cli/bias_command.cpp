@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "harness/bias/bias_sweep.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"
+#include "harness/stress/bias_sweep.h"
 
 namespace shadowbench::cli {
 namespace {
@@ -32,7 +32,7 @@ int sweep_bias(const BiasArguments& arguments) {
   require_distinct(options.filters);
   print_presets(options.filters);
   options.attribution = false;
-  work_with_progress(options.out, [&](options::Progress& progress) { bias::run_bias_sweep(options, progress); });
+  work_with_progress(options.out, [&](options::Progress& progress) { stress::run_bias_sweep(options, progress); });
   print("report: {}\n", (options.out / "bias.html").string());
   return 0;
 }

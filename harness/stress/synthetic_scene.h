@@ -1,15 +1,72 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "filters/model.h"
+#include "harness/render/filter_passes.h"
+#include "harness/render/image_target.h"
 #include "harness/scene/lights/light_fit.h"
-#include "harness/stress/case_tools.h"
+#include "harness/stress/axis.h"
 
 namespace shadowbench::stress {
+
+/// Sizes of what a filter reads and writes.
+struct BenchSize {
+  int map = 0;  ///< texels per side
+  int width = 0;
+  int height = 1;
+  bool operator==(const BenchSize&) const = default;
+};
+
+/// One filter with the shadow map that it reads, the G-buffer of its receivers and the picture that it writes.
+class FilterBench {
+ public:
+  /// Requires inputs.renderer, which outlives the bench. Nothing is compiled or allocated before resize().
+  FilterBench(const AxisInputs& inputs, filters::FilterRequest request);
+
+  /// Allocates map, G-buffer and picture; keeps those that have this size.
+  /// Throws Error as render::ShadowMap.
+  void resize(const BenchSize& size);
+
+  render::ShadowMap& map() { return surfaces_->map; }
+  render::GBuffer& gbuffer() { return surfaces_->gbuffer; }
+  render::ShaderLibrary& shaders() { return shaders_; }
+  const filters::FilterRequest& request() const { return request_; }
+
+  /// Puts receivers into the G-buffer, row by row, all with one normal.
+  void upload_receivers(const std::vector<glm::vec3>& positions_ws, const glm::vec3& normal_ws);
+
+  /// Runs the filter's passes with these parameter values; compiles them first where that is needed. Gives the
+  /// visibility of each receiver. Throws Error as render::FilterPasses.
+  std::vector<float> look_up(const render::LightSetup& light, const filters::ParamValues& values);
+
+  /// Counts the texels of the encoded map that overflowed. Call after look_up().
+  std::int64_t count_broken_texels();
+
+ private:
+  struct Surfaces {
+    explicit Surfaces(const BenchSize& size)
+        : map(size.map),
+          gbuffer(size.width, size.height),
+          target("stress visibility", GL_R32F, size.width, size.height) {}
+    render::ShadowMap map;
+    render::GBuffer gbuffer;
+    render::ImageTarget target;
+  };
+
+  render::ShaderLibrary& shaders_;
+  filters::FilterRequest request_;
+  BenchSize size_;
+  std::optional<Surfaces> surfaces_;
+  std::optional<render::FilterPasses> passes_;
+};
+
+/// Makes the frustum of a light that looks along z over a map so wide; receivers' (x, y, z) are u, v and depth.
+scene::LightFrustum make_axis_frustum(double width_ws, int map_texels);
 
 /// A depth map that is made of numbers, not drawn, and receivers that are looked up in it.
 struct SyntheticScene {
@@ -81,5 +138,77 @@ std::optional<Observation> judge_not_finite(const std::vector<double>& visibilit
 /// infinite, where all is lit or all is dark although it should not be, and where a run falls. It is degraded where the
 /// error is over the bound.
 Observation judge(const LookupResult& result, const Expected& expected);
+
+/// The widest kernel that a straight edge has room for, in texels: half its map.
+inline constexpr int kWidestRadius = 64;
+
+/// Makes a map with a straight edge down its middle, left an occluder, right the receivers' own surface, and receivers
+/// across the edge from dark to light, whose kernels of `radius_texels` and a bilinear reading lie within the map.
+/// Requires 0 <= radius_texels <= kWidestRadius.
+SyntheticScene make_straight_edge(double radius_texels);
+
+/// What a kernel leaves lit of each receiver: every texel of it compared with the receiver's depth.
+std::vector<double> compare_whole_kernel(const SyntheticScene& scene, const filters::Kernel& kernel);
+
+/// Judges a filter on a straight edge against what it must be, within kVisibleError. Kinds other than stochastic must
+/// rise from dark to light.
+Observation judge_edge(const LookupResult& seen, std::vector<double> expected, filters::FilterKind kind);
+
+/// The depths on both sides of an edge: an occluder, and the receivers' own.
+struct EdgeDepths {
+  float occluder = 0.0f;
+  float receiver = 1.0f;
+};
+
+/// A map of horizontal bands, each split by an edge down the middle: left the occluder, right the receivers' surface.
+/// Across each edge stand receivers, at the depth of their band's surface, whose kernel holds both depths and nothing
+/// else.
+struct EdgeScene {
+  SyntheticScene scene;
+  std::vector<double> lit_share;  ///< of each receiver's kernel: the weight of its own surface, in (0,1)
+  std::vector<std::size_t> band;  ///< of each receiver
+  std::size_t run = 0;            ///< receivers per band, from dark to light
+};
+
+/// Makes one for a Gaussian prefilter of `radius_texels` and a map read with the bilinear tent, at texel centres; with
+/// radius 0 between them. The map has room for the kernel, and as many texels as the bands need, `least_size` or more.
+EdgeScene make_edge_scene(int radius_texels, const std::vector<EdgeDepths>& bands, int least_size = 64);
+
+/// Makes one for a filter that averages the map with `kernel` and blurs nothing before: receivers anywhere between
+/// texels across each edge, in the middle of a row.
+EdgeScene make_edge_scene(const filters::Kernel& kernel, const std::vector<EdgeDepths>& bands);
+
+/// Gives other depths to the same edges.
+void set_depths(EdgeScene& edge, const std::vector<EdgeDepths>& bands);
+
+/// Occluders one behind the other, all within every kernel, and a receiver behind them all: it is wholly blocked.
+struct LayerStack {
+  std::vector<double> depths;  ///< of the occluders, ascending
+  double receiver = 1.0;       ///< depth, behind the last
+};
+
+/// Gives `count` occluders at equal distances whose first and last lie `first_gap` apart, and a receiver that lies
+/// `gap_ratio` times that behind the last one, at depth `receiver`. Requires 2 occluders or more.
+LayerStack make_layer_stack(int count, double first_gap, double gap_ratio, double receiver);
+
+/// A map in which a stack's occluders take turns, texel by texel along rows and columns, and receivers in its middle.
+struct LayerScene {
+  SyntheticScene scene;
+  std::vector<std::vector<double>>
+      shares;  ///< of each receiver's kernel: what each occluder's texels weigh; they sum to 1
+};
+
+/// Makes one for a Gaussian prefilter of `radius_texels` and a map read with the bilinear tent, at texel centres; with
+/// radius 0 between them, so that a kernel holds four texels: of more occluders than it has texels it holds some.
+LayerScene make_layer_scene(int radius_texels, const LayerStack& stack);
+
+/// The visibility of variance shadow maps by the Chebyshev bound: s2 / (s2 + (t - mu)^2), with the mean mu and
+/// the variance s2 of the depths in the kernel, and the receiver's depth t behind the mean. Source: Donnelly and
+/// Lauritzen 2006, Variance Shadow Maps, I3D, eq. 5.
+double find_chebyshev(const LayerStack& stack, const std::vector<double>& shares);
+
+/// The visibility of exponential shadow maps: the kernel's mean of exp(-c (t - z)).
+/// Source: Annen et al. 2008, Exponential Shadow Maps, Graphics Interface, eq. 5.
+double find_exponential(const LayerStack& stack, const std::vector<double>& shares, double c);
 
 }  // namespace shadowbench::stress

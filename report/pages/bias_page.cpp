@@ -3,13 +3,224 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 
+#include "report/analysis/extremes.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv_tables.h"
+#include "report/records/format.h"
 
 namespace shadowbench::pages {
 namespace {
+
+/// A filter with less acne than this, a pixel in a thousand, has enough bias.
+constexpr double kLittleAcne = 0.001;
+constexpr double kNarrowGap = 0.01, kWideGap = 0.1;
+
+/// The first point with less acne than that; null where none has.
+const records::BiasPoint* find_enough_point(const records::BiasCurve& curve) {
+  const auto found = std::ranges::find_if(
+      curve.points, [](const records::BiasPoint& point) { return point.acne && *point.acne < kLittleAcne; });
+  return found == curve.points.end() ? nullptr : &*found;
+}
+
+/// Its factor; nothing where there is none, or the mode takes no amount.
+std::optional<double> find_enough(const records::BiasCurve& curve) {
+  const records::BiasPoint* point = find_enough_point(curve);
+  return point ? point->factor : std::nullopt;
+}
+
+/// Says whose light a text is of, where there are several.
+std::string name_light(const std::vector<records::BiasSweepRecord>& sweeps, const records::BiasSweepRecord& sweep,
+                       const std::string& text) {
+  return sweeps.size() > 1 ? sweep.light + ": " + text : text;
+}
+
+/// For comparison: an absent gap, of which nothing is known, is wider than any other.
+double weigh_gap(const std::optional<double>& gap) { return gap.value_or(2.0); }
+
+std::string explain_amounts() {
+  return fmt::format(
+      "The smallest amount swept, in theoretical ones, that leaves less than {:g} % acne, and the contact "
+      "gap there. \u2717: none does, or the gap is {:g} % or more.",
+      100.0 * kLittleAcne, 100.0 * kWideGap);
+}
+
+/// What a mode comes to for a filter, at the smallest amount swept that is enough where it takes an amount.
+struct BiasVerdict {
+  std::string text;
+  document::Grade grade = document::Grade::kBad;
+  std::optional<bool> free = {};  ///< of acne
+  std::optional<double> gap = {};
+};
+
+BiasVerdict judge_curve(const records::BiasCurve& curve) {
+  if (curve.points.empty()) return {"absent", document::Grade::kNone};
+  const records::BiasPoint* enough = find_enough_point(curve);
+  const records::BiasPoint& point = enough ? *enough : curve.points.back();
+  if (!point.acne || *point.acne >= kLittleAcne)
+    return point.acne ? BiasVerdict{"acne " + records::format_rate(point.acne), document::Grade::kBad, false}
+                      : BiasVerdict{"acne absent", document::Grade::kNone};
+  BiasVerdict verdict{(point.factor ? name_factor(*point.factor) + ", " : "") + "gap " +
+                      records::format_rate(point.contact_gap)};
+  verdict.free = true;
+  verdict.gap = point.contact_gap;
+  if (!verdict.gap)
+    verdict.grade = document::Grade::kNone;
+  else if (*verdict.gap < kWideGap)
+    verdict.grade = *verdict.gap < kNarrowGap ? document::Grade::kGood : document::Grade::kNear;
+  return verdict;
+}
+
+/// One rate of the modes, each with the filters that can use it.
+struct ComparedModes {
+  std::vector<analysis::Rated> modes;
+  int absent = 0, cells = 0;  ///< modes with a filter: those that lack the rate, and all that could have it
+
+  void add(const std::string& mode, double rate) { modes.push_back({mode, rate, records::format_rate(rate)}); }
+
+  std::string describe(const records::BiasSweepRecord& sweep) const {
+    const std::string why = fmt::format("fewer than {} receivers are left to rate", sweep.fewest_receivers);
+    if (modes.empty()) return absent > 0 ? "absent, since " + why : "none";
+    return analysis::describe_extremes(modes, "under", "modes") +
+           (absent > 0 ? fmt::format("; absent in {} of {} cells, where {}", absent, cells, why) : "");
+  }
+};
+
+/// Acne and contact gap each have a sentence: one mode can be the best of one, and the worst of the other.
+struct BiasHeadline {
+  ComparedModes acne, gap;
+
+  void add(const std::string& mode, const std::vector<BiasVerdict>& verdicts) {
+    int rated = 0, kept = 0;
+    std::optional<double> widest;
+    for (const BiasVerdict& verdict : verdicts) {
+      ++acne.cells;
+      ++(verdict.free ? rated : acne.absent);
+      if (verdict.free == false) ++kept;
+      if (verdict.free != true) continue;
+      ++gap.cells;
+      if (!verdict.gap) ++gap.absent;
+      if (verdict.gap) widest = std::max(widest.value_or(0.0), *verdict.gap);
+    }
+    if (rated > 0) acne.add(mode, static_cast<double>(kept) / rated);
+    if (widest) gap.add(mode, *widest);
+  }
+
+  std::string describe(const records::BiasSweepRecord& sweep) const {
+    if (acne.cells == 0) return "No filter of this run can use any bias.";
+    return fmt::format("Filters with acne: {}. Widest contact gap of those without: {}.", acne.describe(sweep),
+                       gap.describe(sweep));
+  }
+};
+
+void add_bias_answer(document::Section& section, const std::vector<records::BiasSweepRecord>& sweeps,
+                     const records::BiasSweepRecord& sweep) {
+  if (!sweep.refused.empty()) {
+    section.blocks.emplace_back(document::Paragraph{name_light(sweeps, sweep, sweep.refused)});
+    return;
+  }
+  document::Table table{name_light(sweeps, sweep, "Enough bias, and the contact gap it opens"), {{"mode"}, {}}};
+  BiasHeadline headline;
+  for (const records::BiasModeRecord& mode : sweep.modes) {
+    std::vector<BiasVerdict> verdicts;
+    for (const records::BiasCurve& curve : mode.curves) {
+      verdicts.push_back(judge_curve(curve));
+      table.judge(mode.mode, curve.filter, verdicts.back().text, verdicts.back().grade);
+    }
+    headline.add(mode.mode, verdicts);
+  }
+  section.blocks.emplace_back(document::Paragraph{name_light(sweeps, sweep, headline.describe(sweep))});
+  section.blocks.emplace_back(std::move(table));
+}
+
+document::Table make_ship_table(const std::vector<records::BiasToShip>& ships) {
+  document::Table table{"Bias to ship", {{"light"}, {}}};
+  for (const records::BiasToShip& ship : ships)
+    table.judge(ship.light, ship.filter, describe_bias_to_ship(ship),
+                ship.bias.empty() ? document::Grade::kBad : document::Grade::kNone);
+  return table;
+}
+
+/// The top of the page: what each mode comes to under each light, and the bias to ship.
+document::Section make_bias_answers(const std::vector<records::BiasSweepRecord>& sweeps) {
+  document::Section section{"answer", "", {}};
+  for (const records::BiasSweepRecord& sweep : sweeps) add_bias_answer(section, sweeps, sweep);
+  section.blocks.emplace_back(document::Paragraph{explain_amounts(), true});
+  section.blocks.emplace_back(make_ship_table(list_bias_to_ship(sweeps)));
+  section.blocks.emplace_back(document::Paragraph{
+      "Of the modes that leave less acne than that, each at its smallest such amount, the one with the smallest "
+      "contact gap, as --bias takes it.",
+      true});
+  return section;
+}
+
+/// The least amount of a mode without acne.
+struct Need {
+  double setting = 0.0;  ///< of the mode's key
+  double depth = 0.0;    ///< how far that moves the steepest receiver towards the light, in [0,1] over the range
+  double texels = 0.0;   ///< the same, in widths of a texel
+  double metres = 0.0;   ///< the same
+  double texel_m = 0.0;
+  double sine = 0.0;  ///< of the angle between that receiver's normal and the light
+  double cosine = 1.0;
+};
+
+/// A setting of an engine, and what becomes of a need.
+struct EngineSetting {
+  const char* name;
+  const char* mode;
+  double (*convert)(const Need&);
+  const char* how;
+};
+
+constexpr double kSoftKernel = 2.5;  // by which Unity multiplies both of its biases where a light's shadows are soft
+constexpr double kSoftLow = 2.0;     // the radius by which Godot multiplies its bias at its default quality
+
+constexpr EngineSetting kSettings[] = {
+    {"three.js bias", "constant", [](const Need& need) { return -need.depth; },
+     "three.js adds `bias` to the receiver's depth in [0,1]; less is nearer to the light (LightShadow, "
+     "shadowmap_pars_fragment)."},
+    {"Unity URP Depth Bias", "constant", [](const Need& need) { return need.texels / kSoftKernel; },
+     "Unity's universal pipeline moves casters away from the light by so many texels, 2.5 times as far for soft "
+     "shadows, which stand here (ShadowUtils.GetShadowBias, Shadows.hlsl). It sets glPolygonOffset(2.5, 1) besides."},
+    {"Godot Bias", "constant", [](const Need& need) { return 100.0 * need.depth / kSoftLow; },
+     "Godot moves receivers towards the light by a hundredth of it times the depth range, the light's blur (1 by "
+     "default) and the radius of its quality, 2 at Soft Low, the default (light_storage.cpp, 4.x)."},
+    {"Filament constantBias", "constant", [](const Need& need) { return need.metres; },
+     "Filament takes metres (LightManager::ShadowOptions)."},
+    {"three.js normalBias", "normal-offset", [](const Need& need) { return need.setting * need.texel_m * need.sine; },
+     "three.js moves receivers along the normal by so many metres at every angle (shadowmap_vertex)."},
+    {"Unity URP Normal Bias", "normal-offset",
+     [](const Need& need) { return need.setting * need.sine / (1.0 - need.cosine) / kSoftKernel; },
+     "Unity moves casters along the normal by so many texels times 1 - n.l, 2.5 times as far for soft shadows."},
+    {"Godot Normal Bias", "normal-offset",
+     [](const Need& need) { return need.setting / (need.sine * (1.0 - need.cosine)); },
+     "Godot moves receivers along the normal by so many texels times 1 - n.l, less the part along the light "
+     "(scene_forward_clustered.glsl)."},
+    {"Filament normalBias", "normal-offset", [](const Need& need) { return 2.0 * need.setting; },
+     "Filament moves receivers along the normal by half of it in texels, times the sine of the angle to the light "
+     "(ShadowMapManager.cpp, light_space.fs)."},
+    {"glPolygonOffset factor", "polygon-offset", [](const Need& need) { return need.setting; },
+     "The factor, with no units."}};
+
+std::optional<Need> find_need(const records::BiasSweepRecord& sweep, const char* mode, const std::string& filter) {
+  const auto swept = std::ranges::find(sweep.modes, mode, &records::BiasModeRecord::mode);
+  if (swept == sweep.modes.end()) return std::nullopt;
+  const auto curve = std::ranges::find(swept->curves, filter, &records::BiasCurve::filter);
+  const auto enough = curve == swept->curves.end() ? std::nullopt : find_enough(*curve);
+  if (!enough) return std::nullopt;
+  const double angle = sweep.angle_deg * std::numbers::pi / 180.0;
+  return Need{*enough * curve->theory_setting,
+              *enough * curve->lift_depth,
+              *enough * curve->lift_texels,
+              *enough * curve->lift_m,
+              sweep.texel_m.most,
+              std::sin(angle),
+              std::cos(angle)};
+}
 
 constexpr double kNeverEnough = 1e6;  // weighs more than any amount swept
 
@@ -36,8 +247,9 @@ records::TextTable make_amount_table(const records::BiasModeRecord& mode) {
     const std::string need = enough ? name_factor(*enough) : !theory || !theory->acne ? "absent" : "more than swept";
     table.rows.push_back({curve.filter, fmt::format("{:.4g}", curve.theory_setting),
                           fmt::format("{:.3g}", curve.lift_depth), fmt::format("{:.3g}", curve.lift_texels),
-                          fmt::format("{:.3g}", curve.lift_m), need, format_rate(theory ? theory->acne : std::nullopt),
-                          format_rate(theory ? theory->contact_gap : std::nullopt)});
+                          fmt::format("{:.3g}", curve.lift_m), need,
+                          records::format_rate(theory ? theory->acne : std::nullopt),
+                          records::format_rate(theory ? theory->contact_gap : std::nullopt)});
   }
   return table;
 }
@@ -93,7 +305,7 @@ document::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rat
     const double x = *point.factor > 0.0 ? *point.factor : factors.ticks.front().first;
     document::ChartPoint& added = series.points.emplace_back(document::exact_point(x, *(point.*rate)));
     added.details = {series.title, fmt::format("{} of the theoretical amount: {}", name_factor(*point.factor),
-                                               format_rate(point.*rate))};
+                                               records::format_rate(point.*rate))};
   }
   return series;
 }
@@ -244,29 +456,84 @@ document::Page make_bias_page(const std::vector<records::BiasSweepRecord>& sweep
   return page;
 }
 
+std::vector<records::BiasToShip> list_bias_to_ship(const std::vector<records::BiasSweepRecord>& sweeps) {
+  std::vector<records::BiasToShip> ships;
+  for (const records::BiasSweepRecord& sweep : sweeps) {
+    for (const std::string& filter : sweep.filters) {
+      records::BiasToShip ship{sweep.scene, sweep.light, sweep.map_size, sweep.fit, filter};
+      for (const records::BiasModeRecord& mode : sweep.modes) {
+        const auto curve = std::ranges::find(mode.curves, filter, &records::BiasCurve::filter);
+        if (curve == mode.curves.end()) continue;
+        ship.id = curve->id;
+        ship.params = curve->params;
+        const records::BiasPoint* point = find_enough_point(*curve);
+        if (!point || (!ship.bias.empty() && weigh_gap(point->contact_gap) >= weigh_gap(ship.contact_gap))) continue;
+        ship.bias = mode.key.empty() ? mode.mode : fmt::format("{}:{}={:.4g}", mode.mode, mode.key, point->setting);
+        ship.contact_gap = point->contact_gap;
+      }
+      if (sweep.refused.empty()) ships.push_back(std::move(ship));
+    }
+  }
+  return ships;
+}
+
+std::string describe_bias_to_ship(const records::BiasToShip& ship) {
+  return ship.bias.empty() ? "no mode removes its acne"
+                           : ship.bias + ", contact gap " + records::format_rate(ship.contact_gap);
+}
+
+document::Section make_engine_section(const records::BiasSweepRecord& sweep) {
+  document::Section section{"engines", "In the units of engines", {}};
+  if (sweep.texel_m.least < (1.0 - 1e-6) * sweep.texel_m.most) {
+    section.blocks.emplace_back(
+        document::Paragraph{"Left out: texels differ in size, as under a lamp or in cascades, and each engine "
+                            "approximates that in its own way."});
+    return section;
+  }
+  records::TextTable table{{"filter"}, {}};
+  std::vector<std::string> how;
+  for (const EngineSetting& setting : kSettings) {
+    table.header.emplace_back(setting.name);
+    how.push_back(fmt::format("{}, from {}: {}", setting.name, setting.mode, setting.how));
+  }
+  for (const std::string& filter : sweep.filters) {
+    table.rows.push_back({filter});
+    for (const EngineSetting& setting : kSettings) {
+      const auto need = find_need(sweep, setting.mode, filter);
+      table.rows.back().push_back(need ? fmt::format("{:.3g}", setting.convert(*need) + 0.0) : records::kNothing);
+    }
+  }
+  section.blocks.emplace_back(document::Paragraph{
+      fmt::format("The least amount swept without acne, where no other bias is set. Settings that grow with the angle "
+                  "to the light are equal at {:.3g} degrees, that of the steepest lit surfaces.",
+                  sweep.angle_deg),
+      true});
+  section.blocks.emplace_back(document::Table{"", std::move(table)});
+  section.blocks.emplace_back(document::Details{"How these are converted", {document::Sentences{{}, std::move(how)}}});
+  return section;
+}
+
 std::string make_bias_csv(const std::vector<records::BiasSweepRecord>& sweeps) {
-  const auto optional = [](const std::optional<double>& value) {
+  const auto write = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : std::string();
   };
-  std::string csv =
-      "scene,view,map_size,mode,key,filter,factor,setting,lift_depth,lift_texels,lift_m,acne,contact_gap\r\n";
+  records::TextTable table{{"scene", "view", "map_size", "mode", "key", "filter", "factor", "setting", "lift_depth",
+                            "lift_texels", "lift_m", "acne", "contact_gap"},
+                           {}};
   for (const records::BiasSweepRecord& sweep : sweeps) {
     for (const records::BiasModeRecord& mode : sweep.modes) {
       for (const records::BiasCurve& curve : mode.curves) {
         for (const records::BiasPoint& p : curve.points) {
-          const auto scaled = [&](double at_theory) {
-            return p.factor ? fmt::format("{}", *p.factor * at_theory) : std::string();
-          };
-          csv += fmt::format(
-              "{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", records::quote_csv(sweep.scene),
-              records::quote_csv(sweep.view), sweep.map_size, mode.mode, mode.key, records::quote_csv(curve.filter),
-              optional(p.factor), p.factor ? fmt::format("{}", p.setting) : "", scaled(curve.lift_depth),
-              scaled(curve.lift_texels), scaled(curve.lift_m), optional(p.acne), optional(p.contact_gap));
+          const auto scale = [&](double at_theory) { return p.factor ? write(*p.factor * at_theory) : std::string(); };
+          table.rows.push_back({sweep.scene, sweep.view, fmt::to_string(sweep.map_size), mode.mode, mode.key,
+                                curve.filter, write(p.factor), p.factor ? write(p.setting) : std::string(),
+                                scale(curve.lift_depth), scale(curve.lift_texels), scale(curve.lift_m), write(p.acne),
+                                write(p.contact_gap)});
         }
       }
     }
   }
-  return csv;
+  return records::make_csv(table);
 }
 
 }  // namespace shadowbench::pages

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,19 +7,6 @@
 #include "report/records/bias_record.h"
 
 namespace shadowbench::pages {
-
-/// A filter with less acne than this, a pixel in a thousand, is said to have enough bias.
-inline constexpr double kLittleAcne = 0.001;
-
-/// Writes a rate in per cent; "absent" where there is none.
-std::string format_rate(const std::optional<double>& rate);
-
-/// The first point with less acne than kLittleAcne, of a mode that takes an amount or of one that takes none; null
-/// where none has.
-const records::BiasPoint* find_enough_point(const records::BiasCurve& curve);
-
-/// The smallest swept factor at which a filter has less acne than kLittleAcne; nothing where there is none.
-std::optional<double> find_enough(const records::BiasCurve& curve);
 
 /// Names a factor: "0", "1/8", "4".
 std::string name_factor(double factor);
@@ -30,18 +16,12 @@ std::string name_factor(double factor);
 document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters);
 
 /// Recommends a bias for each filter under each light that has an answer: of the modes that leave less acne than
-/// kLittleAcne, at the least amount swept that does, the one with the smallest contact gap; of equal ones the first.
+/// a pixel in a thousand, at the least amount swept that does, the one with the smallest contact gap; of equal ones the
+/// first.
 std::vector<records::BiasToShip> list_bias_to_ship(const std::vector<records::BiasSweepRecord>& sweeps);
 
 /// Says it in a line: "constant:depth=0.002, contact gap 1.2 %".
 std::string describe_bias_to_ship(const records::BiasToShip& ship);
-
-/// Says whose light a text is of, where there are several.
-std::string name_light(const std::vector<records::BiasSweepRecord>& sweeps, const records::BiasSweepRecord& sweep,
-                       const std::string& text);
-
-/// The top of the page: what each mode comes to under each light, and the bias to ship.
-document::Section make_bias_answers(const std::vector<records::BiasSweepRecord>& sweeps);
 
 /// Makes the page of `shadowbench bias`. Requires the lights of one scene, one at least.
 document::Page make_bias_page(const std::vector<records::BiasSweepRecord>& sweeps);

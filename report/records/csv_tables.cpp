@@ -150,10 +150,9 @@ std::vector<std::size_t> choose_columns(CsvTable table, const std::vector<Column
   return chosen;
 }
 
-std::string join_row(const std::vector<std::string>& fields, const std::vector<std::size_t>& chosen) {
-  std::vector<std::string> quoted(chosen.size());
-  std::ranges::transform(chosen, quoted.begin(), [&](std::size_t i) { return quote_csv(fields[i]); });
-  return fmt::format("{}\r\n", fmt::join(quoted, ","));
+std::string join_row(std::vector<std::string> fields) {
+  for (std::string& field : fields) field = quote_csv(field);
+  return fmt::format("{}\r\n", fmt::join(fields, ","));
 }
 
 }  // namespace
@@ -173,20 +172,26 @@ std::vector<CsvColumn> list_csv_columns(CsvTable table) {
   return listed;
 }
 
+std::string make_csv(const TextTable& table) {
+  std::string csv = join_row(table.header);
+  for (const std::vector<std::string>& row : table.rows) csv += join_row(row);
+  return csv;
+}
+
 std::string make_csv(CsvTable table, const RunRecord& run, const std::vector<CellRecord>& cells) {
   const std::vector<Column> columns = list_columns();
   const std::vector<std::size_t> chosen = choose_columns(table, columns);
-  std::vector<std::string> fields;
-  for (const Column& column : columns) fields.push_back(column.column.name);
-  std::string csv = join_row(fields, chosen);
+  TextTable written;
+  for (const std::size_t i : chosen) written.header.push_back(columns[i].column.name);
   for (const CellRecord& cell : cells) {
-    fields.clear();
+    std::vector<std::string> fields;
     visit_columns(run, cell, [&](const std::string&, const About&, const char*, const char*, const auto& value) {
       fields.push_back(write_field(value));
     });
-    csv += join_row(fields, chosen);
+    std::vector<std::string>& row = written.rows.emplace_back();
+    for (const std::size_t i : chosen) row.push_back(fields[i]);
   }
-  return csv;
+  return make_csv(written);
 }
 
 }  // namespace shadowbench::records

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "report/records/records.h"
+#include "report/records/text_table.h"
 
 namespace shadowbench::records {
 
@@ -12,6 +13,9 @@ namespace shadowbench::records {
 /// apostrophe in front; numbers stay as they are.
 /// Source: RFC 4180.
 std::string quote_csv(std::string_view text);
+
+/// Writes a table, each field as it is quoted. Source: RFC 4180.
+std::string make_csv(const TextTable& table);
 
 /// A column of a CSV table.
 struct CsvColumn {

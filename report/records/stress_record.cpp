@@ -111,21 +111,20 @@ std::string make_stress_json(const StressRecord& record) {
 }
 
 std::string make_stress_csv(const StressRecord& record) {
-  std::string csv = "axis,filter,variant,level,value,verdict,measured,why\r\n";
+  TextTable table{{"axis", "filter", "variant", "level", "value", "verdict", "measured", "why"}, {}};
   for (const StressAxis& axis : record.axes) {
     for (const StressCase& item : axis.cases) {
-      const std::string head =
-          fmt::format("{},{},{},{}", axis.id, quote_csv(item.filter), quote_csv(item.variant), item.level);
-      if (!item.not_available.empty())
-        csv += fmt::format("{},,not available,,{}\r\n", head, quote_csv(item.not_available));
-      for (const StressSample& sample : item.samples) {
-        csv +=
-            fmt::format("{},{},{},{},{}\r\n", head, sample.value, name_of(sample.verdict),
-                        sample.measured ? fmt::format("{}", *sample.measured) : std::string(), quote_csv(sample.why));
-      }
+      const auto add = [&](const std::string& value, const char* verdict, const std::optional<double>& measured,
+                           const std::string& why) {
+        table.rows.push_back({axis.id, item.filter, item.variant, item.level, value, verdict,
+                              measured ? fmt::format("{}", *measured) : std::string(), why});
+      };
+      if (!item.not_available.empty()) add("", "not available", {}, item.not_available);
+      for (const StressSample& sample : item.samples)
+        add(fmt::format("{}", sample.value), name_of(sample.verdict), sample.measured, sample.why);
     }
   }
-  return csv;
+  return make_csv(table);
 }
 
 }  // namespace shadowbench::records

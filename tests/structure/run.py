@@ -16,14 +16,14 @@ import sys
 ROOMS = [
     "base", "filters", "reference/metrics", "reference/truth", "report/files", "report/records", "report/images",
     "report/analysis", "report/document", "report/pages", "report/regress", "harness/gl", "harness/spirv", "harness/scene", "harness/gpu", "harness/render",
-    "harness/options", "harness/live", "harness/measure", "harness/run", "harness/engines", "harness/bias", "harness/tune", "harness/stress", "harness/view",
+    "harness/options", "harness/live", "harness/measure", "harness/run", "harness/engines", "harness/tune", "harness/stress", "harness/view",
     "harness/cli"]
 # What a room may not use, although it stands before it.
 FORBIDDEN = {
     "reference/metrics": ["filters"], "report/files": ["reference/"], "harness/gl": ["reference/", "report/"],
     "harness/scene": ["reference/metrics", "report/", "harness/gl"],
-    "harness/spirv": ["reference/", "report/"], "harness/gpu": ["reference/"], "harness/tune": ["harness/bias"],
-    "harness/stress": ["harness/bias", "harness/tune"]}
+    "harness/spirv": ["reference/", "report/"], "harness/gpu": ["reference/"],
+    "harness/stress": ["harness/tune"]}
 NAMESPACES = {"base": "shadowbench"}
 # Libraries (as includes have them) and the folder that alone knows them.
 KNOWN_IN = {r"OpenImageIO/": "report/images/", r"ft2build": "report/images/", r"glslang/": "harness/spirv/", r"spirv_cross": "harness/spirv/"}

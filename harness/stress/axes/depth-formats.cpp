@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "base/error.h"
-#include "harness/stress/case_tools.h"
-#include "harness/stress/stored_depths.h"
+#include "harness/stress/axis.h"
+#include "harness/stress/drawn_maps.h"
 #include "report/records/text_table.h"
 
 namespace shadowbench::stress {

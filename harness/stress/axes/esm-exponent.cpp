@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "filters/store_format.h"
-#include "harness/stress/edge_scene.h"
-#include "harness/stress/onset.h"
-#include "harness/stress/replay.h"
+#include "harness/stress/exhibits.h"
+#include "harness/stress/run_stress.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace esm_exponent {

@@ -8,9 +8,9 @@
 
 #include "filters/model.h"
 #include "harness/render/bias/bias_theory.h"
-#include "harness/stress/case_tools.h"
-#include "harness/stress/heat_map.h"
-#include "harness/stress/tilted_plane.h"
+#include "harness/stress/axis.h"
+#include "harness/stress/drawn_maps.h"
+#include "harness/stress/exhibits.h"
 
 namespace shadowbench::stress {
 namespace grazing_light {

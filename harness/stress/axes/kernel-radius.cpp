@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/stress/edge_scene.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace kernel_radius {

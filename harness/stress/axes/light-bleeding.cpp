@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/stress/layer_stack.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace light_bleeding {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/stress/filter_bench.h"
 #include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {

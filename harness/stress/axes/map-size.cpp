@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "base/error.h"
-#include "harness/stress/filter_bench.h"
 #include "harness/stress/synthetic_scene.h"
 #include "report/records/text_table.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/stress/edge_scene.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace taps {

@@ -5,7 +5,7 @@
 
 #include "filters/store_format.h"
 #include "filters/summed_area.h"
-#include "harness/stress/edge_scene.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace vsm_cancellation {

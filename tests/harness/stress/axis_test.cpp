@@ -1,3 +1,5 @@
+#include "harness/stress/axis.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -5,7 +7,6 @@
 #include "base/error.h"
 #include "filters/model.h"
 #include "harness/options/options.h"
-#include "harness/stress/case_tools.h"
 #include "harness/stress/run_stress.h"
 #include "tests/harness/stress/stress_fixture.h"
 

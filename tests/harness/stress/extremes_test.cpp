@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "harness/stress/onset.h"
+#include "harness/stress/run_stress.h"
 #include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {

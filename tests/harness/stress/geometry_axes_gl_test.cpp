@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/stress/stored_depths.h"
-#include "harness/stress/tilted_plane.h"
+#include "harness/stress/drawn_maps.h"
 #include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {

@@ -7,10 +7,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "harness/stress/case_tools.h"
-#include "harness/stress/edge_scene.h"
-#include "harness/stress/heat_map.h"
-#include "harness/stress/layer_stack.h"
+#include "harness/stress/axis.h"
+#include "harness/stress/exhibits.h"
+#include "harness/stress/synthetic_scene.h"
 #include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "filters/kernel.h"
-#include "harness/stress/edge_scene.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace {

@@ -1,11 +1,10 @@
-#include "harness/stress/onset.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "harness/stress/run_stress.h"
 
 namespace shadowbench::stress {
 namespace {

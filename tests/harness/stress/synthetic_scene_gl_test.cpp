@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
-#include "harness/stress/edge_scene.h"
+#include "harness/stress/synthetic_scene.h"
 #include "tests/harness/stress/stress_fixture.h"
 
 namespace shadowbench::stress {

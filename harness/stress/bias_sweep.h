@@ -3,7 +3,7 @@
 #include "harness/options/options.h"
 #include "harness/options/progress.h"
 
-namespace shadowbench::bias {
+namespace shadowbench::stress {
 
 /// Draws the first scene of the options under each of its lights that they name, from its first camera, with every
 /// filter under every mode of bias, from none to eight times the theoretical amount, and writes bias.html, .md, .csv,
@@ -14,4 +14,4 @@ namespace shadowbench::bias {
 /// traced once for each light and kept.
 void run_bias_sweep(const options::RunOptions& options, options::Progress& progress);
 
-}  // namespace shadowbench::bias
+}  // namespace shadowbench::stress

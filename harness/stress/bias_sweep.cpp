@@ -1,4 +1,4 @@
-#include "harness/bias/bias_sweep.h"
+#include "harness/stress/bias_sweep.h"
 
 #include <fmt/format.h>
 
@@ -26,8 +26,9 @@
 #include "report/images/hardest_edge.h"
 #include "report/pages/bias_page.h"
 #include "report/pages/write_page.h"
+#include "report/records/format.h"
 
-namespace shadowbench::bias {
+namespace shadowbench::stress {
 namespace {
 
 constexpr double kFactors[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
@@ -274,7 +275,7 @@ class BiasSweep {
     tile.label = p.factor ? which + pages::name_factor(*p.factor) : mode.mode;
     tile.caption =
         (p.factor ? fmt::format("{} {:.4g} · ", mode.key, p.setting) : std::string()) +
-        fmt::format("acne {} · contact gap {}", pages::format_rate(p.acne), pages::format_rate(p.contact_gap));
+        fmt::format("acne {} · contact gap {}", records::format_rate(p.acne), records::format_rate(p.contact_gap));
     tile.picture = render::shade(renderer_.shaders, assets_.gbuffer(camera()), render::upload_image(shot.visibility),
                                  scene_, camera());
     tile.visibility = std::move(shot.visibility);
@@ -353,4 +354,4 @@ void run_bias_sweep(const options::RunOptions& options, options::Progress& progr
   progress.show(static_cast<int>(lit.size()) * steps_of_light, "done");
 }
 
-}  // namespace shadowbench::bias
+}  // namespace shadowbench::stress
