@@ -15,16 +15,16 @@ void add_backend_option(Command& command, std::string& backend) {
 }
 
 void add_force_option(Command& command, bool& force) {
-  command.add("--force", &force, "write into the folder even where it holds files that shadowbench did not write");
+  command.add("--force", &force, "write into the folder despite files that shadowbench did not write");
 }
 
 void add_drawing_options(Command& command, DrawingArguments& arguments, const std::string& cache_default) {
   add_backend_option(command, arguments.backend);
   command
       .add("--cache", &arguments.cache,
-           fmt::format("folder that keeps traced images for later runs (default: {})", cache_default))
+           fmt::format("folder that keeps traced images for later runs (default {})", cache_default))
       .names(ValueKind::kFolder);
-  command.add("--no-cache", &arguments.no_cache, "trace everything, keep nothing");
+  command.add("--no-cache", &arguments.no_cache, "trace everything anew, keep nothing");
   command.add("--out", &arguments.out, "folder of the report").names(ValueKind::kFolder);
   add_force_option(command, arguments.force);
 }
@@ -48,6 +48,7 @@ void add_as_run(Command& command, const char* name, Variable variable) {
   for (Option option : options::list_run_options()) {
     if (option.name != name) continue;
     option.variable = variable;
+    option.in("Options").rare = false;
     command.options.push_back(std::move(option));
   }
 }

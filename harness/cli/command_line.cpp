@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <memory>
+#include <set>
 #include <sstream>
 #include <type_traits>
 
@@ -17,28 +19,66 @@
 namespace shadowbench::cli {
 namespace {
 
-constexpr std::size_t kColumns = 110;
+constexpr std::size_t kColumns = 100, kIndent = 26;
 
-std::string wrap(const std::string& paragraph) {
-  if (paragraph.starts_with(' ')) return paragraph;
+/// Breaks paragraphs into lines of kColumns, all but the first indented; `used` columns of the first are taken.
+std::string wrap(const std::string& text, std::size_t indent = 0, std::size_t used = 0) {
   std::string lines;
-  std::size_t column = 0;
-  std::istringstream text(paragraph);
-  for (std::string word; text >> word; column += word.size() + 1) {
-    const bool full = column + word.size() > kColumns;
-    if (column > 0) lines += full ? '\n' : ' ';
-    if (full) column = 0;
-    lines += word;
+  std::istringstream paragraphs(text);
+  for (std::string paragraph; std::getline(paragraphs, paragraph); used = 0) {
+    if (!lines.empty()) lines += '\n' + std::string(indent, ' ');
+    if (paragraph.starts_with(' ')) {
+      lines += paragraph;
+      continue;
+    }
+    std::istringstream words(paragraph);
+    std::size_t column = std::max(used, indent);
+    for (std::string word; words >> word; column += word.size() + 1) {
+      const bool first = column == std::max(used, indent), full = !first && column + word.size() > kColumns;
+      if (full) lines += '\n' + std::string(indent, ' ');
+      if (!first && !full) lines += ' ';
+      if (full) column = indent;
+      lines += word;
+    }
   }
   return lines;
 }
 
-std::string wrap_all(const std::string& about) {
-  std::string lines;
-  std::istringstream text(about);
-  for (std::string paragraph; std::getline(text, paragraph);) lines += (lines.empty() ? "" : "\n") + wrap(paragraph);
-  return lines;
-}
+/// Lays out the help: examples first, descriptions beside the options.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter(const Command& command, bool show_rare) : examples_(command.examples) {
+    column_width(12);
+    for (const Option& option : command.options)
+      if (option.rare && !show_rare) left_out_.insert(option.name);
+  }
+
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    std::string usage = CLI::Formatter::make_usage(app, std::move(name));
+    if (!examples_.empty()) usage += fmt::format("\nExamples:\n  {}\n", fmt::join(examples_, "\n  "));
+    return usage;
+  }
+
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
+    for (std::size_t at = 0; (at = help.find("\n\n\n", at)) != std::string::npos;) help.erase(at, 1);
+    while (help.ends_with("\n\n")) help.pop_back();
+    return help;
+  }
+
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    if (left_out_.contains(option->get_name())) return {};
+    std::string name = "  " + make_option_name(option, is_positional) + make_option_opts(option);
+    if (const auto negation = name.find("{false}"); negation != std::string::npos) name.erase(negation, 7);
+    const bool fits = name.size() + 2 <= kIndent;
+    name += fits ? std::string(kIndent - name.size(), ' ') : '\n' + std::string(kIndent, ' ');
+    return name + wrap(make_option_desc(option), kIndent) + '\n';
+  }
+
+ private:
+  std::vector<std::string> examples_;
+  std::set<std::string> left_out_;
+};
 
 std::string check_value(const Option& option, const std::string& value) {
   if (!option.instead.empty()) fail(fmt::format("{} is gone: {}", option.name, option.instead));
@@ -64,16 +104,20 @@ void add_option(CLI::App& app, const Option& option) {
       return app.add_flag_function(
           flag, [variable](std::int64_t count) { *variable = static_cast<int>(count); }, option.help);
     else
-      return app.add_option(option.name, *variable, option.help)->type_name(option.value_name());
+      return app.add_option(option.name, *variable, option.help);
   };
   CLI::Option* parsed = std::visit(add, option.variable);
   if (option.required) parsed->required();
-  if (option.hidden) parsed->group("");
-  parsed->check([&option](const std::string& value) { return check_value(option, value); },
-                option.choices.empty() ? std::string() : fmt::format("{{{}}}", fmt::join(option.choices, ",")));
+  parsed->group(option.hidden ? "" : option.group);
+  parsed->check([&option](const std::string& value) { return check_value(option, value); }, std::string());
   if (option.is_flag()) return;
+  parsed->option_text(option.value_name() + (option.is_repeatable() ? " ..." : ""));
   if (option.is_repeatable() && !option.is_argument()) parsed->allow_extra_args(false);
-  if (!option.default_value().empty()) parsed->default_str(option.default_value());
+  const std::string initial = option.default_value();
+  if (initial.empty()) return;
+  parsed->default_str(initial);
+  if (option.help.find("(default") == std::string::npos)
+    parsed->description(fmt::format("{} (default {})", option.help, initial));
 }
 
 struct Chosen {
@@ -81,11 +125,18 @@ struct Chosen {
   CLI::App* parsed = nullptr;
 };
 
-void add_command(CLI::App& app, const Command& command, Chosen& chosen) {
-  app.footer(wrap_all(command.about));  // an empty one too: else that of the program is inherited
+void add_command(CLI::App& app, const Command& command, bool show_rare, Chosen& chosen) {
+  app.formatter(std::make_shared<HelpFormatter>(command, show_rare));
+  app.footer(wrap(command.about));  // an empty one too: else that of the program is inherited
   if (command.hidden) app.group("");
+  app.set_help_flag();
   for (const Option& option : command.options) add_option(app, option);
-  for (const Command& sub : command.commands) add_command(*app.add_subcommand(sub.name, sub.title), sub, chosen);
+  const bool has_rare = std::ranges::any_of(command.options, &Option::rare);
+  app.set_help_flag("-h,--help,--help-all",
+                    has_rare ? "Print the help; --help-all: with every option" : "Print the help")
+      ->group(command.options.empty() ? "Options" : command.options.back().group);
+  for (const Command& sub : command.commands)
+    add_command(*app.add_subcommand(sub.name, sub.title), sub, show_rare, chosen);
   if (!command.commands.empty()) app.require_subcommand(1);
   if (command.action) app.callback([&] { chosen = {&command, &app}; });
 }
@@ -151,7 +202,7 @@ void CommandLine::set(const std::string& option, const std::vector<std::string>&
 int run_command_line(const Command& program, const std::vector<std::string>& words) {
   CLI::App app(program.title, program.name);
   Chosen chosen;
-  add_command(app, program, chosen);
+  add_command(app, program, std::ranges::count(words, "--help-all") > 0, chosen);
   app.set_version_flag("--version", program.name + " " SHADOWBENCH_VERSION, "Print the version and exit");
   const Command& command = find_command(program, words);
   try {

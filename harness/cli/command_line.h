@@ -38,8 +38,8 @@ class CommandLine {
 struct Command {
   std::string name;
   std::string title;
-  /// Paragraphs, one a line; lines that begin with a space are kept as they are.
-  std::string about = {};
+  std::string about = {};  ///< paragraphs, one a line; lines that begin with a space are kept as they are
+  std::vector<std::string> examples = {};  ///< as typed in a shell
   bool hidden = false;
   std::vector<Option> options = {};
   std::vector<Command> commands = {};                  ///< one of them must be given, where there are any

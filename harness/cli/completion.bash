@@ -8,13 +8,13 @@ _shadowbench_words() {
     [[ ${COMP_WORDS[i]} == -* ]] && break
     named+=" ${COMP_WORDS[i]}"
   done
-  help=$("$program" $named --help 2>/dev/null)
+  help=$("$program" $named --help-all 2>/dev/null)
   [[ $before == --* ]] && about=$(sed -n "s/^  $before \([^ ]*\).*/\1/p" <<<"$help")
   case $word:$about in
-    -*) offered=$(sed -n 's/^  \(-[^ {]*\).*/\1/p' <<<"$help" | tr , ' ') ;;
+    -*) offered=$(grep -oE '^  -[^ ]*' <<<"$help" | tr , ' ') ;;
     *:SCENE*) offered=$("$program" list scenes | sed 's/ .*//') ;;
     *:FILTERS*) offered="all $("$program" list filters | sed -n 's/^\([^ ][^ ]*\) .*/\1/p')" ;;
-    *:TEXT:{*) offered=${about#*\{} offered=${offered%%\}*} offered=${offered//,/ } ;;
+    *'|'*) offered=${about//|/ } ;;
     *:) offered=$(sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p' <<<"$help") ;;
   esac
   COMPREPLY=($(compgen -P "${word%"${word##*,}"}" -W "$offered" -- "${word##*,}"))

@@ -25,14 +25,13 @@ constexpr int kBug = 70;
 int run(const std::vector<std::string>& words) {
   Command program{"shadowbench",
                   "Compares soft-shadow filters: pictures, cost and error of each, over the same scenes."};
+  program.examples = {"shadowbench run          # a report in report/out", "shadowbench run --help"};
   program.about =
-      "Exit codes: 0 done; 1 a limit or a baseline was not met, or --strict found a warning; 2 usage, such as an "
-      "unknown name or a value out of range; 3 an input file is missing, malformed or not finite; 4 there is no OpenGL "
-      "context; 5 a filter's file; 6 "
-      "output cannot be written; 70 a bug in the program.";
-  program.commands = {make_run_command(),      make_list_command(),   make_diff_command(),  make_bias_command(),
-                      make_merge_command(),    make_advise_command(), make_tune_command(),  make_stress_command(),
-                      make_regress_command(),  make_export_command(), make_score_command(), make_view_command(),
+      "Exit codes: 0 done; 1 limit or baseline missed, or --strict found a warning; 2 usage; 3 input file missing, "
+      "malformed or not finite; 4 no OpenGL context; 5 a filter's file; 6 output cannot be written; 70 a bug.";
+  program.commands = {make_run_command(),      make_advise_command(), make_list_command(),   make_view_command(),
+                      make_tune_command(),     make_bias_command(),   make_stress_command(), make_diff_command(),
+                      make_regress_command(),  make_merge_command(),  make_export_command(), make_score_command(),
                       make_gpu_facts_command()};
   return run_command_line(program, words);
 }

@@ -31,28 +31,29 @@ void choose_filters(options::RunOptions& options, RunArguments& arguments) {
 
 void add_told(Command& command, RunArguments& arguments, const std::vector<std::string>& names) {
   for (options::RunOption& each : arguments.told) {
-    if (std::ranges::count(names, each.name) == 0) continue;
+    if (!names.empty() && std::ranges::count(names, each.name) == 0) continue;
     each.variable = std::visit([](auto& told) { return Variable(&told); }, each.told);
     command.options.push_back(each);
+    if (!names.empty()) command.options.back().in("Options").rare = false;
   }
 }
 
 void add_run_options(Command& command, RunArguments& a) {
   a.out = "report/out";
-  command.add("experiment", &a.experiment,
-              "an experiment, by name or as a .toml file, whose keys these options override");
-  std::vector<std::string> names;
-  for (const options::RunOption& each : a.told) names.push_back(each.name);
-  add_told(command, a, names);
+  command.add("experiment", &a.experiment, "name or .toml file; options override its keys (default: 'default')");
+  add_told(command, a);
+  const std::size_t told = command.options.size();
   command.add("--allow-commands", &a.allow_commands,
-              "run the commands of the experiment's [[engine]] tables, which are printed first; without it they are "
-              "asked for on a terminal, and refused elsewhere");
-  add_strict(command, a,
-             "exit code 1 where the finished run has a warning, or a cell that failed; the report is written");
+              "run the commands of the experiment's [[engine]] tables without asking; they are printed first");
+  add_strict(command, a, "exit code 1 if the finished run has a warning or a failed cell; the report is written");
   add_drawing_options(command, a, "shadowbench in $XDG_CACHE_HOME or ~/.cache");
   command.add("--worker", &a.worker, "").hide();
   command.add("--check", &a.check, "").hide();
   command.add("--every-step", &a.every_step, "").hide();
+  for (std::size_t i = told; i < command.options.size(); ++i) {
+    Option& option = command.options[i].in("Output");
+    if (option.name != "--out" && option.name != "--gl") option.rarely();
+  }
 }
 
 void add_strict(Command& command, RunArguments& arguments, const std::string& means) {

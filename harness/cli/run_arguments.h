@@ -33,7 +33,7 @@ struct RunArguments : DrawingArguments {
 void add_run_options(Command& command, RunArguments& arguments);
 
 /// Adds some of them, by their names.
-void add_told(Command& command, RunArguments& arguments, const std::vector<std::string>& names);
+void add_told(Command& command, RunArguments& arguments, const std::vector<std::string>& names = {});
 
 /// Adds --strict. `means` says what is done all the same.
 void add_strict(Command& command, RunArguments& arguments, const std::string& means);

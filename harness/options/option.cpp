@@ -1,6 +1,7 @@
 #include "harness/options/option.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
@@ -21,6 +22,8 @@ double parse_angle(const std::string& text, const char* name, double limit_deg) 
 }  // namespace
 
 std::string Option::value_name() const {
+  if (!value.empty()) return value;
+  if (!choices.empty()) return fmt::format("{}", fmt::join(choices, "|"));
   switch (kind) {
     case ValueKind::kFile: return "FILE";
     case ValueKind::kFolder: return "FOLDER";
@@ -28,9 +31,9 @@ std::string Option::value_name() const {
     case ValueKind::kFilters: return "FILTERS";
     default: break;
   }
-  if (std::holds_alternative<std::uint32_t*>(variable)) return "UINT";
-  return std::holds_alternative<double*>(variable) || std::holds_alternative<std::optional<double>*>(variable) ? "FLOAT"
-                                                                                                               : "TEXT";
+  const bool number = std::holds_alternative<std::uint32_t*>(variable) || std::holds_alternative<double*>(variable) ||
+                      std::holds_alternative<std::optional<double>*>(variable);
+  return number ? "N" : "TEXT";
 }
 
 std::string Option::default_value() const {

@@ -26,13 +26,19 @@ struct Option {
   ValueKind kind = ValueKind::kOther;
   std::vector<std::string> choices = {};  ///< any other value is refused; empty: none is
   bool required = false;
-  bool hidden = false;          ///< the help does not show it
-  bool opposite = false;        ///< the flag can be taken back with --no-FLAG
-  std::string not_empty = {};   ///< what to give in place of an empty value, which no option takes
-  std::string instead = {};     ///< of an option that is gone: what to use instead, which refuses every value
-  std::string other_name = {};  ///< a spelling that is understood, and that the help does not show
+  bool hidden = false;            ///< the help does not show it
+  bool opposite = false;          ///< the flag can be taken back with --no-FLAG
+  std::string not_empty = {};     ///< what to give in place of an empty value, which no option takes
+  std::string instead = {};       ///< of an option that is gone: what to use instead, which refuses every value
+  std::string other_name = {};    ///< a spelling that is understood, and that the help does not show
+  std::string group = "Options";  ///< the heading in the help
+  bool rare = false;              ///< only --help-all shows it
+  std::string value = {};         ///< the word for the value in the help, such as "FOLDER"
 
   Option& names(ValueKind what) { return kind = what, *this; }
+  Option& in(std::string heading) { return group = std::move(heading), *this; }
+  Option& rarely() { return rare = true, *this; }
+  Option& takes(std::string what) { return value = std::move(what), *this; }
   /// Refuses all values but these.
   Option& one_of(std::vector<std::string> values) { return choices = std::move(values), *this; }
   Option& require() { return required = true, *this; }
@@ -45,7 +51,7 @@ struct Option {
   bool is_flag() const { return variable.index() < 2; }
   bool is_argument() const { return name.front() != '-'; }
   bool is_repeatable() const { return std::holds_alternative<std::vector<std::string>*>(variable); }
-  /// The word that stands for the value in help texts, such as "FILE".
+  /// The word for the value in the help: as told by takes(), the choices, or by the kind.
   std::string value_name() const;
   /// The value before the command line is read; empty where there is none.
   std::string default_value() const;

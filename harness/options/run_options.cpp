@@ -176,88 +176,98 @@ std::string RunOption::key() const {
 
 std::vector<RunOption> list_run_options() {
   Table t;
+  const std::string scene = "Scene and light", map = "Shadow map", filter = "Filters", measure = "Measurement",
+                    output = "Output";
   t.add("--scene",
-        "a built-in scene, or a .toml, .gltf, .glb or .obj file, or a folder with one of these; may be repeated "
-        "(default: all built-in scenes)",
+        "built-in scene, model (.gltf, .glb, .obj), .toml, or folder with one; repeatable (default all built-in)",
         &RunOptions::scenes)
+      .in(scene)
       .names(ValueKind::kScene);
-  t.add("--ground", "put a floor under a bare model", &RunOptions::ground);
-  t.add("--map-size", "texels along a side of the shadow map; several with commas", &RunOptions::map_sizes);
-  t.add(
-      "--equal-bytes",
-      "let the layers of a map, cascades or a cube's faces, together have the texels of one map of --map-size, so that "
-      "fits compare at equal bytes",
-      &RunOptions::equal_bytes);
+  t.add("--ground", "put a floor under a bare model", &RunOptions::ground).in(scene).rarely();
+  t.add("--map-size", "texels along a side; several with commas", &RunOptions::map_sizes).in(map).takes("N,...");
+  t.add("--equal-bytes", "share the texels of one --map-size among a map's layers (cascades, cube faces)",
+        &RunOptions::equal_bytes)
+      .in(map)
+      .rarely();
   t.add("--pad-texels",
-        "texels around the scene in the map (default: what the widest kernel of the run needs); set it where runs "
-        "of different filters are compared",
-        &RunOptions::pad_texels);
-  t.add("--view", "a scene's camera by its name; may be repeated (default: all)", &RunOptions::views);
-  t.add("--light-name", "one of a scene's several lights by its name; may be repeated (default: all, each by itself)",
-        &RunOptions::light_names);
-  t.add("--size", "picture size in pixels, WIDTHxHEIGHT; several with commas", &RunOptions::sizes);
-  t.add("--map-format", "how the map stores depth: d16, d24 or d32f", &RunOptions::map);
+        "margin around the scene in texels (default: what the widest kernel needs); set it to compare runs of "
+        "different filters",
+        &RunOptions::pad_texels)
+      .in(map)
+      .rarely();
+  t.add("--view", "the scene's camera of this name; repeatable (default all)", &RunOptions::views).in(scene);
+  t.add("--light-name", "the scene's light of this name; repeatable (default all, one at a time)",
+        &RunOptions::light_names)
+      .in(scene)
+      .rarely();
+  t.add("--size", "image size in pixels; several with commas", &RunOptions::sizes).in(scene).takes("WxH,...");
+  t.add("--map-format", "depth format", &RunOptions::map).in(map).takes("d16|d24|d32f").rarely();
   t.add(
-      "--reversed-depth", "store 1 - depth; filters read the same depth as without it",
-      [](auto& o) -> auto& { return o.map.curve.reversed; });
+       "--reversed-depth", "store 1 - depth; filters still read depth",
+       [](auto& o) -> auto& { return o.map.curve.reversed; })
+      .in(map)
+      .rarely();
   t.add(
-      "--perspective-depth",
-      "store depth as a perspective projection would whose far plane is this many times as far away as its "
-      "near plane; filters read linear depth all the same",
-      [](auto& o) -> auto& { return o.map.curve; });
+       "--perspective-depth",
+       "store the depth of a perspective projection with this ratio of far to near plane; filters still read linear "
+       "depth",
+       [](auto& o) -> auto& { return o.map.curve; })
+      .in(map)
+      .rarely();
   t.add(
        "--blend-casters",
-       "how the map holds casters that one sees through, glTF's BLEND or an opacity below 1: 'opaque', as if one did "
-       "not; 'hashed', in texels by a hash of the place on the surface; 'dither', by a matrix of 8 x 8 texels. Rays of "
-       "the truth are dimmed by 1 - alpha in any case",
+       "transparent casters (glTF BLEND, opacity below 1) in the map: opaque, hashed per texel, or dithered by an 8 x "
+       "8 "
+       "matrix; rays are always dimmed by 1 - alpha",
        [](auto& o) -> auto& { return o.map.blend_casters; })
-      .one_of(render::blend_caster_names());
+      .one_of(render::blend_caster_names())
+      .in(scene)
+      .rarely();
   t.add("--fit",
-        "light frustum: 'tight' around casters and receivers; 'sphere', which is stable under rotation; 'view', "
-        "around what the camera sees and the casters before it; 'cascades', which give slices of that a map each: "
-        "cascades:count=2..4,split=uniform|practical|logarithmic,blend=0.1,depths=all|seen, or in metres "
-        "cascades:splits=5/20,near=0.1,far=80; 'focused', 'lispsm', "
-        "'psm', 'tsm' or 'logpsm', which warp it; of a point light 'paraboloid'; may be repeated (default: tight)",
-        &RunOptions::fits);
-  t.add_switch("--snap",
-               "keep the map's texels fixed in the world while the frusta of --fit view and cascades move: on or off",
-               &RunOptions::snap);
-  t.add("--light", "AZIMUTH,ELEVATION in degrees, where the light stands in every scene: azimuth 0 is +z, 90 is +x",
-        &RunOptions::light)
-      .never_empty("AZIMUTH,ELEVATION in degrees");
+        "light frustum: tight, sphere, view, cascades, focused, lispsm, psm, tsm, logpsm, or paraboloid; such as "
+        "cascades:count=4,split=logarithmic,blend=0.1; repeatable (default tight)",
+        &RunOptions::fits)
+      .in(map);
+  t.add_switch("--snap", "keep texels fixed in the world while the frusta of view and cascades move", &RunOptions::snap)
+      .in(map)
+      .rarely();
+  t.add("--light", "direction of the light in degrees; azimuth 0 is +z, 90 is +x", &RunOptions::light)
+      .never_empty("AZIMUTH,ELEVATION in degrees")
+      .takes("AZIMUTH,ELEVATION")
+      .in(scene);
   t.add(
-       "--border",
-       "what lookups read outside the map: 'border', depth 1, which is right; to see what goes wrong, 'edge', which "
-       "smears casters at the map's edge outwards, or 'repeat', which tiles the map's shadows. See it on --scene "
-       "edge",
+       "--border", "what lookups outside the map read: depth 1 (border, correct), the edge's depth, or the map again",
        [](auto& o) -> auto& { return o.range.border; })
-      .one_of(filters::border_names());
+      .one_of(filters::border_names())
+      .in(map)
+      .rarely();
   t.add_switch(
-      "--far-test", "whether what lies beyond the map's far plane is lit; 'off' compares it, and all of it is dark",
-      [](auto& o) -> auto& { return o.range.far_test; });
+       "--far-test", "light everything beyond the map's far plane; off compares it, which makes it dark",
+       [](auto& o) -> auto& { return o.range.far_test; })
+      .in(map)
+      .rarely();
   t.add_switch(
-      "--behind-test",
-      "whether a spot light leaves out what is behind it; 'off' mirrors its cone, its cookie and its map "
-      "through the light",
-      [](auto& o) -> auto& { return o.range.behind_test; });
+       "--behind-test", "exclude what is behind a spot light; off mirrors cone, cookie and map through the light",
+       [](auto& o) -> auto& { return o.range.behind_test; })
+      .in(map)
+      .rarely();
   t.decides = Decides::kContent;
-  t.add("--border-page",
-        "also draw SCENE.borders.png: every filter with the right border, with each wrong one, and without the "
-        "far-plane test",
-        &RunOptions::border_page);
+  t.add("--border-page", "also draw SCENE.borders.png: every filter under each border, and without the far-plane test",
+        &RunOptions::border_page)
+      .in(map)
+      .rarely();
   t.decides = Decides::kCells;
   t.add_row("--filters",
-            "filters with parameters, such as none,vsm:radius=6,min_variance=1e-4,esm:width=medium; width, a class of "
-            "'list filters' or texels, sets the radius; 'all' is every filter but those for teaching; @ before a name "
-            "of 'list presets' is what an engine ships (default: those of the experiment 'default')",
+            "none,vsm:radius=6,esm:width=medium, all, or @PRESET of an engine (default: eight, one per "
+            "family)",
             std::string())
       .names(ValueKind::kFilters)
-      .also_called("--filter");
+      .also_called("--filter")
+      .in(filter);
   t.add_row(
        "--width",
-       "the kernel's width of every filter that --filters tells none, and no radius: a class of 'list filters', "
-       "texels, "
-       "'light', what the scene's light asks for in each map, or 'own', that of each filter's own defaults",
+       "kernel width unless a filter names one: sharp, medium, soft, texels, light (what the scene's light needs) or "
+       "own (the filter's default)",
        kOwnWidth,
        [](RunOptions& o, const Told& told) {
          const auto& text = std::get<std::string>(told);
@@ -266,46 +276,46 @@ std::vector<RunOption> list_run_options() {
          o.kernel_width = text == kOwnWidth ? std::string() : text;
        },
        [](const RunOptions& o) { return Told(o.kernel_width.empty() ? kOwnWidth : o.kernel_width); })
-      .never_empty("a class of width, texels, light or own");
-  t.add("--filter-file", "a filter of your own, one GLSL file; may be repeated", &RunOptions::filter_files)
-      .names(ValueKind::kFile);
-  t.add_row("--tuned",
-            "a tuned.json of 'shadowbench tune': every filter it names takes its parameters, but for those that "
-            "--filters sets",
-            std::string())
-      .names(ValueKind::kFile);
+      .never_empty("a class of width, texels, light or own")
+      .in(filter);
+  t.add("--filter-file", "a filter of your own, one GLSL file; repeatable", &RunOptions::filter_files)
+      .names(ValueKind::kFile)
+      .in(filter);
+  t.add_row("--tuned", "tuned.json of 'shadowbench tune'; parameters in --filters override it", std::string())
+      .names(ValueKind::kFile)
+      .in(filter);
   t.add("--bias",
-        "depth bias, MODE:KEY=X,...; several add up: " + render::list_bias_modes() +
-            ". Units: depth (0..1 over the light's range), texels (their width), world (metres), kernels (how far the "
-            "filter's comparisons reach). plane: what the receiver's plane gains over so many texels; slope: times "
-            "1 - n.l, or constant where that is more; receiver-plane: the plane's depth at every tap; front-cull, "
-            "midpoint: what the map holds (default plane:kernels=1,depth=2e-5). Planes steeper than 10:1 towards the "
-            "light are biased as 10:1",
-        &RunOptions::bias_texts);
+        "depth bias; repeatable, biases add up: " + render::list_bias_modes() +
+            ". In units of depth (0..1 over the light's range), texels, world (metres) or kernels (the reach of a "
+            "filter's comparisons) (default plane:kernels=1,depth=2e-5)",
+        &RunOptions::bias_texts)
+      .in(map)
+      .takes("MODE:KEY=X")
+      .rarely();
   t.decides = Decides::kContent;
-  t.add("--rounds",
-        "how often each filter is timed: a number, or 'auto', until its ratio to the unfiltered lookup is precise "
-        "enough or the budget is spent",
-        &RunOptions::rounds);
-  t.add("--phases",
-        fmt::format("places of the map's grid, moved by parts of a texel, over which errors are averaged: 1 .. {}",
-                    kMostAveraged),
-        &RunOptions::phases);
-  t.add("--frames",
-        fmt::format("also accumulate visibility over so many frames: 1, which is none, .. {}", kMostAveraged),
-        &RunOptions::frames);
+  t.add("--rounds", "timings per filter: a number, or auto: until --precision or --budget is reached",
+        &RunOptions::rounds)
+      .in(measure)
+      .rarely();
+  t.add("--phases", fmt::format("sub-texel offsets of the map to average errors over, 1 .. {}", kMostAveraged),
+        &RunOptions::phases)
+      .in(measure);
+  t.add("--frames", fmt::format("frames to accumulate visibility over, 1 .. {}", kMostAveraged), &RunOptions::frames)
+      .in(measure)
+      .rarely();
   t.add(
-      "--precision", "for --rounds auto: how wide the ratio's 95 % interval may be, relative to the ratio",
-      [](auto& o) -> auto& { return o.rounds.precision; });
+       "--precision", "for --rounds auto: relative width of the cost ratio's 95 % interval",
+       [](auto& o) -> auto& { return o.rounds.precision; })
+      .in(measure)
+      .rarely();
   t.add_row(
-      "--budget", "for --rounds auto: seconds of timed work for each filter on each map", 0.4,
-      [](RunOptions& o, const Told& told) { o.rounds.budget_ms = 1e3 * std::get<double>(told); },
-      [](const RunOptions& o) { return o.rounds.budget_ms / 1e3; });
+       "--budget", "for --rounds auto: seconds of timing per filter and map", 0.4,
+       [](RunOptions& o, const Told& told) { o.rounds.budget_ms = 1e3 * std::get<double>(told); },
+       [](const RunOptions& o) { return o.rounds.budget_ms / 1e3; })
+      .in(measure)
+      .rarely();
   t.add_row(
-       "--gpu",
-       "also say what filters cost on these GPUs, which need not be there: names of 'list gpus' with commas, or "
-       "'none'",
-       kDefaultGpus,
+       "--gpu", "estimate costs on these GPUs of 'list gpus'; none for none", kDefaultGpus,
        [](RunOptions& o, const Told& told) {
          o.gpus = gpu::choose_gpus(gpu::load_gpus(o.resources.gpus), split_list(std::get<std::string>(told)));
        },
@@ -314,47 +324,64 @@ std::vector<RunOption> list_run_options() {
          for (const gpu::Gpu& gpu : o.gpus) names.push_back(gpu.name);
          return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","));
        })
-      .never_empty("names of 'list gpus', or none");
-  t.add("--seed", "seed of random rotations and of the order in which filters are timed", &RunOptions::seed);
-  t.add("--truth", "trace rays, and score every filter against them (default)", &RunOptions::truth).with_opposite();
+      .never_empty("names of 'list gpus', or none")
+      .takes("NAME,...")
+      .in(measure);
+  t.add("--seed", "seed of random rotations and of the order of timing", &RunOptions::seed).in(measure).rarely();
+  t.add("--truth", "ray-trace the scene and score every filter against it (default)", &RunOptions::truth)
+      .with_opposite()
+      .in(measure);
   t.add("--truth-weight",
-        "what visibility is held against: 'area', the share of the light's area (of a sphere's solid angle) that is "
-        "seen, as filters define it, or 'cosine', the share of the unshadowed light that arrives, as a renderer has "
-        "it; pictures are always held against the latter",
-        &RunOptions::truth_weight);
-  t.add("--attribution", "take the errors apart: trace kernels, run models (default)", &RunOptions::attribution)
-      .with_opposite();
+        "visibility of the truth: area, the visible share of the light's area (or solid angle), as filters define it; "
+        "or cosine, the share of the unshadowed light that arrives; images always use cosine",
+        &RunOptions::truth_weight)
+      .in(measure)
+      .takes("area|cosine")
+      .rarely();
+  t.add("--attribution", "split errors by cause: trace kernels, run models (default)", &RunOptions::attribution)
+      .with_opposite()
+      .in(measure)
+      .rarely();
   t.add("--stability",
-        "say where numbers break, as pictures and counts: overflow, negative variance, 16- against 32-bit stores, "
-        "bounds that do not hold",
+        "count and draw numerical faults: overflow, negative variance, 16-bit against 32-bit stores, "
+        "broken bounds",
         &RunOptions::stability)
-      .with_opposite();
-  t.add("--uncertainty", "keep how far rounding and other seeds can move each pixel, which 'regress' allows for",
+      .with_opposite()
+      .in(measure)
+      .rarely();
+  t.add("--uncertainty", "keep how far rounding and other seeds can move each pixel, for 'regress'",
         &RunOptions::uncertainty)
-      .with_opposite();
+      .with_opposite()
+      .in(measure)
+      .rarely();
   t.add("--all-parts",
-        "keep pictures, the parts of errors, receivers and the depth map as floats, too, from which a filter can be "
-        "computed again: EXR files take eight times the room",
+        "keep images, parts of errors, receivers and the depth map as floats, so that a filter can be recomputed (8 "
+        "times the EXR size)",
         &RunOptions::all_parts)
-      .with_opposite();
+      .with_opposite()
+      .in(output)
+      .rarely();
   t.decides = Decides::kCells;
-  t.add("--cell-timeout", "seconds that a filter of your own may take on one scene", &RunOptions::cell_timeout_s);
+  t.add("--cell-timeout", "seconds that a filter of your own may take per scene", &RunOptions::cell_timeout_s)
+      .in(measure)
+      .rarely();
   t.add_row("--grids",
-            fmt::format("compare all filters of a view in one picture, and keep their float images (default up to {} "
-                        "filters)",
-                        kFiltersOfAGrid),
-            0)
-      .with_opposite();
+            fmt::format("draw image grids and keep float images (default up to {} filters)", kFiltersOfAGrid), 0)
+      .with_opposite()
+      .in(output)
+      .rarely();
   t.add_row("--lights", "", std::string())
       .gone("each copy of a light costs the same; list several lights in the scene's file, and add up their times");
   t.decides = Decides::kWay;
-  t.add("--shard", "I/N: every N-th cell only, from the I-th on; 'merge' joins the N report folders", &RunOptions::part)
-      .never_empty("I/N");
-  t.add("--fresh", "measure every cell again, even those that an earlier run finished in the report folder",
-        &RunOptions::fresh);
+  t.add("--shard", "measure every N-th cell from the I-th; 'merge' joins the folders", &RunOptions::part)
+      .never_empty("I/N")
+      .takes("I/N")
+      .in(output)
+      .rarely();
+  t.add("--fresh", "measure again what the folder already has", &RunOptions::fresh).in(output);
   t.add_row("--until-different", "", std::string())
       .gone("the page says how small a difference the run can see; raise --phases to see a smaller one");
-  t.add("--yes", "start even where there are very many cells", &RunOptions::large_is_fine);
+  t.add("--yes", "start even with very many cells", &RunOptions::large_is_fine).in(output).rarely();
   t.add("--pictures", "", &RunOptions::pictures).with_opposite().hide();
   return std::move(t.rows);
 }

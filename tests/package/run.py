@@ -64,7 +64,7 @@ def check_shell(prefix):
         words = page.name.removesuffix(".1.gz").split("-")[1:]
         text = call("sh", "-c", f"zcat {page} | groff -man -Tascii -ww -P-c -P-b -P-u 2>&1")
         expect("troff" not in text, f"{page.name}:\n{text}")
-        options = set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", call(prefix / "bin/shadowbench", *words, "--help"), re.MULTILINE))
+        options = set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", call(prefix / "bin/shadowbench", *words, "--help-all"), re.MULTILINE))
         missing = {option for option in options if option not in text}
         expect(options and not missing, f"{page.name} lacks {missing}")
     for words, offered in ((["reg"], ["regress"]), (["list", ""], ["filters", "presets", "scenes", "metrics", "gpus", "gl"]),

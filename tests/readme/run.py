@@ -326,7 +326,7 @@ class Help:
         self.text += "".join(self.ask(["list", each]) for each in ("filters", "scenes", "metrics", "gl"))
 
     def ask(self, words):
-        return subprocess.run([str(self.program), *words, "--help"], text=True, capture_output=True, check=False).stdout
+        return subprocess.run([str(self.program), *words, "--help-all"], text=True, capture_output=True, check=False).stdout
 
     def has_option(self, option):
         return re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", self.text) is not None

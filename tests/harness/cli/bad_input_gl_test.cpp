@@ -2,6 +2,9 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <iterator>
+#include <sstream>
 #include <tuple>
 
 #include "tests/harness/cli/program.h"
@@ -107,6 +110,14 @@ TEST_F(BadInput, EmptyValues) {
   }
   expect_refusal("stress --out out --axes ''", 2, {"--axes", "a value is missing"});
   expect_refusal("diff '' out", 2, {"a value is missing"});
+}
+TEST_F(BadInput, HelpOfARunIsShort) {
+  std::istringstream all(run("run --help-all").out), help(run("run --help").out);
+  using Words = std::istream_iterator<std::string>;
+  EXPECT_GT(std::distance(Words(all), Words()), 600);
+  const std::vector<std::string> words(Words{help}, Words());
+  EXPECT_LE(words.size(), 300u);
+  EXPECT_EQ(std::ranges::count(words, "--pad-texels"), 0);
 }
 TEST_F(BadInput, OtherSpellingOfFilters) {
   expect_refusal(small("--filter pcf2x3"), 2, {"'pcf2x3'"});
