@@ -1,7 +1,7 @@
 // Draws a scene that 'shadowbench export' wrote with an engine of the web, in headless Chromium:
 //   node draw.mjs ENGINE SETTINGS scene.json picture.exr
 // SETTINGS is key=value,key=value, or "" for what the engine ships. Writes layers lit, unlit and depth, and a meta.json
-// beside them. README.md says what is set, and how.
+// beside them. engines.mjs has the settings.
 import { accessSync, constants, existsSync, readFileSync, writeFileSync } from "node:fs";
 import { delimiter, dirname, extname, join, normalize, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
