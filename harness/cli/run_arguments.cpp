@@ -20,7 +20,7 @@ void choose_filters(options::RunOptions& options, RunArguments& arguments) {
       parse_filters(catalogue, options::find_told<std::string>(arguments.told, "--filters"), options.filter_files);
   if (!options.kernel_width.empty()) filters::set_widths(options.filters, options.kernel_width);
   if (const auto& tuned = options::find_told<std::string>(arguments.told, "--tuned"); !tuned.empty())
-    options.notes = tune::apply_tuned(options.filters, catalogue, tuned, options.map_sizes);
+    options.notes = tune::apply_tuned(options.filters, catalogue, tuned, options.map_sizes, options.fits);
   require_distinct(options.filters);
   for (std::string& note : describe_presets(options.filters)) options.notes.push_back(std::move(note));
   options.grids =

@@ -55,6 +55,9 @@ tune::TuneOptions make_tune_options(const TuneArguments& arguments) {
   options.metric = tune::find_tune_metric(arguments.metric).name;
   options.budget = parse_budget(arguments.budget);
   take_picture_options(arguments, run);
+  if (const std::size_t colon = arguments.fit.find(':'); colon != std::string::npos)
+    for (const auto& [key, value] : split_assignments(arguments.fit.substr(colon + 1), "--fit"))
+      options.fixed_keys.insert(key);
   run.bias = render::parse_bias(arguments.bias);
   run.bias_texts = arguments.bias;
   render::require_drawable(run.bias, run.map);
@@ -78,9 +81,9 @@ int tune(const TuneArguments& arguments) {
 
 std::string describe_tuning() {
   return fmt::format(
-      "Searches every numeric parameter with a range (but those that --filters sets, and const ones) for the least "
-      "mean "
-      "of the metric over the training views of all scenes, then scores default and found parameters on views that the "
+      "Searches split and blend of cascades (but what --fit sets), then every numeric parameter with a range (but "
+      "those that --filters sets, and const ones) for the least mean of the metric over the training views of all "
+      "scenes, then scores default and found parameters on views that the "
       "search has not seen. The views are made of each scene's first camera, turned about the vertical axis through "
       "the point it looks at (the point of its central ray that is nearest to the middle of the scene's bounds), or "
       "about itself where it stands within these bounds, and "

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "harness/scene/lights/fit_rule.h"
+
 namespace shadowbench::tune {
 
 /// One number that is searched.
@@ -11,6 +13,8 @@ struct SearchedParam {
   double max = 1.0;  ///< inclusive
   double default_value = 0.0;
   bool integer = false;
+  std::string unit = {};
+  double scene::CascadeRule::*of_fit = nullptr;  ///< the member of a fit that it is, in place of a filter's parameter
 };
 
 /// Lays a parameter's range on [0,1], so that a step means as much anywhere:

@@ -24,13 +24,14 @@ namespace {
 
 constexpr double kLargestPaddingShare = 1.0 / 64.0;
 constexpr double kLeastPadding = 4.0;
+constexpr double kWidestBlend = 0.5;  // of two neighbours, then all of a slice
 
 using TuneSceneList = std::vector<std::unique_ptr<TuneScene>>;
 
 /// What is known of one filter between its search and its scoring.
 struct TunedFilter {
   filters::FilterRequest request;  ///< at its defaults
-  filters::ParamValues found;
+  Setting found;
   records::TunedFilterRecord record;
 };
 
@@ -76,7 +77,7 @@ class Tuner {
   std::string run() {
     const files::FolderLock lock(options_.run.out,
                                  options_.run.force);  // a folder that cannot be written is better found now
-    progress_.begin(static_cast<int>(filters_.size()) * options_.budget, 0);
+    progress_.begin(static_cast<int>(filters_.size()) * (options_.budget + fit_budget_), 0);
     search_all();
     score_unseen();
     renderer_.context->require_no_gl_errors();
@@ -89,6 +90,8 @@ class Tuner {
   const TuneOptions& options_;
   options::Progress& progress_;
   const TuneMetric& metric_;
+  const std::vector<SearchedParam> fit_params_ = list_searched_params(options_.run.fit, options_.fixed_keys);
+  const int fit_budget_ = fit_params_.empty() ? 0 : (options_.budget + 1) / 2;
   std::vector<TunedFilter> filters_;
   std::vector<scene::Scene> scenes_;
   measure::Renderer renderer_;
@@ -109,14 +112,14 @@ class Tuner {
                                                    "each: tune them apart, with another --out",
                                                    request.spec.id));
       }
-      if (list_searched_params(request).empty()) {
+      if (fit_params_.empty() && list_searched_params(request).empty()) {
         untuned.push_back(fmt::format(
             "there is nothing to tune of '{}': it has no numeric parameter with a range that is not const and not set "
             "already",
             request.label()));
         continue;
       }
-      tuned.push_back({request, {}, {}});
+      tuned.push_back({request, {request.values, options_.run.fit.cascades}, {}});
     }
     if (tuned.empty()) throw Error(ErrorKind::kUsage, untuned.back() + "; choose another filter (see 'list filters')");
     for (const std::string& each : untuned) progress_.note(each);
@@ -180,49 +183,75 @@ class Tuner {
   void search_all() {
     const TuneSceneList tune_scenes = make_training_scenes();
     for (TunedFilter& filter : filters_) {
-      search(filter, tune_scenes);
+      note_filter(filter);
+      render::FilterPasses passes = tune_scenes.front()->make_passes(filter.request);
+      search(filter, fit_params_, fit_budget_, tune_scenes, passes);
+      search(filter, list_searched_params(filter.request), options_.budget, tune_scenes, passes);
       for (const auto& tune_scene : tune_scenes) score(filter, *tune_scene, true);
     }
   }
 
-  static filters::ParamValues with_values(const filters::FilterRequest& request,
-                                          const std::vector<SearchedParam>& params, const std::vector<double>& values) {
-    filters::ParamValues all = request.values;
-    for (std::size_t i = 0; i < params.size(); ++i) all[params[i].name] = values[i];
-    return all;
+  static Setting with_values(Setting setting, const std::vector<SearchedParam>& params,
+                             const std::vector<double>& values) {
+    for (std::size_t i = 0; i < params.size(); ++i)
+      if (params[i].of_fit)
+        setting.cascades.*params[i].of_fit = values[i];
+      else
+        setting.values[params[i].name] = values[i];
+    return setting;
   }
 
   /// The mean over all training views.
-  static double evaluate(const TuneSceneList& tune_scenes, render::FilterPasses& passes,
-                         const filters::ParamValues& values) {
+  static double evaluate(const TuneSceneList& tune_scenes, render::FilterPasses& passes, const Setting& setting) {
     std::vector<double> all;
     for (const auto& tune_scene : tune_scenes) {
-      const auto scores = tune_scene->score(passes, values);
+      const auto scores = tune_scene->score(passes, setting);
       if (!scores) return kWorstError;
       all.insert(all.end(), scores->begin(), scores->end());
     }
     return mean(all);
   }
 
-  void search(TunedFilter& filter, const TuneSceneList& tune_scenes) {
-    const std::vector<SearchedParam> params = list_searched_params(filter.request);
+  /// The truth's standard error, the mean over all training views; 0 where the metric is not in its unit.
+  double find_truth_se(const TuneSceneList& tune_scenes) const {
+    std::vector<double> all;
+    for (const auto& tune_scene : tune_scenes)
+      for (const TuneScene::View& view : tune_scene->views()) all.push_back(view.truth->standard_error);
+    return metric_.kind == TuneMetricKind::kStatistic ? mean(all) : 0.0;
+  }
+
+  /// Searches some parameters, the others as they were found before.
+  void search(TunedFilter& filter, const std::vector<SearchedParam>& params, int budget,
+              const TuneSceneList& tune_scenes, render::FilterPasses& passes) {
+    if (params.empty()) return;
     const std::vector<ParamScale> scales(params.begin(), params.end());
-    render::FilterPasses passes = tune_scenes.front()->make_passes(filter.request);
+    const Setting start = filter.found;
     const int before = done_;
+    std::vector<Evaluation> drawn;
     SearchSettings search;
-    search.budget = options_.budget;
+    search.budget = budget;
     search.on_evaluation = [&](const Evaluation& evaluation) {
-      done_ = before + std::min(evaluation.number, options_.budget);
+      done_ = before + std::min(evaluation.number, budget);
       progress_.show(done_, fmt::format("{} · {} · {} {:.4g}", filter.request.spec.id, evaluation.stage, metric_.name,
                                         evaluation.error));
       note_evaluation(filter.request.spec.id, params, evaluation);
+      drawn.push_back(evaluation);
     };
-    const SearchResult result = search_parameters(scales, search, [&](const std::vector<double>& values) {
-      return evaluate(tune_scenes, passes, with_values(filter.request, params, values));
+    SearchResult result = search_parameters(scales, search, [&](const std::vector<double>& values) {
+      return evaluate(tune_scenes, passes, with_values(start, params, values));
     });
-    done_ = before + options_.budget;
-    filter.found = with_values(filter.request, params, result.best);
+    done_ = before + budget;
+    const auto blend = std::ranges::find(params, &scene::CascadeRule::blend, &SearchedParam::of_fit) - params.begin();
+    if (blend < std::ssize(params))
+      take_widest(result, drawn, static_cast<std::size_t>(blend), find_truth_se(tune_scenes));
+    filter.found = with_values(start, params, result.best);
     note_search(filter, scales, result);
+  }
+
+  /// Takes the largest value of a parameter whose error is tied with the best.
+  static void take_widest(SearchResult& result, const std::vector<Evaluation>& drawn, std::size_t which, double tie) {
+    for (const Evaluation& each : drawn)
+      if (each.error <= result.best_error + tie && each.values[which] > result.best[which]) result.best = each.values;
   }
 
   void note_evaluation(const std::string& id, const std::vector<SearchedParam>& params, const Evaluation& evaluation) {
@@ -233,19 +262,21 @@ class Tuner {
                                 records::quote_csv(values), evaluation.error);
   }
 
+  static void note_filter(TunedFilter& filter) {
+    filter.record.id = filter.request.spec.id;
+    filter.record.label = filter.request.label();
+    filter.record.defaults = measure::record_params(filter.request.values);
+  }
+
   static void note_search(TunedFilter& filter, const std::vector<ParamScale>& scales, const SearchResult& result) {
     records::TunedFilterRecord& record = filter.record;
-    record.id = filter.request.spec.id;
-    record.label = filter.request.label();
-    record.defaults = measure::record_params(filter.request.values);
-    record.search_evaluations = result.search_evaluations;
-    record.evaluations = result.evaluations;
+    record.search_evaluations += result.search_evaluations;
+    record.evaluations += result.evaluations;
     for (std::size_t i = 0; i < scales.size(); ++i) {
       const SearchedParam& param = scales[i].param();
       const GoodRange& range = result.ranges[i];
-      record.searched.push_back({param.name, filter.request.spec.find_param(param.name)->unit, scales[i].name(),
-                                 param.min, param.max, param.default_value, result.best[i], range.intervals,
-                                 range.share, range.no_effect});
+      record.searched.push_back({param.name, param.unit, scales[i].name(), param.min, param.max, param.default_value,
+                                 result.best[i], range.intervals, range.share, range.no_effect});
     }
   }
 
@@ -253,7 +284,8 @@ class Tuner {
   void score(TunedFilter& filter, TuneScene& tune_scene, bool training) const {
     render::FilterPasses passes = tune_scene.make_passes(filter.request);
     const std::vector<double> worst(tune_scene.views().size(), kWorstError);
-    const std::vector<double> at_default = tune_scene.score(passes, filter.request.values).value_or(worst);
+    const Setting asked{filter.request.values, options_.run.fit.cascades};
+    const std::vector<double> at_default = tune_scene.score(passes, asked).value_or(worst);
     const std::vector<double> tuned = tune_scene.score(passes, filter.found).value_or(worst);
     for (std::size_t i = 0; i < worst.size(); ++i) {
       const TuneScene::View& view = tune_scene.views()[i];
@@ -281,8 +313,11 @@ class Tuner {
 
   std::string write() {
     for (TunedFilter& filter : filters_) {
-      records::judge_tuning(filter.record, measure::record_params(filter.found),
+      records::judge_tuning(filter.record, measure::record_params(filter.found.values),
                             metric_.kind == TuneMetricKind::kStatistic);
+      scene::FitRule fit = options_.run.fit;
+      if (filter.record.verdict == records::TuneVerdict::kBetter) fit.cascades = filter.found.cascades;
+      filter.record.fit = scene::describe_fit(fit);
       record_.filters.push_back(filter.record);
     }
     const document::Page page = pages::make_tune_page(record_);
@@ -302,8 +337,20 @@ std::vector<SearchedParam> list_searched_params(const filters::FilterRequest& re
     const bool fixed = request.set_by_user.contains(param.name);
     if (fixed || param.is_const || !param.choices.empty() || !param.min || !param.max || !(*param.min < *param.max))
       continue;
-    params.push_back({param.name, *param.min, *param.max, std::get<double>(param.default_value), param.integer});
+    params.push_back(
+        {param.name, *param.min, *param.max, std::get<double>(param.default_value), param.integer, param.unit});
   }
+  return params;
+}
+
+std::vector<SearchedParam> list_searched_params(const scene::FitRule& fit, const std::set<std::string>& fixed) {
+  if (fit.mode != scene::FitMode::kCascades) return {};
+  const scene::CascadeRule& rule = fit.cascades;
+  std::vector<SearchedParam> params = {{"split", 0.0, 1.0, rule.split, false, {}, &scene::CascadeRule::split},
+                                       {"blend", 0.0, kWidestBlend, rule.blend, false, {}, &scene::CascadeRule::blend}};
+  std::erase_if(params, [&](const SearchedParam& param) {
+    return fixed.contains(param.name) || (param.name == "split" && !rule.splits.empty());
+  });
   return params;
 }
 

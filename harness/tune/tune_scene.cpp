@@ -12,6 +12,7 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/map_limits.h"
 #include "harness/measure/mean_flip.h"
+#include "harness/measure/phases.h"
 #include "harness/render/shade_pass.h"
 #include "report/images/picture_io.h"
 
@@ -81,8 +82,9 @@ TuneScene::TuneScene(measure::Renderer& renderer, const TuneSettings& settings, 
                      const std::function<void(const std::string&)>& on_view)
     : renderer_(renderer),
       settings_(settings),
+      options_(*settings.options),
       scene_(turn_scene(scene, views)),
-      assets_(renderer, *settings.options, scene_, cache, settings.pad_texels),
+      assets_(renderer, options_, scene_, cache, settings.pad_texels),
       target_("visibility", GL_R32F, settings.options->width, settings.options->height) {
   const std::int64_t own = count_receivers(scene.cameras.front());
   for (const scene::Camera& camera : scene_.cameras) {
@@ -123,7 +125,15 @@ std::int64_t TuneScene::count_receivers(const scene::Camera& camera) {
 }
 
 render::LightLayers TuneScene::make_light(const filters::FilterRequest& request, const measure::LightMap& light) const {
-  return measure::make_filter_light(*settings_.options, scene_.light, light.layers, request);
+  return measure::make_filter_light(options_, scene_.light, light.layers, request);
+}
+
+void TuneScene::refit(const scene::CascadeRule& cascades) {
+  if (cascades == options_.fit.cascades) return;
+  options_.fit.cascades = cascades;
+  const glm::dvec2 shift = measure::list_phase_shifts(options_.phases, options_.seed).front();
+  for (const View& view : views_)
+    *view.light = assets_.make_light_map(scene_.light, *view.camera, options_.map_sizes.front(), shift);
 }
 
 render::FilterPasses TuneScene::make_passes(const filters::FilterRequest& request) {
@@ -131,15 +141,16 @@ render::FilterPasses TuneScene::make_passes(const filters::FilterRequest& reques
   return render::FilterPasses(renderer_.shaders, request, light.map, make_light(request, light));
 }
 
-std::optional<std::vector<double>> TuneScene::score(render::FilterPasses& passes, const filters::ParamValues& values) {
+std::optional<std::vector<double>> TuneScene::score(render::FilterPasses& passes, const Setting& setting) {
+  refit(setting.cascades);
   filters::FilterRequest request = passes.request();
-  request.values = values;
+  request.values = setting.values;
   std::vector<Shot> shots(views_.size());
   const measure::LightMap* drawn = nullptr;
   for (std::size_t i = 0; i < views_.size(); ++i) {
     measure::LightMap& light = *views_[i].light;
     if (drawn != &light) {
-      passes.retune(renderer_.shaders, values, make_light(request, light));
+      passes.retune(renderer_.shaders, setting.values, make_light(request, light));
       passes.prefilter(light.map);
       if (measure::count_broken_texels(passes, light.map) > 0) return std::nullopt;
     }
@@ -150,7 +161,7 @@ std::optional<std::vector<double>> TuneScene::score(render::FilterPasses& passes
     if (settings_.metric->kind == TuneMetricKind::kFlip)
       shots[i].picture = render::shade(renderer_.shaders, gbuffer, target_.texture(), scene_, *views_[i].camera);
     if (settings_.metric->kind != TuneMetricKind::kLeak) continue;
-    measure::draw_without_bias(renderer_, *settings_.options, assets_, light, passes, [&] {
+    measure::draw_without_bias(renderer_, options_, assets_, light, passes, [&] {
       shots[i].unbiased = measure::draw_visibility(passes, light.map, gbuffer, target_);
     });
     drawn = nullptr;  // the prefilter is that of the map without bias

@@ -42,9 +42,15 @@ struct TuneSettings {
       0.0;  ///< around the scene in the map, and the widest kernel that the guard of artefacts allows for
 };
 
-/// One scene under one light with some of its views, ready to score any setting of any filter. Draws the maps and the
-/// views and traces their truth once; scoring draws the prefilter once for each map and one lookup for each view, and
-/// times nothing.
+/// What is tuned: the parameters of a filter, and how cascades share what the camera sees.
+struct Setting {
+  filters::ParamValues values;
+  scene::CascadeRule cascades;
+};
+
+/// One scene under one light with some of its views, ready to score any setting of any filter. Draws the views and
+/// traces their truth once; scoring draws the maps where cascades are others than those of the setting before, the
+/// prefilter once for each map and one lookup for each view, and times nothing. Masks stay those of the fit asked for.
 class TuneScene {
  public:
   /// `on_view` hears of each view before it is traced. All but the scene must outlive this object. A view with less
@@ -72,14 +78,15 @@ class TuneScene {
   /// Compiles a filter, to be scored by this and all others of the same settings.
   render::FilterPasses make_passes(const filters::FilterRequest& request);
 
-  /// Scores values of the filter's parameters in every view, in the order of views(). Gives nothing where the values
-  /// overflow the filter's map: infinite texels may hide in the image, and are not to be chosen for it. A pixel that is
+  /// Scores a setting in every view, in the order of views(). Gives nothing where the filter's parameters
+  /// overflow its map: infinite texels may hide in the image, and are not to be chosen for it. A pixel that is
   /// not finite counts as wholly wrong.
-  std::optional<std::vector<double>> score(render::FilterPasses& passes, const filters::ParamValues& values);
+  std::optional<std::vector<double>> score(render::FilterPasses& passes, const Setting& setting);
 
  private:
   measure::Renderer& renderer_;
   TuneSettings settings_;
+  options::RunOptions options_;  ///< with the fit of the maps that are drawn
   scene::Scene scene_;
   measure::SceneAssets assets_;
   render::ImageTarget target_;
@@ -89,6 +96,8 @@ class TuneScene {
   /// Gives why a view has no such metric; empty where it has.
   std::string explain_absent(const View& view) const;
   render::LightLayers make_light(const filters::FilterRequest& request, const measure::LightMap& light) const;
+  /// Draws the maps of other cascades.
+  void refit(const scene::CascadeRule& cascades);
   std::int64_t count_receivers(const scene::Camera& camera);
 };
 

@@ -50,23 +50,30 @@ void take_values(filters::FilterRequest& request, const filters::ParamValues& va
 }  // namespace
 
 std::vector<std::string> apply_tuned(std::vector<filters::FilterRequest>& requests, const filters::Catalogue& catalogue,
-                                     const std::filesystem::path& file, const std::vector<int>& map_sizes) {
+                                     const std::filesystem::path& file, const std::vector<int>& map_sizes,
+                                     const std::vector<scene::FitRule>& fits) {
   const records::TunedSettings tuned = records::read_tuned_settings(file);
   std::map<std::string, filters::ParamValues> found;
+  std::map<std::string, std::string> fit_of;
   for (std::size_t i = 0; i < tuned.filters.size(); ++i) {
     const records::TunedSettings::Filter& filter = tuned.filters[i];
     const std::string field = fmt::format("filters[{}]", i);
     const filters::FilterSpec& spec =
         check_field(file, field + ".id", [&]() -> const filters::FilterSpec& { return catalogue.find(filter.id); });
+    fit_of[filter.id] = filter.fit;
     found[filter.id] = read_values(spec, filter.params, file, field + ".params");
   }
   std::vector<std::string> notes;
+  const std::set<std::string> drawn = scene::describe_fits(fits);
   for (filters::FilterRequest& request : requests) {
     if (!request.presets.empty()) continue;  // what an engine ships has the engine's parameters, those unsaid too
     const auto values = found.find(request.spec.id);
-    if (values != found.end())
+    if (values != found.end()) {
       take_values(request, values->second);
-    else if (!request.spec.params.empty())
+      if (const std::string& fit = fit_of[request.spec.id]; !drawn.contains(fit))
+        notes.push_back(fmt::format("{} was tuned for {} under --fit {}, which this run does not draw", file.string(),
+                                    request.label(), fit));
+    } else if (!request.spec.params.empty())
       notes.push_back(fmt::format("{} has no parameters for {}, which keeps its own", file.string(), request.label()));
   }
   for (const int map_size : map_sizes) {

@@ -84,7 +84,7 @@ std::string list_other_fits(std::span<const MapPoint> maps, const MapPoint& best
   return texts.empty() ? "" : fmt::format(" ({})", fmt::join(texts, "; "));
 }
 
-/// Of those whose error is not clearly above the least, the one with the least seam.
+/// Of those whose error is not clearly above the least, the one with the least seam; one without any goes first.
 const MapPoint& choose_map(std::span<const MapPoint> maps) {
   const MapPoint& least = *std::ranges::min_element(maps, {}, [](const MapPoint& each) { return each.rmse.value; });
   const MapPoint* best = &least;
@@ -145,10 +145,9 @@ std::vector<MapFamily> list_map_families(const std::vector<const records::CellRe
       const records::CellRecord& cell = *cells[static_cast<std::size_t>(each - plain.data())];
       const Measured paid = read_cost(cell, cost), rmse = read_error(cell, list_error_measures()[0]);
       if (cell.status != records::CellStatus::kOk || !paid.estimate || !rmse.estimate || !cell.cost.map_bytes) continue;
-      own[find_place(places, cell)].maps.push_back({cell.fit.substr(0, cell.fit.find_first_of(": ")),
-                                                    records::name_fit(cell.fit, fits), cell.map_size,
-                                                    static_cast<double>(*cell.cost.map_bytes), *paid.estimate,
-                                                    *rmse.estimate, cell.artefact.seam.value_or(0.0)});
+      own[find_place(places, cell)].maps.push_back(
+          {cell.fit.substr(0, cell.fit.find_first_of(": ")), records::name_fit(cell.fit, fits), cell.map_size,
+           static_cast<double>(*cell.cost.map_bytes), *paid.estimate, *rmse.estimate, cell.artefact.seam});
     }
     for (MapFamily& family : own) {
       std::ranges::stable_sort(family.maps, {}, &MapPoint::bytes);
@@ -177,7 +176,7 @@ std::string describe_best_map(const std::vector<MapFamily>& families) {
         maps, [&](const MapPoint& each) { return &each != &best && !is_clearly_less_error(best.rmse, each.rmse); });
     text += fmt::format("{} {}: {}, {} texels a side, RMSE {}", text.empty() ? "Best map at" : "; at",
                         records::format_bytes(bytes), best.name, best.size, records::format_number(best.rmse.value));
-    if (best.seam > 0.0) text += ", seam " + records::format_number(best.seam);
+    if (best.seam) text += ", seam " + records::format_number(best.seam);
     if (ties > 0) text += fmt::format(", tied with {} other{}", ties, ties > 1 ? "s" : "");
     if (rest.size() + maps.size() == family.maps.size()) text += list_other_fits(maps, best);
   }

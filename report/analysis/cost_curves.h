@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,7 @@ struct MapPoint {
   int size = 0;      ///< texels along a side
   double bytes = 0.0;
   Estimate cost, rmse;
-  double seam = 0.0;  ///< between cascades
+  std::optional<double> seam;  ///< between cascades
 };
 
 /// The maps of one filter in one scene and view, all else being equal; or of all filters everywhere: least bytes, mean
@@ -65,7 +66,8 @@ Measure make_map_measure(const std::vector<const records::CellRecord*>& cells);
 std::vector<MapFamily> list_map_families(const std::vector<const records::CellRecord*>& cells);
 
 /// Says in one sentence which map has the least error at each number of bytes that maps of several fits have, and what
-/// the best of every other fit has at the most. Of maps whose errors are tied it is that with the least seam. Empty
+/// the best of every other fit has at the most. Of maps whose errors are tied it is that with the least seam, or none.
+/// Empty
 /// where no two fits have maps of as many bytes.
 std::string describe_best_map(const std::vector<MapFamily>& families);
 

@@ -66,6 +66,14 @@ const makeScale = (axis, from, to) => {
   return scale;
 };
 
+// The axis between the ticks around what is shown, so that hidden curves take no room.
+const fitAxis = (axis, shown) => {
+  const values = shown.flatMap(({ points }) => points.flatMap(({ y }) => y)).filter((value) => value !== null);
+  const low = axis.ticks.findLast(([tick]) => tick <= Math.min(...values))?.[0] ?? axis.low;
+  const high = axis.ticks.find(([tick]) => tick >= Math.max(...values))?.[0] ?? axis.high;
+  return low < high ? { ...axis, low, high, ticks: axis.ticks.filter(([tick]) => tick >= low && tick <= high) } : axis;
+};
+
 const addAxes = (svg, chart, x, y, area, width) => {
   const taken = [];
   for (const [value, label] of chart.x.ticks) {
@@ -177,13 +185,15 @@ const drawChart = (chart, width, hidden, onToggle) => {
       top += kLine;
     }
   };
+  const shown = listShown(chart, hidden);
+  const yAxis = shown.length < chart.series.length ? fitAxis(chart.y, shown) : chart.y;
   say(chart.title, { x: 12, "font-weight": "bold" });
   say(chart.y.name, { x: 12, fill: kSecond });
-  const left = 20 + Math.max(0, ...chart.y.ticks.map(([, label]) => widthOf(label)));
+  const left = 20 + Math.max(0, ...yAxis.ticks.map(([, label]) => widthOf(label)));
   const area = { left, right: width - 16, top: top - 4, bottom: top + Math.min(Math.max(width * 0.45, 260), 460) };
   const x = makeScale(chart.x, area.left, area.right);
-  const y = makeScale(chart.y, area.bottom, area.top);
-  addAxes(svg, chart, x, y, area, width);
+  const y = makeScale(yAxis, area.bottom, area.top);
+  addAxes(svg, { x: chart.x, y: yAxis }, x, y, area, width);
   top = area.bottom + 2 * kLine + 2;
   say(chart.x.name, { x: (area.left + area.right) / 2, "text-anchor": "middle", fill: kSecond });
 
@@ -194,7 +204,6 @@ const drawChart = (chart, width, hidden, onToggle) => {
   const hits = [];
   const labels = [];
   const marks = [];
-  const shown = listShown(chart, hidden);
   const layers = shown.map((series) => svgElement(svg, "g", series.faint ? { opacity: kFaint } : {}));
   for (const [i, series] of shown.entries()) {
     const isMarked = series.mark !== "none";

@@ -259,13 +259,13 @@ document::Chart make_map_chart(const analysis::MapFamily& family, const analysis
       series = std::prev(made.series.end());
       series->line = document::LineStyle::kSolid;
     }
-    series->points.push_back(
-        {exactly(map.bytes),
-         map.rmse,
-         fmt::format("{}", map.size),
-         {map.name, fmt::format("{0} × {0} texels a layer", map.size),
-          fmt::format("RMSE {}, seam {}", records::format_number(map.rmse.value), records::format_number(map.seam)),
-          say_value(cost, map.cost, gl)}});
+    series->points.push_back({exactly(map.bytes),
+                              map.rmse,
+                              fmt::format("{}", map.size),
+                              {map.name, fmt::format("{0} × {0} texels a layer", map.size),
+                               fmt::format("RMSE {}{}", records::format_number(map.rmse.value),
+                                           map.seam ? ", seam " + records::format_number(map.seam) : ""),
+                               say_value(cost, map.cost, gl)}});
     least[map.name] = -map.rmse.value;  // of its largest map
   }
   made.x = document::choose_axis(bytes, bytes, document::TickKind::kBytes);

@@ -108,11 +108,12 @@ document::Grade grade_gain(const records::TunedScore& score, double truth_se) {
 }
 
 /// Names what was found for a filter: "vsm radius 7, min_variance 1e-05: rmse 0.12 to 0.08 (+33.3 %)".
-std::string describe_found(const records::TunedFilterRecord& filter, const std::string& metric) {
+std::string describe_found(const records::TunedFilterRecord& filter, const records::TunedRecord& record) {
   std::vector<std::string> params;
   for (const records::TunedParamRecord& param : filter.searched)
     params.push_back(param.name + " " + format_value(param.found));
-  return fmt::format("{} with {}: {} {} to {} ({})", filter.label, fmt::join(params, ", "), metric,
+  return fmt::format("{} with {}{}: {} {} to {} ({})", filter.label, fmt::join(params, ", "),
+                     filter.fit == record.fit ? "" : " (--fit " + filter.fit + ")", record.metric,
                      records::format_number(filter.unseen.at_default), records::format_number(filter.unseen.tuned),
                      format_gain(filter.unseen));
 }
@@ -127,7 +128,7 @@ document::Section make_tune_answer(const records::TunedRecord& record) {
     table.judge("all scenes", filter.label, format_gain(filter.unseen),
                 grade_gain(filter.unseen, filter.unseen_truth_se.value_or(0.0)));
     const bool better = filter.verdict == records::TuneVerdict::kBetter;
-    (better ? kept : others).push_back(better ? describe_found(filter, record.metric) : filter.label);
+    (better ? kept : others).push_back(better ? describe_found(filter, record) : filter.label);
   }
   std::string text = kept.empty() ? "Nothing found is better than the defaults on unseen views."
                                   : fmt::format("Better on unseen views: {}.", fmt::join(kept, "; "));

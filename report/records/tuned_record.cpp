@@ -156,6 +156,7 @@ void visit_fields(const TunedParamRecord& param, auto&& visit) {
 void visit_fields(const TunedFilterRecord& filter, auto&& visit) {
   visit("id", filter.id);
   visit("params", params_json(filter.params));
+  visit("fit", filter.fit);
   visit("defaults", params_json(filter.defaults));
   visit("verdict", filter.verdict);
   visit("training", filter.training);
@@ -198,7 +199,8 @@ TunedSettings read_tuned_settings(const std::filesystem::path& file) {
   TunedSettings settings{
       root.at("metric").as<std::string>("a text"), root.at("map_size").as<int>("a whole number"), {}};
   for (const Field& item : root.at("filters").items()) {
-    TunedSettings::Filter filter{item.at("id").as<std::string>("a text"), item.at("params").params()};
+    TunedSettings::Filter filter{item.at("id").as<std::string>("a text"), item.at("params").params(),
+                                 item.at("fit").as<std::string>("a text")};
     for (const TunedSettings::Filter& known : settings.filters)
       if (known.id == filter.id)
         fail(file, fmt::format("the field {}.id names '{}' a second time", item.path(), filter.id));

@@ -55,6 +55,7 @@ struct TunedFilterRecord {
   std::string label;  ///< with the parameters that the request fixed
   ParamMap defaults;  ///< complete: the starting point, fixed parameters included
   ParamMap params;    ///< complete: what to run with; the defaults, unless the verdict is kBetter
+  std::string fit;    ///< of the light's map: what to run with, likewise
   std::vector<TunedParamRecord> searched;
   std::vector<TunedViewRecord> views;
   TunedScore training;  ///< mean over the training views
@@ -67,7 +68,7 @@ struct TunedFilterRecord {
 };
 
 /// Names the schema that tuned.json follows.
-inline constexpr int kTunedSchemaVersion = 1;
+inline constexpr int kTunedSchemaVersion = 2;
 
 /// A whole tuning.
 struct TunedRecord {
@@ -75,7 +76,7 @@ struct TunedRecord {
   std::string renderer;
   std::string metric;
   int map_size = 0;
-  std::string fit;             ///< of the light's map
+  std::string fit;             ///< of the light's map, as asked for
   int width = 0;               ///< pixels
   int height = 0;              ///< pixels
   double pad_texels = 0.0;     ///< texels around the scene in the map
@@ -105,6 +106,7 @@ struct TunedSettings {
   struct Filter {
     std::string id;
     ParamMap params;  ///< not checked against the filter
+    std::string fit;
   };
   std::string metric;
   int map_size = 0;

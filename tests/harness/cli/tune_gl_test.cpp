@@ -1,5 +1,6 @@
 // `shadowbench tune` and `run --tuned`, as a user calls them.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -56,16 +57,48 @@ TEST_F(TuneCommand, FindsParametersThatAreBetterOnUnseenViews) {
 }
 
 /// Of the filters given one has nothing to tune.
-TEST_F(TuneCommand, UnderCascades_GoesOnWithoutWhatCannotBeTuned) {
+TEST_F(TuneCommand, UnderAFixedFit_GoesOnWithoutWhatCannotBeTuned) {
   const Outcome outcome =
-      run("tune --out out --scene avenue --fit cascades:count=2 --map-size 128 --size 96x54 --filters none,poisson "
-          "--budget 3");
+      run("tune --out out --scene avenue --fit cascades:count=2,split=0.5,blend=0.1 --map-size 128 --size 96x54 "
+          "--filters none,poisson --budget 3");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("there is nothing to tune of 'none'"));
   const nlohmann::json tuned = read_tuned();
   EXPECT_EQ(tuned["fit"], "cascades:count=2,split=0.5,blend=0.1,depths=all");
   ASSERT_EQ(tuned["filters"].size(), 1u);
   EXPECT_EQ(tuned["filters"][0]["id"], "poisson");
+  EXPECT_EQ(tuned["filters"][0]["fit"], tuned["fit"]);
+}
+
+/// `run` under the fit that was found has the error that is said of it, which is less than that of the fit asked for,
+/// and nearly the least of a scan.
+TEST_F(TuneCommand, OfCascades_FindsSplitAndBlend) {
+  const std::string same = " --scene avenue --filters none --map-size 128 --size 96x54 ";
+  const Outcome outcome = run("tune --out out --fit cascades:count=3 --budget 20" + same);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json filter = read_tuned()["filters"][0];
+  EXPECT_EQ(filter["verdict"], "better");
+  const nlohmann::json split = filter["searched"][0], blend = filter["searched"][1];
+  EXPECT_EQ(split["name"], "split");
+  EXPECT_EQ(blend["name"], "blend");
+  const std::string found = fmt::format("cascades:count=3,split={},blend={},depths=all", split["found"].get<double>(),
+                                        blend["found"].get<double>());
+  EXPECT_EQ(filter["fit"], found);
+  EXPECT_THAT(outcome.out, HasSubstr("--fit " + found));
+  std::string fits = " --fit " + found + " --fit cascades:count=3";
+  for (const char* each : {"0.3", "0.7", "0.8", "0.9", "1"})
+    fits += fmt::format(" --fit cascades:count=3,split={},blend={}", each, blend["found"].get<double>());
+  ASSERT_EQ(
+      run("run --out report --rounds 1 --phases 1 --no-attribution --pad-texels 1 --no-grids" + fits + same).exit_code,
+      0);
+  const nlohmann::json cells = read_results()["cells"];
+  ASSERT_EQ(cells.size(), 7u);
+  for (const auto& view : filter["views"]) {
+    if (view["view"] != "as it is") continue;
+    EXPECT_EQ(view["score"]["tuned"], cells[0]["error"]["rmse"]);
+    EXPECT_EQ(view["score"]["default"], cells[1]["error"]["rmse"]);
+  }
+  for (const auto& cell : cells) EXPECT_LT(cells[0]["error"]["rmse"], 1.05 * cell["error"]["rmse"].get<double>());
 }
 
 /// The camera stands by the edge of the ground and looks along it: turned away from it, it sees next to none.
@@ -204,7 +237,7 @@ TEST_F(TuneCommand, BadTunedFiles_AreRefused) {
   expect_refusal("run --out out --scene cubes --tuned none.json", 3, {"none.json", "--tuned"});
   write(
       "wide.json",
-      R"({"schema_version": 1, "metric": "rmse", "map_size": 64, "filters": [{"id": "vsm", "params": {"radius": 65}}]})");
+      R"({"schema_version": 2, "metric": "rmse", "map_size": 64, "filters": [{"id": "vsm", "fit": "tight", "params": {"radius": 65}}]})");
   expect_refusal("run --out out --scene cubes --tuned wide.json", 3,
                  {"wide.json", "filters[0].params.radius", "0 .. 64"});
 }

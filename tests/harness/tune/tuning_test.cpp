@@ -230,5 +230,18 @@ TEST(SearchedParams, AreNumbersWithARange_NeitherConstNorSet) {
   EXPECT_EQ(names("esm:store=r16f"), "radius c ");
 }
 
+TEST(SearchedParams, OfCascades_AreWhatTheUserDidNotSet) {
+  const auto names = [](const std::string& fit, const std::set<std::string>& fixed) {
+    std::string joined;
+    for (const SearchedParam& param : list_searched_params(scene::parse_fit_rule(fit), fixed))
+      joined += param.name + " ";
+    return joined;
+  };
+  EXPECT_EQ(names("view", {}), "");
+  EXPECT_EQ(names("cascades", {}), "split blend ");
+  EXPECT_EQ(names("cascades:count=3,split=0.8", {"count", "split"}), "blend ");
+  EXPECT_EQ(names("cascades:splits=5/20", {"splits"}), "blend ");
+}
+
 }  // namespace
 }  // namespace shadowbench::tune

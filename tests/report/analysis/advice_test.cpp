@@ -480,6 +480,20 @@ TEST(Advice, Scenes_ChooseWhatIsJudged) {
   expect_refusal(cells, request, ErrorKind::kUsage, "--scene: the run has no 'stick'; it has cubes, stack");
 }
 
+TEST(Advice, OfABiasInMetres_SaysThatItHoldsForOneTexelSize) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01)};
+  const auto says_so = ::testing::Contains(::testing::HasSubstr("right for one texel size alone"));
+  const auto list_notes = [&] { return list_advice_notes(advise(cells, {}), make_run().gl); };
+  cells[0].bias.constant.texels = 1.0;
+  EXPECT_THAT(list_notes(), ::testing::Not(says_so));
+  for (records::BiasAmountRecord records::BiasRecord::*mode :
+       {&records::BiasRecord::constant, &records::BiasRecord::slope, &records::BiasRecord::normal_offset}) {
+    cells[0].bias = {};
+    (cells[0].bias.*mode).world = 0.01;
+    EXPECT_THAT(list_notes(), says_so);
+  }
+}
+
 TEST(Advice, Size_ChoosesThePicture) {
   std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("cubes", "none", 4.0, 0.01)};
   cells[0].width = 480;

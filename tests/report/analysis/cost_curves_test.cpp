@@ -122,6 +122,9 @@ TEST(BestMap, IsTheLeastWrongOfAsManyBytes_AndOfTiesTheOneWithTheLeastSeam) {
       "Best map at 16 MiB: 4 cascades, split 0.5, 1024 texels a side, RMSE 0.05, seam 0.01, tied with 1 other (0.06 "
       "by lispsm fit; 0.1 by view fit); at 4 MiB: lispsm fit, 1024 texels a side, RMSE 0.08.");
   EXPECT_EQ(describe_best_map(list_map_families({&cells[1], &cells[3]})), "") << "nothing has as many bytes";
+  const MapFamily family = list_map_families({&cells[0], &cells[4]}).front();
+  EXPECT_THAT(family.maps, ElementsAre(testing::Field(&MapPoint::seam, std::optional(0.01)),
+                                       testing::Field(&MapPoint::seam, std::nullopt)));
   EXPECT_EQ(describe_best_map(list_map_families({&cells[0], &cells[3]})), "") << "one fit";
 }
 
