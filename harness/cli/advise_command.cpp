@@ -120,24 +120,16 @@ int advise(const AdviseArguments& arguments) {
 }  // namespace
 
 Command make_advise_command() {
-  Command command{"advise", "Find a run's cheapest filter and map that keep your limits"};
+  Command command{"advise", "Recommend filters of a run, within your limits"};
   command.about =
-      "A configuration is all that defines a cell except scene and view: filter, parameters, map, picture size and "
-      "bias. It keeps a limit where its worst scene does. Its cost is the mean over all views of all scenes; --max-ms "
-      "holds for "
-      "each of them. A frame with a moving light pays for map, prefilter and lookup, one with a static light for the "
-      "lookup alone.\n"
-      "Two costs differ where their intervals do not overlap: the 95 % intervals of the ratio to 'none' where both "
-      "share map, bias and picture size, else the quartiles of the times. Without a limit on an error or a fault, what "
-      "is not clearly better than 'none' is left out.\n"
-      "Three answers come first: fast, the cheapest; best, the least RMSE over the scenes; balanced, the knee between "
-      "them. What follows is of the fast one. A scene where every filter's FLIP is below 0.001 does not count.\n"
-      "Where several kinds of machine measured the run, their times do not compare: costs are estimates, fetches or "
-      "bytes.\n"
-      "A configuration that was not measured on all scenes, did not finish, or lacks a value that is asked for keeps "
-      "no limit. Where a scene has too few receivers on which a fault can occur, a limit on that fault is judged on "
-      "the other scenes, and the answer names the scene.\n"
-      "Exit code 1: nothing keeps the limits; the message names the ones in the way.";
+      "Prints three answers: fast, the cheapest; best, the least mean RMSE; balanced, the knee between them. The rest "
+      "is about the fast one.\nA configuration is a filter with its parameters, map, image size and bias. Its worst "
+      "scene must keep each limit; --max-ms holds for each view. Its cost is the mean over all views: map, prefilter "
+      "and lookup under a moving light, the lookup alone under a static one. Without a limit on an error or a fault, "
+      "configurations not clearly better than 'none' are left out.\nA configuration that was not measured on every "
+      "scene, did not finish, or lacks a limited value is left out. A fault with too few receivers in a scene is "
+      "judged on the other scenes. Times from different machines are never compared: estimates, fetches or bytes take "
+      "their place.\nExit code 1: nothing keeps the limits; the message names the ones in the way.";
   auto a = std::make_shared<AdviseArguments>();
   command.add("RUN", &a->run, "a run's folder, or its results.json").names(ValueKind::kFile).require();
   for (std::size_t i = 0; i < a->limits.size(); ++i) {
@@ -145,20 +137,18 @@ Command make_advise_command() {
     command.add(spec.option, &a->limits[i], spec.text);
   }
   command.add("--requires", &a->claims,
-              "what the filter must claim and the run show, such as contact-hardening; may be repeated");
-  command.add("--scene", &a->scenes, "judge on this scene; may be repeated [all of the run]").names(ValueKind::kScene);
-  command.add("--size", &a->size, "judge pictures of WxH pixels [all of the run]");
-  command.add("--class", &a->width_class, "judge kernels of this class of width [any]")
+              "a property the filter must claim and the run confirm, such as contact-hardening; repeatable");
+  command.add("--scene", &a->scenes, "judge on this scene; repeatable (default all of the run)")
+      .names(ValueKind::kScene);
+  command.add("--size", &a->size, "judge images of WxH pixels (default all of the run)");
+  command.add("--class", &a->width_class, "judge kernels of this width class (default any)")
       .one_of(filters::list_width_names());
-  command.add("--light-motion", &a->light_motion, "moving or static: whether every frame pays for map and prefilter")
+  command.add("--light-motion", &a->light_motion, "whether every frame pays for map and prefilter")
       .one_of({"moving", "static"});
-  command.add(
-      "--cheapest", &a->cheapest,
-      "the cost that is to be small: time, bytes, fetches, or gpu:NAME, the estimate for a GPU of the run [time; "
-      "where no GPU drew, the first estimate]");
-  command
-      .add("--times", &a->times,
-           "judge by the times of a GPU on which the report's page was opened: the gpu-times.json that it saved")
+  command.add("--cheapest", &a->cheapest,
+              "cost to minimise: time, bytes, fetches, or gpu:NAME, an estimate of the run (default time; without a "
+              "GPU, the first estimate)");
+  command.add("--times", &a->times, "gpu-times.json saved by the report's page: judge by that GPU's times")
       .names(ValueKind::kFile);
   add_json_option(command, a->json);
   command.action = [a](const CommandLine&) { return advise(*a); };

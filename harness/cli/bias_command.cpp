@@ -40,12 +40,11 @@ int sweep_bias(const BiasArguments& arguments) {
 }  // namespace
 
 Command make_bias_command() {
-  Command command{"bias", "Sweep every mode of depth bias over its amount, and write a page about it"};
+  Command command{"bias", "Find the depth bias to ship: sweep every mode over its amount"};
   command.about =
-      "Draws the scene's first view under each of its lights with each filter under each mode of --bias (see 'run "
-      "--help'), at 0 to 8 times the amount that theory asks for. Writes bias.html (the bias to ship, and charts of "
-      "acne and contact gap), bias.csv, bias.json and pictures. Written into the folder 'bias' of a report, it gives "
-      "that report's answer the bias to ship.";
+      "Draws the scene's first view under each of its lights with each filter and each bias mode of 'run --help-all', "
+      "at 0 to 8 times the theoretical amount. Writes bias.html (the bias to ship, charts of acne and contact gap), "
+      "bias.csv, bias.json and images. In the folder 'bias' of a report it adds the bias to that report's answer.";
   auto a = std::make_shared<BiasArguments>();
   a->size = "960x540";
   a->out = "report/out/bias";

@@ -167,24 +167,21 @@ int diff(const DiffArguments& arguments) {
 }  // namespace
 
 Command make_diff_command() {
-  Command command{"diff", "Compare two pictures as a run compares its own"};
+  Command command{"diff", "Compare two images with the metrics of a run"};
   command.about =
-      "A and B are pictures in any format that OpenImageIO reads; FILE#PART is one part of a multi-part EXR file, such "
-      "as report/out/cubes.exr#vsm.visibility. Errors are A minus B, over all channels but alpha, of the values as "
-      "stored (8-bit codes as code/255). FLIP alone takes linear RGB clamped to [0,1], and the whole picture: sRGB "
-      "codes are decoded, and one channel is grey. Pixels that are NaN or infinite are counted and left out. "
-      "'regress' compares two runs.";
+      "A and B are images in any format of OpenImageIO; FILE#PART is one part of a multi-part EXR file, such as "
+      "report/out/cubes.exr#vsm.visibility. Errors are A minus B over all channels but alpha, as stored (8-bit codes "
+      "as code/255). FLIP takes linear RGB clamped to [0,1] and the whole image; sRGB codes are decoded. NaN and "
+      "infinite pixels are counted and left out. 'regress' compares two runs.";
   auto a = std::make_shared<DiffArguments>();
-  command.add("A", &a->image, "the picture").names(ValueKind::kFile).require();
-  command.add("B", &a->truth, "what it should look like").names(ValueKind::kFile).require();
+  command.add("A", &a->image, "the image").names(ValueKind::kFile).require();
+  command.add("B", &a->truth, "the reference").names(ValueKind::kFile).require();
   command.add("--metric", &a->metric,
               fmt::format("the error to print: {} (see 'list metrics')", fmt::join(metric_names(), ", ")));
-  command.add("--mask", &a->mask, "a picture of one channel: pixels count where it is not 0").names(ValueKind::kFile);
-  command.add("--pixels-per-degree", &a->pixels_per_degree, "how large FLIP's observer sees the pixels");
-  command.add("--out", &a->out, "write a PNG of the signed difference and of FLIP, with their scales")
-      .names(ValueKind::kFile);
-  command.add("--html", &a->html, "write a page into this folder on which the two can be looked at")
-      .names(ValueKind::kFolder);
+  command.add("--mask", &a->mask, "one-channel image; pixels count where it is not 0").names(ValueKind::kFile);
+  command.add("--pixels-per-degree", &a->pixels_per_degree, "resolution of FLIP's observer");
+  command.add("--out", &a->out, "PNG of the signed difference and of FLIP, with scales").names(ValueKind::kFile);
+  command.add("--html", &a->html, "page to compare the two images").names(ValueKind::kFolder);
   add_force_option(command, a->force);
   add_json_option(command, a->json);
   command.action = [a](const CommandLine&) { return diff(*a); };

@@ -24,11 +24,11 @@ int export_scenes(RunArguments& arguments, const std::vector<std::string>& words
 }  // namespace
 
 Command make_export_command() {
-  Command command{"export", "Write scenes for other renderers: a .glb of each, and where its light's map lies"};
+  Command command{"export", "Write scenes for other renderers: a .glb of each, with the light's map"};
   command.about =
-      "Writes OUT/<scene>/<scene>.glb with camera and light, and scene.json with the picture's size and the window of "
-      "the light's map. What another renderer draws of it becomes a row of a report with 'score'. 'run --scene "
-      "OUT/<scene>/<scene>.glb' measures the same scene.";
+      "Writes OUT/<scene>/<scene>.glb with camera and light, and scene.json with image size and the map's window. "
+      "'score' scores what another renderer draws of it. 'run --scene OUT/<scene>/<scene>.glb' measures the same "
+      "scene.";
   auto a = std::make_shared<RunArguments>();
   command
       .add("SCENE", &options::find_told<std::vector<std::string>>(a->told, "--scene"),

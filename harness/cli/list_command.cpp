@@ -220,8 +220,7 @@ int list_gl(const ListArguments& arguments) {
 }  // namespace
 
 Command make_list_command() {
-  Command command{"list",
-                  "Show what there is: filters, presets of engines, scenes, metrics, GPUs, or the OpenGL underneath"};
+  Command command{"list", "List filters, engine presets, scenes, metrics, GPUs, or the OpenGL context"};
   auto a = std::make_shared<ListArguments>();
   const auto add = [&](const char* name, const char* title, int (*show)(const ListArguments&)) {
     Command& sub = command.commands.emplace_back(Command{name, title});
@@ -229,14 +228,13 @@ Command make_list_command() {
     if (show != list_gl) add_json_option(sub, a->json);
   };
   add("filters", "Filters with parameters, ranges, units and source", list_filters);
-  add("presets", "Filters as engines ship them, with their bias, and what of the engine they lack", list_presets);
+  add("presets", "Filters as engines ship them, with bias and known differences", list_presets);
   add("scenes", "Built-in scenes", list_scenes);
-  add("metrics", "Numbers that a run reports, with unit, range and definition", list_metrics);
-  add("gpus", "GPUs whose costs a run estimates", list_gpus);
-  command.commands.back().add("--check", &a->check,
-                              "also ask the Vulkan driver of this machine which of them it compiles for");
-  add("gl", "The OpenGL context that a run would use", list_gl);
-  command.commands.back().add("--measure", &a->measure, "what this GL really does, by experiment");
+  add("metrics", "Metrics with unit, range and definition", list_metrics);
+  add("gpus", "GPUs whose costs a run can estimate", list_gpus);
+  command.commands.back().add("--check", &a->check, "also ask this machine's Vulkan driver which it compiles for");
+  add("gl", "The OpenGL context of a run", list_gl);
+  command.commands.back().add("--measure", &a->measure, "measure what this OpenGL really does");
   add_backend_option(command.commands.back(), a->backend);
   return command;
 }

@@ -16,19 +16,17 @@ Command make_merge_command() {
     std::string out;
     bool force = false;
   };
-  Command command{"merge", "Write one report of the shards of 'run', or of times from other machines"};
+  Command command{"merge", "Merge the shards of 'run', or times from other machines, into one report"};
   command.about =
-      "Of several folders, which 'run --shard 1/N' to 'N/N' wrote, it makes a new one. With --times, times that "
-      "readers' browsers saved become costs of a report that there is: its page, its fronts.csv and its answer then "
-      "have a "
-      "choice for each machine.";
+      "Makes one report of the folders of 'run --shard 1/N' to 'N/N'. With --times, adds times that readers' browsers "
+      "saved to a report: its page, fronts.csv and answer then offer each machine's costs.";
   auto a = std::make_shared<Arguments>();
-  command.add("DIR", &a->folders, "the report folders of all shards of one experiment, or the folder of a run")
+  command.add("DIR", &a->folders, "report folders of all shards of one experiment, or the folder of a run")
       .names(ValueKind::kFolder)
       .require();
-  command.add("--out", &a->out, "folder of the whole report of shards; new or empty").names(ValueKind::kFolder);
+  command.add("--out", &a->out, "folder of the merged report; new or empty").names(ValueKind::kFolder);
   add_force_option(command, a->force);
-  command.add("--times", &a->times, "a gpu-times.json that a report's page saved, of the run in DIR; may be repeated")
+  command.add("--times", &a->times, "gpu-times.json saved by the page of the run in DIR; repeatable")
       .names(ValueKind::kFile);
   command.action = [a](const CommandLine&) {
     const bool has_times = !a->times.empty();

@@ -70,24 +70,23 @@ int regress(const RegressArguments& arguments, const std::vector<std::string>& w
 }  // namespace
 
 Command make_regress_command() {
-  Command command{"regress",
-                  "Compare a run with a baseline: which outputs moved, and whether they are still as accurate"};
+  Command command{"regress", "Compare a run with a baseline: what changed, and is it still as accurate"};
   command.about =
-      "Exit code 1: a cell is less accurate, has changed, is slower, extra, missing or unreadable. It compares "
-      "visibility, errors, artefacts, attribution and costs, and, where machine and OpenGL are the baseline's, times "
-      "as their ratio to 'none'. BASELINE/baseline.toml holds the tolerances with their reasons. Make runs for a "
-      "baseline with --uncertainty, so that each pixel that rounding or another seed may move is known.";
+      "Exit code 1: a cell is less accurate, changed, slower, extra, missing or unreadable. Compares visibility, "
+      "errors, artefacts, attribution and costs; on the baseline's machine and OpenGL also times, as ratios to 'none'. "
+      "BASELINE/baseline.toml has the tolerances and their reasons. Make the baseline's runs with --uncertainty, which "
+      "records how far rounding or another seed can move each pixel.";
   auto a = std::make_shared<RegressArguments>();
   command.add("RUN", &a->run, "the report folder of a run").names(ValueKind::kFolder).require();
   command.add("--baseline", &a->baseline, "folder of the expected results").names(ValueKind::kFolder).require();
   command.add("--filters", &a->filters, "compare these filters only, ids with commas").names(ValueKind::kFilters);
-  command.add("--scene", &a->scenes, "compare this scene only; may be repeated").names(ValueKind::kScene);
-  command.add("--accept", &a->accept, "take over what differs into the baseline");
+  command.add("--scene", &a->scenes, "compare this scene only; repeatable").names(ValueKind::kScene);
+  command.add("--accept", &a->accept, "update the baseline with the run's results");
   command.add("--remove-missing", &a->remove_missing,
               "with --accept: also remove cells from the baseline that the run lacks");
   command.add("--junit", &a->junit, "also write JUnit XML for a build server").names(ValueKind::kFile);
   command.add("--json", &a->json, "print JSON; it also goes to OUT/regress.json");
-  command.add("--out", &a->out, "folder for regress.html, .md, .json and the pictures (default: 'regress' in RUN)")
+  command.add("--out", &a->out, "folder for regress.html, .md, .json and images (default 'regress' in RUN)")
       .names(ValueKind::kFolder);
   add_force_option(command, a->force);
   command.action = [a](const CommandLine& line) { return regress(*a, line.words()); };

@@ -166,50 +166,44 @@ int score(const ScoreArguments& arguments) {
 }  // namespace
 
 Command make_score_command() {
-  Command command{"score", "Score what another renderer drew of a run's scene, as a row of its report"};
+  Command command{"score", "Score another renderer's image of a run's scene, as a row of its report"};
   command.about =
-      "'export' writes the scene for it. Its picture with the shadow over that without is its visibility at each "
-      "receiver, which is scored as a filter's is, against the same truth. First it is checked that the pictures show "
-      "the run's view: a shift above 0.05 pixels is a warning, above 0.25 an error, as are a flip, values for a "
-      "display, "
-      "exchanged files and the like.\n"
-      "Files are of any format that OpenImageIO reads, of linear values; FILE#PART is one part. With --command a "
-      "program draws each scene of the run: it is given a scene.json and the EXR file to write, whose layers are lit, "
-      "unlit, visibility and depth.";
+      "'export' writes the scene for the other renderer. Visibility is the lit image over the unlit one, at each "
+      "receiver; it is scored like a filter's, against the same truth. The images are first checked against the run's "
+      "view: a shift over 0.05 pixels is a warning; over 0.25 pixels, flipped, display-encoded or exchanged images are "
+      "errors.\nImages are linear, in any format of OpenImageIO; FILE#PART is one part. With --command a program draws "
+      "each scene of the run: it gets a scene.json and the name of the EXR file to write, with the layers lit, unlit, "
+      "visibility and depth.";
   auto a = std::make_shared<ScoreArguments>();
   command.add("RUN", &a->run, "the report's folder, which gets the row").names(ValueKind::kFolder).require();
-  command.add("--name", &a->name, "what the row is called").never_empty("a name, such as 'three.js PCF'").require();
-  command.add("--scene", &a->scene, "a scene of the run (default: its only one; with --command all)")
+  command.add("--name", &a->name, "name of the row").never_empty("a name, such as 'three.js PCF'").require();
+  command.add("--scene", &a->scene, "a scene of the run (default its only one; with --command all)")
       .names(ValueKind::kScene);
-  command.add("--view", &a->view, "a view of that scene (default: its only one)");
-  command.add("--layers", &a->files.layers, "one EXR file with layers lit and unlit, or visibility, and perhaps depth")
+  command.add("--view", &a->view, "a view of that scene (default its only one)");
+  command.add("--layers", &a->files.layers, "EXR file with layers lit and unlit, or visibility; optionally depth")
       .names(ValueKind::kFile);
   command.add("--lit", &a->files.lit, "the light with its shadow, without ambient light").names(ValueKind::kFile);
   command.add("--unlit", &a->files.unlit, "the same without the shadow").names(ValueKind::kFile);
-  command.add("--visibility", &a->files.visibility, "in place of both: 1 lit, 0 in shadow").names(ValueKind::kFile);
-  command
-      .add("--unbiased", &a->files.unbiased,
-           "visibility as it draws it without any bias, by which a contact gap is told from its blur")
+  command.add("--visibility", &a->files.visibility, "instead of both: 1 lit, 0 in shadow").names(ValueKind::kFile);
+  command.add("--unbiased", &a->files.unbiased, "visibility without any bias, to separate contact gap from blur")
       .names(ValueKind::kFile);
-  command.add("--map-size", &a->map_size,
-              "of a run of several the map beside whose filters the row stands (default: first)");
-  command.add("--depth", &a->files.depth, "metres along the camera's axis, by which a shift is found best")
+  command.add("--map-size", &a->map_size, "the run's map to compare with (default its first)");
+  command.add("--depth", &a->files.depth, "metres along the camera's axis; detects a shift best")
       .names(ValueKind::kFile);
   command
       .add("--shadow-map", &a->files.shadow_map,
-           "its own shadow map as it is stored, by which its error is taken apart; needs map_from_world in --meta")
+           "its own shadow map as stored, to attribute its error; needs map_from_world in --meta")
       .names(ValueKind::kFile);
   command
       .add("--meta", &a->meta,
            "a JSON object of texts: engine, version, driver, map, bias, fit, ms, timed, truth; map_from_world")
       .names(ValueKind::kFile);
-  command.add("--command", &a->command,
-              "draws the scene: a command of the shell, given a scene.json and the EXR to write");
+  command.add("--command", &a->command, "shell command that draws the scene; gets a scene.json and the EXR to write");
   command.add("--cell-timeout", &a->timeout_s, "seconds that the command may take on one scene");
-  command.add("--unaligned", &a->unaligned, "score pictures that do not show the run's view, and mark the row");
+  command.add("--unaligned", &a->unaligned, "score images that do not match the run's view, and mark the row");
   add_json_option(command, a->json);
   add_backend_option(command, a->backend);
-  command.add("--cache", &a->cache, "folder of traced images (default: as 'run')").names(ValueKind::kFolder);
+  command.add("--cache", &a->cache, "folder of traced images (default as 'run')").names(ValueKind::kFolder);
   command.action = [a](const CommandLine&) { return score(*a); };
   return command;
 }

@@ -53,17 +53,17 @@ int stress_filters(const StressArguments& arguments, const std::vector<std::stri
 }  // namespace
 
 Command make_stress_command() {
-  Command command{"stress", "Drive filters to where their numbers break, and hold the limits against theory"};
+  Command command{"stress", "Find where filters break numerically, and compare with theory"};
   command.about =
-      "Along each axis every case is ok, degraded (an error over the axis' bound) or broken (NaN, infinity, all lit, "
-      "all dark, or falling where it must rise). The first value of each is found to 1 % and compared with theory. "
-      "Writes stress.html, .md, .json and .csv. Exit code 1: a limit is not what theory says, and nothing explains it.";
+      "Along each axis a case is ok, degraded (error over the axis' bound) or broken (NaN, infinity, all lit, all "
+      "dark, or not monotonic). The first value of each is found to 1 % and compared with theory. Writes stress.html, "
+      ".md, .json and .csv. Exit code 1: an unexplained difference from theory.";
   auto a = std::make_shared<StressArguments>();
   a->out = "report/out/stress";
   add_builtin_filters_option(command, a->filters);
   command.add("--filter-file", &a->filter_files, "").hide();
-  command.add("--axes", &a->axes, "axes, separated by commas (default: all; see --list)");
-  command.add("--range", &a->ranges, "AXIS=LOW,HIGH in place of an axis' own range; may be repeated");
+  command.add("--axes", &a->axes, "axes, separated by commas (default all; see --list)");
+  command.add("--range", &a->ranges, "AXIS=LOW,HIGH instead of the axis' range; repeatable");
   command.add("--list", &a->list, "list the axes and end");
   command.add("--seed", &a->seed, "seed of random rotations and of the truth's rays");
   add_drawing_options(command, *a);

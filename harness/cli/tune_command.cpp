@@ -101,12 +101,12 @@ std::string describe_tuning() {
 }  // namespace
 
 Command make_tune_command() {
-  Command command{"tune", "Find the best parameters of filters, and how much their choice matters"};
+  Command command{"tune", "Find the best parameters of filters, and how much they matter"};
   command.about = describe_tuning();
   auto a = std::make_shared<TuneArguments>();
   a->size = "480x270";
   a->out = "report/out/tune";
-  command.add("--filters", &a->filters, "filters with the parameters that stay fixed, such as vsm:store=rg16f,esm")
+  command.add("--filters", &a->filters, "filters with fixed parameters, such as vsm:store=rg16f,esm")
       .names(ValueKind::kFilters)
       .also_called("--filter")
       .never_empty("at least one filter to tune, such as vsm (see 'list filters')")
@@ -114,15 +114,15 @@ Command make_tune_command() {
   command.add("--filter-file", &a->filter_files, "").hide();
   const std::vector<std::string> metrics = tune::list_tune_metrics();
   command.add("--metric", &a->metric,
-              fmt::format("the error to make small: {} (see 'list metrics')", fmt::join(metrics, ", ")));
+              fmt::format("error to minimise: {} (see 'list metrics')", fmt::join(metrics, ", ")));
   add_as_run(command, "--scene", &a->scenes);
   add_as_run(command, "--ground", &a->ground);
   add_picture_options(command, *a);
-  command.add("--budget", &a->budget, "settings that the search tries for each filter");
+  command.add("--budget", &a->budget, "settings to try per filter");
   command.add("--light", &a->light,
               "AZIMUTH,ELEVATION in degrees, where the light stands in every scene before it is turned");
-  command.add("--bias", &a->bias, "depth bias as for 'run'; may be repeated");
-  command.add("--seed", &a->seed, "seed of random rotations and of the truth's rays");
+  command.add("--bias", &a->bias, "depth bias as for 'run'; repeatable");
+  command.add("--seed", &a->seed, "seed of random rotations and rays");
   add_drawing_options(command, *a);
   command.action = [a](const CommandLine&) { return tune(*a); };
   return command;

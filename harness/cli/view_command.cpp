@@ -55,29 +55,27 @@ int view_scene(const ViewArguments& arguments) {
 }  // namespace
 
 Command make_view_command() {
-  Command command{"view", "Look at a scene through any two filters, or one and the truth, in a window"};
+  Command command{"view", "Compare two filters, or one and the truth, in a window"};
   command.about =
-      "Opens a window: a divider between two filters, or a filter and ray-traced truth; camera, light, map and every "
-      "parameter by mouse; errors, their causes, times; scenes, and lessons on what goes wrong. F1 lists the keys. A "
-      "filter's file is compiled again when it "
-      "is saved.";
+      "A divider between two filters, or a filter and ray-traced truth. Camera, light, map and every parameter by "
+      "mouse; errors, causes, times; lessons on what goes wrong. F1 lists the keys. A filter's file is recompiled "
+      "whenever it is saved.";
   auto a = std::make_shared<ViewArguments>();
   a->out = "report/out/view";
   command.add("scene", &a->scene, "a built-in scene by name, or a .toml, .gltf, .glb or .obj file")
       .names(ValueKind::kScene);
-  command.add("--ground", &a->ground, "put a floor under a model that stands by itself");
-  command.add("--light-name", &a->light_name, "the light that shines, of a scene's several, by its name");
+  command.add("--ground", &a->ground, "put a floor under a bare model");
+  command.add("--light-name", &a->light_name, "the scene's light of this name");
   command
       .add("--left", &a->left,
-           "what is seen on the left: a filter with parameters, or 'truth' (default: your own filter, or one of medium "
-           "width)")
+           "the left side: a filter with parameters, or 'truth' (default your own filter, or one of medium width)")
       .names(ValueKind::kFilters);
-  command.add("--right", &a->right, "what is seen on the right").names(ValueKind::kFilters);
+  command.add("--right", &a->right, "the right side").names(ValueKind::kFilters);
   add_as_run(command, "--filter-file", &a->filter_files);
   command.add("--map-size", &a->map_size, "texels along a side of the shadow map");
-  command.add("--size", &a->size, "keep the picture at WIDTHxHEIGHT pixels (default: as large as the window)");
-  command.add("--scale", &a->scale, "enlarge text and widgets so many times (default: as the screen asks for)");
-  command.add("--out", &a->out, "folder for what is saved");
+  command.add("--size", &a->size, "keep the image at WIDTHxHEIGHT pixels (default the window's size)");
+  command.add("--scale", &a->scale, "scale of text and widgets (default the screen's)");
+  command.add("--out", &a->out, "folder for saved images");
   command.add("--log", &a->log, "").hide();
   command.add("--close-after", &a->close_after_s, "").hide();
   command.action = [a](const CommandLine&) { return view_scene(*a); };
