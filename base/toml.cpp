@@ -8,8 +8,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "base/input_file.h"
-#include "base/nearest_name.h"
+#include "base/files.h"
+#include "base/text.h"
 
 namespace shadowbench {
 

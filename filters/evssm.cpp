@@ -1,6 +1,6 @@
 #include "filters/disk_points.h"
-#include "filters/mip_levels.h"
-#include "filters/penumbra/penumbra_disk.h"
+#include "filters/penumbra.h"
+#include "filters/summed_area.h"
 #include "filters/warped_variance.h"
 
 namespace shadowbench::filters {

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "filters/filter_spec.h"
 
 namespace shadowbench::filters {
 
@@ -77,5 +82,63 @@ class Kernel {
 
   glm::dvec2 sample_shape(const glm::dvec2& u) const;
 };
+
+// How wide a filter's kernel is: its standard deviation along an axis, reconstruction included, in texels. Filters are
+// compared where their kernels are about equally wide; otherwise a comparison of filters would be one of widths.
+
+/// Kernels that are about equally wide.
+struct WidthClass {
+  std::string_view name;
+  double sigma_texels = 0.0;   ///< the width that it stands for
+  double widest_texels = 0.0;  ///< the widest kernel that belongs to it
+};
+
+/// The classes, narrow before wide. *Sharp* is as wide as one hardware 2x2 fetch, *medium* as the 3x3 tent of four, and
+/// *soft* as a disk with a radius of 3 texels, the customary one of Poisson-disk filters. A kernel belongs to the class
+/// whose width is nearest to its own in ratio; soft ends where a class as far above it as it is above medium would
+/// begin.
+const std::array<WidthClass, 3>& width_classes();
+
+/// The class of a kernel of this width; null where it is wider than the widest class reaches.
+const WidthClass* find_width_class(double sigma_texels);
+
+/// In place of a class: the width that a scene's light asks for, in each map. Filters of that width are compared with
+/// each other and with those that have no width to choose, however wide they are.
+inline constexpr std::string_view kLightWidth = "light";
+
+/// The names of the classes, narrow before wide, and kLightWidth.
+std::vector<std::string> list_width_names();
+
+/// The standard deviation of the kernel that does to an edge what a light does whose penumbra has this width. A light's
+/// disk, projected through the edge, is a disk as wide as the penumbra, with which the edge is convolved; a disk of
+/// radius R has a standard deviation of R / 2 along an axis: a quarter of its width.
+inline double sigma_of_penumbra(double width) { return 0.25 * width; }
+
+/// Lists the classes with their widths and limits: "sharp 0.41 texels, up to 0.51; ...".
+std::string describe_classes();
+
+/// The width of a filter's kernel; empty where find_kernel() finds none.
+std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValues& values);
+
+/// The texels that the name of a class or a number stands for; empty for any other text, and why that is none.
+std::optional<double> find_width(const std::string& width);
+std::string explain_no_width(const std::string& width);
+
+/// The parameter that a width sets, where a filter has one; null without, and where the filter's kernel is not known.
+const std::string* find_width_param(const FilterSpec& spec, const ParamValues& values);
+
+/// The same. Throws Error(kUsage) as solve_radius() where the filter has none.
+const std::string& require_width_param(const FilterSpec& spec, const ParamValues& values, const std::string& width);
+
+/// Finds the radius whose kernel is nearest to so many texels in ratio: the narrowest or the widest where none reaches
+/// them. Requires a find_width_param().
+double find_nearest_radius(const FilterSpec& spec, const ParamValues& values, double sigma_texels);
+
+/// Finds the radius with which a filter's kernel is as wide as asked for, the other parameters being as in `values`.
+/// `width` is the name of a class or a number of texels. Of whole-numbered radii, and of choices, it is the one whose
+/// width is nearest in ratio, within the class where one is named; others are found to a thousandth of a texel.
+/// Throws Error(kUsage) where the filter has no radius or no kernel, for a width that is neither, and, with the range
+/// that can be reached, for one that no radius gives.
+double solve_radius(const FilterSpec& spec, const ParamValues& values, const std::string& width);
 
 }  // namespace shadowbench::filters

@@ -1,6 +1,6 @@
 #include "filters/model.h"
 
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
 
 namespace shadowbench::filters {
 

@@ -1,4 +1,4 @@
-#include "filters/four_moments.h"
+#include "filters/packed_moments.h"
 
 namespace shadowbench::filters {
 

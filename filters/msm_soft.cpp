@@ -1,5 +1,5 @@
-#include "filters/four_moments.h"
-#include "filters/penumbra/penumbra_box.h"
+#include "filters/packed_moments.h"
+#include "filters/penumbra.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -1,7 +1,6 @@
 #include "filters/disk_points.h"
 #include "filters/model.h"
-#include "filters/penumbra/early_bail.h"
-#include "filters/penumbra/penumbra_disk.h"
+#include "filters/penumbra.h"
 
 namespace shadowbench::filters {
 namespace {

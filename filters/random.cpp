@@ -1,7 +1,5 @@
 #include "filters/random.h"
 
-#include "filters/noise/blue_noise.h"
-
 namespace shadowbench::filters {
 namespace {
 

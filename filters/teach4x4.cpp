@@ -1,4 +1,4 @@
-#include "filters/four_taps.h"
+#include "filters/texel_pairs.h"
 
 namespace shadowbench::filters {
 

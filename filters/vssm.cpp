@@ -1,6 +1,6 @@
 #include "filters/encoded_map.h"
 #include "filters/model.h"
-#include "filters/penumbra/penumbra_box.h"
+#include "filters/penumbra.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -5,5 +5,3 @@ set_tests_properties("harness/run.Timing.TwiceTheTaps_TakeLonger" "harness/run.L
                      "harness/run.OwnTime.EmptyLookupsReadWhatTheirFiltersRead" PROPERTIES RUN_SERIAL TRUE)
 # Some twenty runs of the program, which sanitizers slow down.
 set_tests_properties("harness/cli.FaultSignal.ManyTimesAtRandomMoments_NothingIsLost" PROPERTIES TIMEOUT 900)
-# Threads there wait until nobody else wants the processor.
-set_tests_properties("harness/view.cpu.1of2" "harness/view.cpu.2of2" PROPERTIES RUN_SERIAL TRUE)

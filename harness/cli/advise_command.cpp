@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "filters/catalogue.h"
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/print.h"

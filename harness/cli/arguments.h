@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/split_list.h"
+#include "base/text.h"
 #include "filters/catalogue.h"
 #include "harness/cli/command_line.h"
 #include "harness/options/run_options.h"

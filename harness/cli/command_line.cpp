@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/text.h"
 
 namespace shadowbench::cli {
 namespace {

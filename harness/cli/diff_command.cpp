@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/text.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/print.h"

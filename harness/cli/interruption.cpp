@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/temporary_files.h"
+#include "base/files.h"
 
 namespace shadowbench::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "filters/catalogue.h"
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "filters/model.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "base/visible_text.h"
+#include "base/text.h"
 
 namespace shadowbench::cli {
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "base/error.h"
-#include "filters/filter_errors.h"
+#include "filters/filter_spec.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/print.h"
 #include "harness/cli/progress_bar.h"

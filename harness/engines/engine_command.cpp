@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "base/error.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "harness/run/worker_process.h"
 
 namespace shadowbench::engines {

@@ -7,13 +7,13 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <sstream>
 
-#include "base/atomic_file.h"
+#include "base/files.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/provenance.h"
-#include "harness/run/scene_loading.h"
+#include "harness/run/run_plan.h"
 #include "harness/run/task_images.h"
-#include "harness/scene/files/gltf_writer.h"
-#include "reference/truth/truth_cache.h"
+#include "harness/scene/files/mesh_file.h"
+#include "reference/truth/cached_tracer.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/records/json_values.h"

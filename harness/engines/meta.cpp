@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "base/input_file.h"
-#include "base/nearest_name.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "harness/engines/score_run.h"
 #include "report/records/json_values.h"
 

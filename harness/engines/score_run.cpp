@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/content_hash.h"
+#include "base/bytes.h"
 #include "base/error.h"
 #include "harness/engines/exported_scene.h"
 #include "harness/engines/own_map.h"

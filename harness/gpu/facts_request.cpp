@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/atomic_file.h"
-#include "base/content_hash.h"
+#include "base/bytes.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "harness/gpu/null_device.h"
 #include "report/records/json_values.h"
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "base/nearest_name.h"
+#include "base/text.h"
 #include "base/toml.h"
 
 namespace shadowbench::gpu {

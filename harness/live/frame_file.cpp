@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "base/atomic_file.h"
-#include "base/content_hash.h"
+#include "base/bytes.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "harness/gl/pixel_format.h"
 #include "harness/spirv/webgl.h"
 #include "report/images/value_file.h"

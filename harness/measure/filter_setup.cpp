@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
 
 namespace shadowbench::measure {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/content_hash.h"
+#include "base/bytes.h"
 
 namespace shadowbench::measure {
 namespace {

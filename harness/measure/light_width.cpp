@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 
 namespace shadowbench::measure {
 namespace {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "reference/metrics/error_stats.h"
-#include "reference/metrics/flicker.h"
 #include "report/records/records.h"
 
 namespace shadowbench::measure {

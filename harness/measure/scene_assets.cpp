@@ -10,8 +10,8 @@
 #include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
 #include "harness/render/shade_pass.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
-#include "harness/scene/view_clip.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::measure {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <memory>
 
-#include "filters/filter_errors.h"
-#include "filters/kernel_width.h"
+#include "filters/filter_spec.h"
+#include "filters/kernel.h"
 #include "filters/model.h"
 #include "filters/random.h"
 #include "harness/measure/filter_setup.h"

@@ -10,8 +10,8 @@
 
 #include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
+#include "reference/metrics/artefacts.h"
 #include "reference/metrics/error_stats.h"
-#include "reference/metrics/penumbra_growth.h"
 #include "reference/truth/occluders.h"
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/content_hash.h"
+#include "base/bytes.h"
 #include "filters/receiver.h"
 #include "harness/measure/receiver_pixels.h"
 #include "harness/render/image_target.h"

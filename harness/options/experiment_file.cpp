@@ -10,9 +10,9 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/text.h"
 #include "base/toml.h"
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "harness/options/run_options.h"
 
 namespace shadowbench::options {

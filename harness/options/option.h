@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "harness/scene/lights/sun.h"
+#include "harness/scene/lights/light_kinds.h"
 
 namespace shadowbench::options {
 

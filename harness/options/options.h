@@ -12,8 +12,8 @@
 #include "harness/gpu/gpu.h"
 #include "harness/options/round_limits.h"
 #include "harness/render/bias/bias_rule.h"
-#include "harness/scene/lights/fit_rule.h"
-#include "harness/scene/lights/sun.h"
+#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/lights/light_kinds.h"
 
 namespace shadowbench::options {
 

@@ -7,8 +7,8 @@
 #include <type_traits>
 
 #include "base/error.h"
-#include "base/split_list.h"
-#include "filters/kernel_width.h"
+#include "base/text.h"
+#include "filters/kernel.h"
 #include "harness/gl/pixel_format.h"
 
 namespace shadowbench::options {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/nearest_name.h"
-#include "filters/format/glsl_words.h"
+#include "base/text.h"
+#include "filters/glsl_words.h"
 
 namespace shadowbench::render {
 namespace {

@@ -8,8 +8,8 @@
 #include <regex>
 
 #include "base/error.h"
-#include "filters/format/glsl_words.h"
-#include "filters/noise/blue_noise.h"
+#include "filters/glsl_words.h"
+#include "filters/random.h"
 #include "harness/render/filter_glsl.h"
 
 namespace shadowbench::render {

@@ -20,6 +20,7 @@ inline constexpr const char* kAmbientPart = "ambient";  ///< of a scene with sev
 inline constexpr const char* kTruthPart = "truth.area";
 inline constexpr const char* kTruthMaskPart = "truth.mask";
 inline constexpr const char* kTruthPicturePart = "truth.picture";
+inline constexpr const char* kBlockerPart = "truth.blocker";  ///< metres towards the light; 0: nothing blocks it
 std::string picture_part(const std::string& label);
 std::string error_part(const std::string& label, const records::ErrorPart& part);
 
@@ -36,5 +37,13 @@ void note_float_images(const options::RunOptions& options, const measure::SceneT
 /// Moves a cell's images out of the parts of that file, by its label and its number of phases; images that the file
 /// does not have stay empty.
 void take_float_images(measure::MeasuredCell& cell, std::vector<images::Part>& parts);
+
+/// Writes how a task's cells were drawn, for the page to draw them again, and notes the file in their records; cells
+/// without a frame, such as those of users' filters, which their workers write, stay as they are. With the frames goes
+/// what the run drew of receivers and map around the picture's hardest edge: a GPU that puts the edges of triangles
+/// elsewhere can still be held against the run there. Where vertices are too many to go with a page, all of receivers
+/// and map goes with the frames: view and light stay the run's then. Throws Error(kOutput).
+void write_frames(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
+                  measure::SceneAssets& assets, measure::SceneMeasurement& measured);
 
 }  // namespace shadowbench::run

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "harness/gpu/estimate.h"
 #include "harness/run/worker_process.h"
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <system_error>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "harness/live/frame_file.h"
 #include "report/analysis/summary.h"
 #include "report/files/folder_lock.h"

@@ -2,20 +2,25 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
-#include "base/content_hash.h"
+#include "base/bytes.h"
 #include "base/error.h"
-#include "base/input_file.h"
-#include "filters/kernel_width.h"
+#include "base/files.h"
+#include "filters/kernel.h"
 #include "harness/measure/light_width.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/options/run_options.h"
 #include "harness/run/provenance.h"
-#include "harness/run/scene_loading.h"
+#include "harness/scene/load.h"
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/shadow_edges.h"
+#include "report/records/format.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::run {
@@ -281,6 +286,199 @@ std::string name_view(const PlannedScene& planned, const scene::Camera& camera) 
   add_scene(hash, seen);
   hash.add(fmt::format("{} x {}", planned.options.width, planned.options.height));
   return hash.name();
+}
+
+namespace {
+
+/// Rays are dimmed by what blends, also where the map holds it opaque.
+void warn_of_blending(scene::Scene& scene) {
+  for (const scene::Mesh& mesh : scene.meshes) {
+    const scene::Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    if (!mesh.casts_shadow || material.alpha_mode != scene::AlphaMode::kBlend) continue;
+    scene.warnings.push_back(
+        fmt::format("shadow maps hold '{}', which blends, as if it were opaque, while rays of the truth are dimmed by "
+                    "its alpha; choose --blend-casters hashed or dither",
+                    material.name));
+    return;
+  }
+}
+
+/// A mesh that encloses no volume casts no shadow, or only a part of one, where front faces are culled.
+void warn_of_open_meshes(scene::Scene& scene) {
+  for (const scene::Mesh& mesh : scene.meshes) {
+    if (!mesh.casts_shadow || !mesh.may_cull_front || scene::is_closed(mesh)) continue;
+    scene.warnings.push_back(
+        fmt::format("'{}' is open or single-sided: with front-cull it vanishes from the shadow map where it faces the "
+                    "light; set may_cull_front = false on it",
+                    mesh.name));
+  }
+}
+
+/// Empty unless the light shines from below.
+std::string describe_light_below(const scene::Scene& scene) {
+  const scene::Bounds bounds = scene.bounds();
+  const glm::vec3 middle = 0.5f * (bounds.min + bounds.max);
+  const float up = scene::to_light(scene.light, {middle.x, bounds.min.y, middle.z}).y;
+  if (up >= 0.0f) return "";
+  const std::string name = scene.light.name.empty() ? "the light" : fmt::format("the light '{}'", scene.light.name);
+  return fmt::format(
+      "{}: {} shines from below, {} degrees under the horizon, where no floor faces it; give it an elevation above 0, "
+      "in the scene or with --light",
+      scene.name, name, records::format_number(glm::degrees(std::asin(-static_cast<double>(up)))));
+}
+
+/// Empty unless no surface in view is lit.
+std::string describe_unseen_light(const options::RunOptions& options, const scene::Scene& scene) {
+  std::vector<scene::Camera> views;
+  for (const scene::Camera* each : choose_views(options, scene)) views.push_back(*each);
+  const double aspect = static_cast<double>(options.width) / options.height;
+  const std::string advice = scene::advise_on_unseen_light(scene, views, aspect);
+  if (views.empty() || advice.empty()) return "";
+  return fmt::format("{}: the light reaches no surface in view, so that nothing is tested under it; {}", scene.name,
+                     advice);
+}
+
+/// The map of a sun has no behind, and a light without a cone shines there too.
+std::string describe_test_without_effect(const options::RunOptions& options, const scene::Scene& scene) {
+  const std::optional<scene::Beam> beam = scene::find_beam(scene.light);
+  if (options.range.behind_test || (beam && beam->has_edge())) return "";
+  return scene.name + ": --behind-test off changes nothing: only a light with a cone has a behind";
+}
+
+}  // namespace
+
+std::vector<std::string> list_scene_warnings(const options::RunOptions& options, const scene::Scene& scene) {
+  std::vector<std::string> warnings;
+  // What is said of the scene holds for all its lights.
+  for (const std::string& warning : scene.warnings)
+    warnings.push_back(scene::name_without_light(scene) + ": " + warning);
+  if (options.part.is_worker()) return warnings;
+  for (const std::string& warning : {describe_light_below(scene), describe_unseen_light(options, scene),
+                                     describe_test_without_effect(options, scene)})
+    if (!warning.empty()) warnings.push_back(warning);
+  return warnings;
+}
+
+scene::Scene load_scene(const options::RunOptions& options, const std::string& argument) {
+  scene::LoadOptions load;
+  load.scenes_folder = options.resources.scenes;
+  load.ground = options.ground;
+  load.aspect = static_cast<double>(options.width) / options.height;
+  load.light = options.light;
+  scene::Scene scene = scene::load(argument, load);
+  if (options.truth && options.map.blend_casters == render::BlendCasters::kOpaque) warn_of_blending(scene);
+  if (options.bias.map.cull_front) warn_of_open_meshes(scene);
+  return scene;
+}
+
+std::vector<scene::Scene> list_lit_scenes(const options::RunOptions& options, const scene::Scene& scene) {
+  std::vector<scene::Scene> lit = scene::separate_lights(scene);
+  const std::vector<std::string>& names = options.light_names;
+  std::erase_if(
+      lit, [&](const scene::Scene& each) { return !names.empty() && std::ranges::count(names, each.light.name) == 0; });
+  return lit;
+}
+
+void fail_unknown_light(const options::RunOptions& options) {
+  throw Error(ErrorKind::kUsage, fmt::format("--light-name: no scene has a light '{}'; the lights of several have "
+                                             "names in their scene's file",
+                                             fmt::join(options.light_names, "', '")));
+}
+
+std::vector<scene::Scene> load_scenes(const options::RunOptions& options) {
+  std::vector<scene::Scene> scenes;
+  for (const std::string& argument : options.scenes) {
+    scene::Scene scene = load_scene(options, argument);
+    const auto same_name = [&](const scene::Scene& known) { return known.name == scene.name; };
+    if (std::any_of(scenes.begin(), scenes.end(), same_name)) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("two scenes are called '{}': rename one file, or run them apart", scene.name));
+    }
+    scenes.push_back(std::move(scene));
+  }
+  return scenes;
+}
+
+namespace {
+
+/// What a picture of any size costs, in pixels.
+constexpr double kFixedMegapixels = 0.05;
+
+/// Pictures that the page shows first, with many samples: so many as it has choices.
+constexpr double kFirstPictures = 2.0;
+
+double count_megapixels(const options::RunOptions& options) {
+  return kFixedMegapixels + 1e-6 * options.width * options.height;
+}
+
+double count_megatexels(int map_size) { return 1e-6 * map_size * map_size; }
+
+/// How many times as long work takes as on two cores; a third of it is done by one.
+double scale_by_cores() { return 1.0 / 3.0 + 4.0 / 3.0 / tbb::this_task_arena::max_concurrency(); }
+
+std::string describe_duration(double seconds) {
+  if (seconds < 10.0) return records::format_number(seconds) + " s";
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
+
+/// Of prefilter, lookup, and what is read back.
+double presume_drawing_s(const PlannedScene& scene, const PlannedTask& task) {
+  return 0.06 * count_megapixels(scene.options) + 0.02 * count_megatexels(task.task.map_size);
+}
+
+}  // namespace
+
+/// Pictures that are drawn soon are precise soon, unless a larger budget says that they are to be more so.
+double presume_timing_s(const PlannedScene& scene, const PlannedTask& task) {
+  const options::RunOptions& options = scene.options;
+  const double draw_s = presume_drawing_s(scene, task), cells = static_cast<double>(task.task.filters.size());
+  if (options.rounds.is_fixed()) return cells * 0.1 * draw_s * options.rounds.most;
+  const double budget_s = 1e-3 * options.rounds.budget_ms;
+  const bool is_told_more = options.rounds.budget_ms > options::RoundLimits().budget_ms;
+  return cells * (is_told_more ? budget_s : std::min(budget_s, 15.0 * draw_s));
+}
+
+/// Measured in quiet processor seconds of the default run: each kind's time in its busiest thread, or half of all.
+double presume_task_s(const PlannedScene& scene, const PlannedTask& task) {
+  const options::RunOptions& options = scene.options;
+  const auto cells = static_cast<double>(task.task.filters.size());
+  if (cells == 0.0) return 0.0;
+  const double megapixels = count_megapixels(options), draw_s = presume_drawing_s(scene, task);
+  const double cores = scale_by_cores(), to_trace = !options.truth ? 0.0 : task.is_traced ? 0.45 : 1.0;
+  const double compile_s = task.is_traced ? 0.035 : 0.07;  // for each GPU, once: all scenes have the same passes
+  double of_pixels = 0.0, gpus_s = 0.0;                    // seconds a cell
+  if (options.stability) of_pixels += 1.0;
+  if (options.uncertainty) of_pixels += 2.0;
+  if (options.truth) of_pixels += 0.11;
+  if (options.attribution) of_pixels += 0.36 * to_trace;
+  if (options.frames > 1) of_pixels += 4.0 + 0.2 * options.frames;
+  if (options.pictures) of_pixels += 0.15;
+  if (!options.gpus.empty())
+    gpus_s = 0.33 * megapixels + (task.scene > 0 ? 0.0 : compile_s * static_cast<double>(options.gpus.size()));
+  const double cell_s = cores * (draw_s * (1.0 + 0.5 * (options.phases - 1)) + of_pixels * megapixels) + gpus_s;
+  return cells * cell_s + cores * 1.15 * megapixels * to_trace;  // truth, and what surrounds its receivers
+}
+
+double presume_report_s(const RunPlan& plan) {
+  const options::RunOptions& options = plan.scenes.front().options;
+  const bool has_first_pictures = options.pictures && options.truth;
+  return 0.02 * plan.own_cells +
+         (has_first_pictures ? scale_by_cores() * kFirstPictures * 1.2 * count_megapixels(options) : 0.0);
+}
+
+TimeForecast forecast_time(const RunPlan& plan) {
+  double timing_s = 0.0, seconds = presume_report_s(plan);
+  for (const PlannedTask& task : plan.tasks) {
+    timing_s += presume_timing_s(plan.scenes[task.scene], task);
+    seconds += presume_task_s(plan.scenes[task.scene], task);
+  }
+  seconds += timing_s;
+  return {seconds,
+          fmt::format("; about {}: {} of timing, the rest {}", describe_duration(seconds), describe_duration(timing_s),
+                      plan.scenes.front().options.truth ? "ray tracing and images" : "images")};
 }
 
 }  // namespace shadowbench::run

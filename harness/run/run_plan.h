@@ -49,4 +49,41 @@ std::vector<const scene::Camera*> choose_views(const options::RunOptions& option
 /// Names all that the truth of a view depends on, and its picture's size: geometry, textures, light and camera.
 std::string name_view(const PlannedScene& planned, const scene::Camera& camera);
 
+/// Loads a scene as a run wants it: framed for the picture's shape, with the floor and the light that were asked for.
+/// Throws Error as scene::load().
+scene::Scene load_scene(const options::RunOptions& options, const std::string& argument);
+
+/// The scene under each of its lights that was asked for, by itself; all where none was named, none where it has none
+/// of these.
+std::vector<scene::Scene> list_lit_scenes(const options::RunOptions& options, const scene::Scene& scene);
+
+/// Throws Error(kUsage): no scene has a light that was asked for.
+[[noreturn]] void fail_unknown_light(const options::RunOptions& options);
+
+/// Loads all of a run's scenes, in its order. Throws Error as load_scene(), and Error(kUsage) where two have one name.
+std::vector<scene::Scene> load_scenes(const options::RunOptions& options);
+
+/// What the user is to know of one light's scene before it is measured: the warnings of loading, which other lights of
+/// the scene repeat, and whether its light shows nothing.
+std::vector<std::string> list_scene_warnings(const options::RunOptions& options, const scene::Scene& scene);
+
+/// Gives the seconds that the cells of a task presumably take but for their timing, from the sizes of picture and map,
+/// the number of cores, and what the cache has.
+double presume_task_s(const PlannedScene& scene, const PlannedTask& task);
+
+/// The same of their timing.
+double presume_timing_s(const PlannedScene& scene, const PlannedTask& task);
+
+/// The same of the report at the end.
+double presume_report_s(const RunPlan& plan);
+
+/// What is known of a run's time before it begins.
+struct TimeForecast {
+  double seconds = 0.0;
+  std::string text;  ///< "; about 90 s: 16 s of timing, the rest ray tracing and images"
+};
+
+/// Forecasts the time of the cells that are left.
+TimeForecast forecast_time(const RunPlan& plan);
+
 }  // namespace shadowbench::run

@@ -19,8 +19,6 @@
 #include "harness/measure/traffic_meter.h"
 #include "harness/render/shade_pass.h"
 #include "harness/run/float_images.h"
-#include "harness/run/frames.h"
-#include "harness/run/map_pictures.h"
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
 #include "report/records/json_io.h"

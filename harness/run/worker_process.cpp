@@ -20,10 +20,9 @@
 #include <string_view>
 #include <utility>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/temporary_files.h"
-#include "filters/filter_errors.h"
+#include "base/files.h"
+#include "filters/filter_spec.h"
 #include "harness/live/frame_file.h"
 #include "harness/options/experiment_file.h"
 #include "harness/run/float_images.h"

@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/primitives.h"
-#include "harness/scene/validate.h"
+#include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -7,13 +7,12 @@
 #include <set>
 #include <utility>
 
-#include "base/nearest_name.h"
+#include "base/text.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/primitives.h"
-#include "harness/scene/validate.h"
+#include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/text.h"
 #include "filters/model.h"
 
 namespace shadowbench::stress {

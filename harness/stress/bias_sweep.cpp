@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "filters/kernel_width.h"
+#include "base/files.h"
+#include "filters/kernel.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/receiver_pixels.h"
@@ -19,7 +19,7 @@
 #include "harness/render/shade_pass.h"
 #include "harness/run/merge.h"
 #include "harness/run/provenance.h"
-#include "harness/run/scene_loading.h"
+#include "harness/run/run_plan.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/images/grid.h"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <map>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/provenance.h"
 #include "report/files/folder_lock.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "harness/scene/lights/fit_rule.h"
+#include "harness/scene/lights/light_fit.h"
 
 namespace shadowbench::tune {
 

@@ -7,11 +7,11 @@
 #include <memory>
 #include <numeric>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/provenance.h"
-#include "harness/run/scene_loading.h"
+#include "harness/run/run_plan.h"
 #include "harness/tune/tune_scene.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/tune_page.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "harness/scene/lights/fit_rule.h"
+#include "harness/scene/lights/light_fit.h"
 
 namespace shadowbench::tune {
 

@@ -9,10 +9,14 @@
 #include <utility>
 
 #include "base/error.h"
-#include "harness/view/save.h"
+#include "harness/view/view_state.h"
 #include "report/images/canvas.h"
 #include "report/images/picture_io.h"
 #include "report/images/text.h"
+
+// After the loader, see gl_api.h.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
 namespace shadowbench::view {
 namespace {
@@ -223,6 +227,7 @@ void Gui::draw_picture() {
   const int divider = static_cast<int>(at.divider_column(look_)), all = at.pixels.x;
   shown_[0] = layers_.show(layer, 0, look_.error_scale, {0, look_.magnifier ? all : std::min(divider + 1, all)});
   shown_[1] = layers_.show(layer, 1, look_.error_scale, {look_.magnifier ? 0 : std::max(divider - 1, 0), all});
+  save_wanted_picture();
   lay_out_inspection();
   const glm::ivec2 window = window_.size(), size(at.size());
   render::DisplayPass::clear_window(window, glm::vec3(0.08f));
@@ -350,9 +355,21 @@ void Gui::save_state(const std::string& what,
   save(what, [&](const std::filesystem::path& stem) { write(bench_.state(), std::filesystem::path(stem) += ".toml"); });
 }
 
+/// Waits for what is still traced or measured of the picture: a truth without rays would look like one.
+void Gui::save_wanted_picture() {
+  if (!wants_picture_) return;
+  const bool is_incomplete = std::ranges::any_of(shown_, [](const ShownLayer& each) { return !each.absent.empty(); });
+  if (fine_ || (is_incomplete && bench_.is_busy())) {
+    saved_ = "the picture is saved when all of it is there";
+    return;
+  }
+  wants_picture_ = false;
+  save("picture", [this](const std::filesystem::path& stem) { save_picture(stem); });
+}
+
 /// Writes STEM.png, which is what the window shows of both sides with their captions and scales, and STEM.exr with the
-/// float images behind it: for each side, "left" and "right", its visibility and its picture, and the truth as far as
-/// it is traced. Throws Error(kOutput).
+/// float images behind it: for each side, "left" and "right", its visibility and its picture, and the truth. Without a
+/// truth the sides that show it are left out, and captions say why. Throws Error(kOutput).
 void Gui::save_picture(const std::filesystem::path& stem) {
   const ViewState& state = bench_.state();
   const glm::ivec2 size(state.options.width, state.options.height);
@@ -364,6 +381,7 @@ void Gui::save_picture(const std::filesystem::path& stem) {
   std::vector<images::Part> parts;
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::string name = kSideNames[side];
+    if (state.sides[side].truth && bench_.stage().truth() == nullptr) continue;
     parts.push_back(
         {name + ".visibility", {"Y"}, render::read_image(bench_.stage().visibility(side, {0, size.x}), 1), false});
     const gl::Texture& picture = bench_.stage().picture(state, side, {0, size.x});
@@ -380,6 +398,53 @@ void Gui::save_picture(const std::filesystem::path& stem) {
   int below = draw_captions(picture, captions);
   for (const auto& [side, scale] : list_scales()) below = scale.draw(picture, below);
   images::write_display_png(std::filesystem::path(stem) += ".png", picture);
+}
+
+const std::vector<Gui::Key>& Gui::list_keys() {
+  static const std::vector<Key> keys = {
+      {GLFW_KEY_F1, false, "F1", "show or hide this list", [](Gui& gui) { gui.look_.help = !gui.look_.help; }},
+      {GLFW_KEY_T, false, "T", "divider between the sides, or one side at a time",
+       [](Gui& gui) {
+         gui.look_.sharing = gui.look_.sharing == Sharing::kDivider ? Sharing::kFlip : Sharing::kDivider;
+       }},
+      {GLFW_KEY_SPACE, false, "Space", "one side at a time: flip to the other",
+       [](Gui& gui) {
+         gui.look_.sharing = Sharing::kFlip;
+         gui.look_.flipped_to = 1 - gui.look_.flipped_to;
+       }},
+      {GLFW_KEY_X, false, "X", "exchange left and right",
+       [](Gui& gui) { gui.bench_.change(Changes::all(), [](ViewSettings& s) { std::swap(s.sides[0], s.sides[1]); }); }},
+      {GLFW_KEY_PAGE_DOWN, false, "Page Down", "next layer: picture, visibility, error, ...",
+       [](Gui& gui) { gui.look_.layer = (gui.look_.layer + 1) % Layers::list().size(); }},
+      {GLFW_KEY_PAGE_UP, false, "Page Up", "previous layer",
+       [](Gui& gui) { gui.look_.layer = (gui.look_.layer + Layers::list().size() - 1) % Layers::list().size(); }},
+      {GLFW_KEY_M, false, "M", "magnifier with the values under the pointer",
+       [](Gui& gui) { gui.look_.magnifier = !gui.look_.magnifier; }},
+      {GLFW_KEY_N, false, "N", "the depth map and the stored map", [](Gui& gui) { gui.look_.map = !gui.look_.map; }},
+      {GLFW_KEY_H, false, "H", "show or hide the panels", [](Gui& gui) { gui.look_.panels = !gui.look_.panels; }},
+      {GLFW_KEY_C, false, "C", "next camera of the scene",
+       [](Gui& gui) {
+         gui.bench_.change(Changes::all(), [](ViewSettings& s) { s.camera = (s.camera + 1) % s.cameras.size(); });
+       }},
+      {GLFW_KEY_L, false, "L", "next light of the scene",
+       [](Gui& gui) {
+         gui.bench_.change(Changes::all(), [](ViewSettings& s) { s.light = (s.light + 1) % s.lights.size(); });
+       }},
+      {GLFW_KEY_R, false, "R", "camera and light as the scene has them",
+       [](Gui& gui) {
+         gui.bench_.change(Changes::all(), [&](ViewSettings& s) {
+           s.cameras = gui.bench_.first().cameras;
+           s.lights = gui.bench_.first().lights;
+         });
+       }},
+      {GLFW_KEY_P, true, "Ctrl+P", "save the picture with captions, and the float images of both sides",
+       [](Gui& gui) { gui.wants_picture_ = true; }},
+      {GLFW_KEY_S, true, "Ctrl+S", "save the scene with this camera and light",
+       [](Gui& gui) { gui.save_state("scene", save_scene); }},
+      {GLFW_KEY_E, true, "Ctrl+E", "save both sides as an experiment of 'shadowbench run'",
+       [](Gui& gui) { gui.save_state("experiment", save_experiment); }},
+      {GLFW_KEY_Q, true, "Ctrl+Q", "close the window", [](Gui& gui) { gui.window_.close(); }}};
+  return keys;
 }
 
 }  // namespace shadowbench::view

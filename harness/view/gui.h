@@ -8,17 +8,12 @@
 #include <vector>
 
 #include "harness/render/display_pass.h"
-#include "harness/view/captions.h"
-#include "harness/view/error_meter.h"
+#include "harness/view/inspection.h"
 #include "harness/view/layers.h"
-#include "harness/view/look.h"
-#include "harness/view/panels/magnifier.h"
-#include "harness/view/panels/map_panel.h"
-#include "harness/view/panels/picture_input.h"
-#include "harness/view/panels/scene_panel.h"
-#include "harness/view/panels/settings_panel.h"
-#include "harness/view/panels/times_panel.h"
-#include "harness/view/view_log.h"
+#include "harness/view/meters.h"
+#include "harness/view/picture_input.h"
+#include "harness/view/settings_panel.h"
+#include "harness/view/view_state.h"
 #include "harness/view/window.h"
 #include "harness/view/workbench.h"
 
@@ -85,7 +80,8 @@ class Gui {
   bool was_drawn_ = false;  ///< whether such a frame is among them
   int compiled_ = 0;        ///< filters, until the last frame
   double last_s_ = 0.0;
-  std::string saved_;  ///< what was saved last
+  std::string saved_;           ///< what was saved last
+  bool wants_picture_ = false;  ///< it is saved when all that it shows is there
 
   glm::vec2 free_area() const;
   void fit_picture(double now_s);
@@ -107,6 +103,7 @@ class Gui {
   void draw_divider();
   void save(const std::string& what, const std::function<void(const std::filesystem::path& stem)>& write);
   void save_state(const std::string& what, void (*write)(const ViewState& state, const std::filesystem::path& file));
+  void save_wanted_picture();
   void save_picture(const std::filesystem::path& stem);
 };
 

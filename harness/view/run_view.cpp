@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "base/error.h"
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "harness/gl/timer/timer.h"
 #include "harness/view/gui.h"
 
@@ -40,7 +40,7 @@ glm::ivec2 choose_window_size(const ViewOptions& options, const glm::ivec2& pict
 ViewLog::Frame describe_frame(const Gui& gui, Workbench& bench, double begun_s, bool drawn) {
   ViewLog::Frame frame{begun_s, 1e3 * (now_s() - begun_s), drawn, {}, {}};
   frame.numbers = {
-      {"divider", gui.look().divider}, {"truth", bench.truth_part()}, {"busy", bench.is_busy() ? 1.0 : 0.0}};
+      {"divider", gui.look().divider}, {"truth", bench.is_traced() ? 1.0 : 0.0}, {"busy", bench.is_busy() ? 1.0 : 0.0}};
   frame.texts["layer"] = Layers::list()[gui.look().layer].id;
   frame.texts["message"] = bench.message();
   frame.texts["scene"] = bench.state().scene.name;

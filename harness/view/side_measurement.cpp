@@ -9,10 +9,10 @@
 #include <functional>
 #include <system_error>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "harness/run/float_images.h"
-#include "harness/view/save.h"
+#include "harness/view/view_state.h"
 #include "report/images/image_library.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
@@ -30,25 +30,32 @@ fs::path find_place() { return fs::temp_directory_path() / fmt::format("shadowbe
 
 /// The options of a run that takes no longer than it must: as few timed rounds as there may be, since times beside a
 /// window say nothing. Its phases stay, because the first of them is what the window shows.
-options::RunOptions make_quick(options::RunOptions options) {
+options::RunOptions make_quick(options::RunOptions options, Measurand measurand) {
   options.rounds = {.precision = 1.0, .budget_ms = 1.0};
-  options.stability = true;
+  options.stability = measurand == Measurand::kEverything;
+  if (measurand == Measurand::kEverything) return options;
+  options.filters.clear();
+  options.gpus.clear();
+  options.attribution = false;
+  options.phases = 1;
   return options;
 }
 
 /// No pictures are made but the float images.
-std::vector<std::string> list_arguments(const options::RunOptions& options, const fs::path& folder) {
-  return {"run",
-          (folder / kExperimentName).string(),
-          "--out",
-          (folder / kReportName).string(),
-          "--gl",
-          std::string(gl::backend_name(options.backend)),
-          run::cache_word(options.cache),
-          "--fresh",
-          "--every-step",
-          "--no-pictures",
-          "--all-parts"};
+std::vector<std::string> list_arguments(const options::RunOptions& options, const fs::path& folder,
+                                        Measurand measurand) {
+  std::vector<std::string> words = {"run",
+                                    (folder / kExperimentName).string(),
+                                    "--out",
+                                    (folder / kReportName).string(),
+                                    "--gl",
+                                    std::string(gl::backend_name(options.backend)),
+                                    run::cache_word(options.cache),
+                                    "--fresh",
+                                    "--every-step",
+                                    "--no-pictures"};
+  if (measurand == Measurand::kEverything) words.emplace_back("--all-parts");
+  return words;
 }
 
 /// The last line that was written to its end, as far as the process tells what it does.
@@ -60,8 +67,9 @@ std::string find_last_line(const std::string& text) {
 }
 
 /// The cells of a state's filters, in the order of its run, still without records.
-MeasuredSides list_cells(const ViewState& state) {
+MeasuredSides list_cells(const ViewState& state, Measurand measurand) {
   MeasuredSides sides;
+  if (measurand == Measurand::kTruthAlone) return sides;
   const std::vector<filters::FilterRequest>& listed = state.options.filters;
   for (const filters::FilterRequest& request : listed) sides.cells.emplace_back().request = request;
   for (std::size_t side = 0; side < kSides; ++side) {
@@ -84,13 +92,15 @@ void open_for_reading() {
 MeasuredSides read_results(MeasuredSides sides, const fs::path& report, const std::atomic<bool>& is_cancelled) {
   records::Results results = records::read_results(report / "results.json");
   const fs::path images = report / results.cells.front().images.exr.value();
+  const auto& absent = results.cells.front().absent;
+  if (const auto reason = absent.find("error"); reason != absent.end()) sides.no_truth = reason->second;
   for (std::size_t i = 0; i < sides.cells.size(); ++i) {
     sides.cells[i].record = std::move(results.cells.at(i));
     sides.cells[i].label = sides.cells[i].record.images.parts.value();
   }
   images::ExrFile file = images::read_exr(images, [&](const std::string& part) {
     if (is_cancelled) return false;
-    return part == run::kTruthPart || part == run::kTruthMaskPart ||
+    return part == run::kTruthPart || part == run::kTruthMaskPart || part == run::kBlockerPart ||
            std::ranges::any_of(sides.cells, [&](const auto& cell) {
              return part.starts_with(cell.label + ".") && part != run::picture_part(cell.label);
            });
@@ -99,6 +109,7 @@ MeasuredSides read_results(MeasuredSides sides, const fs::path& report, const st
   for (images::Part& part : file.parts) {
     if (part.name == run::kTruthPart) sides.truth = std::move(part.image);
     if (part.name == run::kTruthMaskPart) sides.truth_mask = std::move(part.image);
+    if (part.name == run::kBlockerPart) sides.blockers = std::move(part.image);
   }
   return sides;
 }
@@ -115,15 +126,16 @@ const measure::MeasuredCell* MeasuredSides::find_side(std::size_t side) const {
   return cell_of_side[side] ? &cells[*cell_of_side[side]] : nullptr;
 }
 
-void SideMeasurement::start(const ViewState& state) {
+void SideMeasurement::start(const ViewState& state, Measurand measurand) {
   cancel();
   remove_temporary_files(find_place(), is_gone);  // of a window that was killed
   folder_.emplace(make_temporary_folder_path(find_place(), "worker"));
   const fs::path experiment = folder_->path() / kExperimentName;
   save_scene(state, scene_beside(experiment));
-  write_text_file(experiment, write_experiment(state, make_quick(state.options), experiment));
-  results_ = list_cells(state);
-  worker_.emplace(list_arguments(state.options, folder_->path()), run::WorkerSetup{program_, kLowestPriority});
+  write_text_file(experiment, write_experiment(state, make_quick(state.options, measurand), experiment));
+  results_ = list_cells(state, measurand);
+  worker_.emplace(list_arguments(state.options, folder_->path(), measurand),
+                  run::WorkerSetup{program_, kLowestPriority});
   if (!opening_.valid()) opening_ = std::async(std::launch::async, open_for_reading);
   text_ = "starting";
   state_ = State::kRunning;

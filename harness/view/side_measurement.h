@@ -8,12 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/worker_process.h"
 #include "harness/view/view_state.h"
 
 namespace shadowbench::view {
+
+/// What a run is to find out.
+enum class Measurand {
+  kTruthAlone,  ///< as rays find it
+  kEverything,  ///< of the truth and both sides
+};
 
 /// What a run found out about both sides.
 struct MeasuredSides {
@@ -22,7 +28,9 @@ struct MeasuredSides {
   std::vector<measure::MeasuredCell> cells;
   std::array<std::optional<std::size_t>, kSides> cell_of_side;  ///< index; none where a side shows the truth
   images::Image truth;                                          ///< visibility; empty where there is none
+  std::string no_truth;                                         ///< why there is none
   images::Image truth_mask;                                     ///< 1 where the truth counts, else 0
+  images::Image blockers;  ///< how far the light's first blocker is, metres, 0: none; Measurand::kEverything
 
   /// What was measured of a side; null where it shows the truth.
   const measure::MeasuredCell* find_side(std::size_t side) const;
@@ -40,10 +48,10 @@ class SideMeasurement {
   SideMeasurement(const SideMeasurement&) = delete;
   SideMeasurement& operator=(const SideMeasurement&) = delete;
 
-  /// Starts to measure both sides of a state, in place of what is measured. The process draws the very same images
-  /// where the state is settled; see settle(). The options' cache keeps traced images. Cost: writing two small files; a
-  /// fork. Throws Error as save_experiment() does for its files, Error(kOutput).
-  void start(const ViewState& state);
+  /// Starts to measure a state, in place of what is measured. The process draws the very same images where the state is
+  /// settled; see settle(). The options' cache keeps traced images. Cost: writing two small files; a fork. Throws Error
+  /// as save_experiment() does for its files, Error(kOutput).
+  void start(const ViewState& state, Measurand measurand = Measurand::kEverything);
 
   /// Looks how far it is; to be called once a frame. Cost: less than a millisecond; results are read by another thread.
   State poll();

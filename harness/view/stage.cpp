@@ -1,9 +1,12 @@
 #include "harness/view/stage.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/error.h"
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
+#include "harness/measure/layer_truth.h"
+#include "harness/measure/map_coverage.h"
 #include "harness/measure/phases.h"
 #include "harness/render/shade_pass.h"
 
@@ -189,6 +192,17 @@ images::Image Stage::blocker_distance(const ViewState& state) {
   images::Image distance = render::read_image(target.texture(), 1);
   for (float& value : distance.texels) value = value < 0.0f ? -1.0f - value : 0.0f;
   return distance;
+}
+
+images::Image Stage::texels_per_pixel(const ViewState& state) {
+  const render::LightLayers light = measure::make_unbiased_light(state.options, state.scene.light, light_->layers);
+  images::Image density =
+      measure::measure_coverage(measure::read_view_receivers(*gbuffer_, state.scene.light), state.active_camera(),
+                                measure::list_traced_layers(renderer_.shaders, *gbuffer_, light),
+                                measure::read_linear_depth(light_->map))
+          .density;
+  for (float& texels : density.texels) texels = std::max(texels, 0.0f);  // below 0 where there is no surface
+  return density;
 }
 
 }  // namespace shadowbench::view

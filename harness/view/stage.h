@@ -73,6 +73,9 @@ class Stage {
   /// bottom; 0 where there is none before it. Cost: a lookup.
   images::Image blocker_distance(const ViewState& state);
 
+  /// Texels of the map under each pixel's footprint, rows top to bottom. Cost: see measure::measure_coverage().
+  images::Image texels_per_pixel(const ViewState& state);
+
  private:
   struct SideDrawing {
     std::unique_ptr<render::FilterPasses> passes;

@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "harness/measure/layer_truth.h"
 #include "harness/scene/scene.h"
-#include "harness/view/save.h"
+#include "harness/view/view_state.h"
 
 namespace shadowbench::view {
 namespace {
@@ -45,26 +44,17 @@ Workbench::Workbench(measure::Renderer& renderer, ViewState state, filters::Cata
       state_(std::move(state)),
       first_(state_),
       drawn_(state_),
-      stage_(std::make_unique<Stage>(renderer, state_.scene)),
-      cache_(state_.options.cache, [](const std::string&) {}) {  // one that cannot be written costs time alone
-  start_tracer();
+      stage_(std::make_unique<Stage>(renderer, state_.scene)) {
   watch_sides();
-}
-
-void Workbench::start_tracer() {
-  truth_ = std::make_unique<BackgroundTruth>([this] { return scene::list_occluders(state_.scene); }, cache_,
-                                             state_.options.seed);
 }
 
 void Workbench::show(ViewState state) {
   auto stage = std::make_unique<Stage>(renderer_, state.scene);
   stage->draw(state, Changes::all());
   say({});
-  truth_.reset();  // its thread reads the scene
   state_ = std::move(state);
   first_ = drawn_ = state_;
   stage_ = std::move(stage);
-  start_tracer();
   watch_sides();
   changes_ = {.camera = true, .light = true};  // the next draw() begins anew what follows from a drawing
 }
@@ -99,46 +89,31 @@ void Workbench::update(double now_s) {
   follow_measurement(now_s);
 }
 
-/// The truth depends on what is seen and on the light; texels per pixel depend on the map as well.
+/// The truth depends on what is seen and on the light.
 void Workbench::age_truth(const Changes& changes) {
-  if (changes.camera) surfaces_.reset();
-  if (!changes.camera && !changes.light && !(changes.map && wants_coverage_)) return;
-  truth_is_old_ = true;
-  truth_->stop();
-  shown_truth_ = {};
+  if (!changes.camera && !changes.light) return;
+  truth_.cancel();
+  traced_ = SideMeasurement::State::kIdle;
   stage_->set_truth({});
 }
 
 void Workbench::follow_truth(double now_s) {
+  using State = SideMeasurement::State;
   if (std::exchange(was_changed_, false)) last_change_s_ = now_s;
-  if (truth_is_old_ && now_s - last_change_s_ >= kSecondsBeforeTruth) start_truth();
-  std::optional<BackgroundTruth::Shown> more = truth_->take();
-  if (!more) return;
-  shown_truth_ = std::move(*more);
-  if (!shown_truth_.error.empty()) say("the truth: " + shown_truth_.error);
-  stage_->set_truth(shown_truth_.visibility);
+  if (traced_ == State::kIdle && now_s - last_change_s_ >= kSecondsBeforeTruth)
+    start(truth_, traced_, Measurand::kTruthAlone, now_s);
+  if (traced_ != State::kRunning) return;
+  traced_ = truth_.poll();
+  if (traced_ == State::kRunning) return;
+  if (traced_ == State::kFailed) say("the truth cannot be traced: " + truth_.text());
+  if (truth()) stage_->set_truth(truth()->truth);
   ++drawings_;
-}
-
-void Workbench::start_truth() {
-  truth_is_old_ = false;
-  if (!surfaces_) surfaces_ = std::make_shared<measure::ViewSurfaces>(measure::read_view_surfaces(stage_->gbuffer()));
-  TruthJob job{surfaces_, state_.scene.light};
-  if (wants_coverage_) {
-    const measure::LightMap& light = stage_->light_map();
-    job.map = {
-        state_.active_camera(),
-        measure::list_traced_layers(renderer_.shaders, stage_->gbuffer(),
-                                    measure::make_unbiased_light(state_.options, state_.scene.light, light.layers)),
-        measure::read_linear_depth(light.map)};
-  }
-  truth_->start(std::move(job));
 }
 
 std::string Workbench::explain_no_truth() const {
   if (stage_->truth() != nullptr) return {};
-  if (!shown_truth_.error.empty()) return "the truth cannot be traced";
-  return shown_truth_.truth ? shown_truth_.truth->absent : "the truth is being traced";
+  if (truth()) return truth()->no_truth;
+  return is_traced() ? "the truth cannot be traced" : "the truth is being traced";
 }
 
 void Workbench::follow_measurement(double now_s) {
@@ -148,30 +123,23 @@ void Workbench::follow_measurement(double now_s) {
   const State before = std::exchange(measured_, measurement_.poll());
   if (measured_ == State::kFinished && before != State::kFinished) ++drawings_;
   // The truth comes first: the run takes it from the cache.
-  const bool may_start = wanted && measured_ == State::kIdle && !truth_is_old_ && truth_part() == 1.0;
-  if (!may_start || now_s - last_change_s_ < kSecondsBeforeMeasurement) return;
+  if (wanted && measured_ == State::kIdle && is_traced() && now_s - last_change_s_ >= kSecondsBeforeMeasurement)
+    start(measurement_, measured_, Measurand::kEverything, now_s);
+}
+
+void Workbench::start(SideMeasurement& measurement, SideMeasurement::State& state, Measurand measurand, double now_s) {
   try {
-    measurement_.start(state_);
-    measured_ = State::kRunning;
+    measurement.start(state_, measurand);
+    state = SideMeasurement::State::kRunning;
   } catch (const Error& error) {
     say(error.what());
     last_change_s_ = now_s + kSecondsAfterFailure;
   }
 }
 
-const measure::MeasuredCell* Workbench::find_measured(std::size_t side) const {
-  return measured_ == SideMeasurement::State::kFinished ? measurement_.results().find_side(side) : nullptr;
-}
-
-std::string Workbench::explain_no_measurement(std::size_t side) const {
-  if (state_.sides[side].truth) return "the truth is what is measured against";
+std::string Workbench::explain_no_measurement() const {
   if (measured_ == SideMeasurement::State::kFailed) return "cannot be measured: " + measurement_.text();
   return measurement_.text().empty() ? "waits to be measured" : "is measured: " + measurement_.text();
-}
-
-void Workbench::want_coverage() {
-  if (std::exchange(wants_coverage_, true)) return;
-  truth_is_old_ = true;
 }
 
 void Workbench::reload_filters() {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -11,7 +10,6 @@
 
 #include "filters/catalogue.h"
 #include "harness/measure/renderer.h"
-#include "harness/view/background_truth.h"
 #include "harness/view/side_measurement.h"
 #include "harness/view/stage.h"
 #include "harness/view/view_state.h"
@@ -43,10 +41,7 @@ inline constexpr double kSecondsBetweenLooks = 0.1;
 /// The truth waits for this long after the last change: a picture that moves would only throw it away.
 inline constexpr double kSecondsBeforeTruth = 0.15;
 
-/// The most that is said of the truth before all of it is there: what follows the last ray takes a while.
-inline constexpr double kAlmostAll = 0.99;
-
-/// A run of its own takes seconds: it waits for longer.
+/// What is measured of both sides takes seconds: it waits for longer.
 inline constexpr double kSecondsBeforeMeasurement = 0.5;
 
 /// The filters of a folder, and users' own. Throws Error as Catalogue does.
@@ -93,28 +88,33 @@ class Workbench {
   void say(std::string message) { message_ = std::move(message); }
 
   /// Whether work goes on beside the window, which would disturb times.
-  bool is_busy() const { return truth_is_old_ || truth_part() < 1.0 || measured_ == SideMeasurement::State::kRunning; }
+  bool is_busy() const { return !is_traced() || measured_ == SideMeasurement::State::kRunning; }
 
-  /// What is traced of the truth; it starts anew when camera or light change.
-  const BackgroundTruth::Shown& truth() const { return shown_truth_; }
-  double truth_part() const {
-    const bool is_over = shown_truth_.truth || !shown_truth_.error.empty();
-    return is_over ? 1.0 : std::min(shown_truth_.part, kAlmostAll);
+  /// Whether the truth is there, or will not come; it is traced anew when camera or light change.
+  bool is_traced() const {
+    return traced_ == SideMeasurement::State::kFinished || traced_ == SideMeasurement::State::kFailed;
+  }
+
+  /// What a run has found of the truth as it is now; null until it has.
+  const MeasuredSides* truth() const {
+    return traced_ == SideMeasurement::State::kFinished ? &truth_.results() : nullptr;
   }
 
   /// Why there is no truth to be seen; empty where there is.
   std::string explain_no_truth() const;
 
-  /// Asks for the map's texels per pixel, which come with the truth.
-  void want_coverage();
-
   /// Asks, in a frame that shows what comes of it, for a run that measures both sides; it starts when nothing has
   /// changed for a while.
   void want_measurement() { wants_measurement_ = true; }
 
-  /// What such a run has found of a side as it is now; null where there is nothing, see explain_no_measurement().
-  const measure::MeasuredCell* find_measured(std::size_t side) const;
-  std::string explain_no_measurement(std::size_t side) const;
+  /// What such a run has found of the sides as they are now; null where there is nothing, see explain_no_measurement().
+  const MeasuredSides* measured() const {
+    return measured_ == SideMeasurement::State::kFinished ? &measurement_.results() : nullptr;
+  }
+  const measure::MeasuredCell* find_measured(std::size_t side) const {
+    return measured() ? measured()->find_side(side) : nullptr;
+  }
+  std::string explain_no_measurement() const;
 
   /// Counts what has been drawn anew, for those who keep what they made of it.
   std::uint64_t drawings() const { return drawings_; }
@@ -133,24 +133,17 @@ class Workbench {
   std::string message_;
   bool was_changed_ = true;
   double last_change_s_ = 0.0;
-  truth::TruthCache cache_;
-  std::unique_ptr<BackgroundTruth> truth_;
-  BackgroundTruth::Shown shown_truth_;
-  std::shared_ptr<const measure::ViewSurfaces> surfaces_;  ///< of the camera that is looked through; null: not read yet
-  bool truth_is_old_ = true;
-  bool wants_coverage_ = false;
-  SideMeasurement measurement_;
-  SideMeasurement::State measured_ = SideMeasurement::State::kIdle;
+  SideMeasurement truth_, measurement_;  ///< one at a time
+  SideMeasurement::State traced_ = SideMeasurement::State::kIdle, measured_ = SideMeasurement::State::kIdle;
   bool wants_measurement_ = false;
   std::uint64_t drawings_ = 0;
 
-  void start_tracer();
   void watch_sides();
   void reload_filters();
   void age_truth(const Changes& changes);
   void follow_truth(double now_s);
-  void start_truth();
   void follow_measurement(double now_s);
+  void start(SideMeasurement& measurement, SideMeasurement::State& state, Measurand measurand, double now_s);
 };
 
 }  // namespace shadowbench::view

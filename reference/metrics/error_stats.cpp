@@ -119,4 +119,91 @@ Attribution attribute_error(const AttributionStations& stations) {
   return result;
 }
 
+std::optional<Change> measure_change(std::span<const std::span<const float>> images, std::size_t group,
+                                     std::span<const std::uint8_t> mask) {
+  assert(group > 0 && images.size() % group == 0);
+  const std::size_t groups = images.size() / group;
+  const double all = static_cast<double>(images.size()), own = static_cast<double>(group);
+  std::vector<double> of_group(groups);  // of the pairs that it is one side of
+  std::vector<double> sums(groups), powers(groups);
+  std::size_t receivers = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    const auto is_finite = [&](std::span<const float> image) { return std::isfinite(image[i]); };
+    if (mask[i] == 0 || !std::ranges::all_of(images, is_finite)) continue;
+    ++receivers;
+    double sum = 0.0, power = 0.0;
+    for (std::size_t g = 0; g < groups; ++g) {
+      sums[g] = powers[g] = 0.0;
+      for (std::size_t k = g * group; k < (g + 1) * group; ++k) {
+        const double value = static_cast<double>(images[k][i]) - static_cast<double>(images[0][i]);
+        sums[g] += value;
+        powers[g] += value * value;
+      }
+      sum += sums[g];
+      power += powers[g];
+    }
+    for (std::size_t g = 0; g < groups; ++g)
+      of_group[g] += (all - own) * powers[g] + own * (power - powers[g]) - 2.0 * sums[g] * (sum - sums[g]);
+  }
+  const double squares = 0.5 * std::accumulate(of_group.begin(), of_group.end(), 0.0);
+  if (groups < 2 || receivers == 0) return std::nullopt;
+  const auto mean_of = [&](double sum, std::size_t count) {
+    const double pairs = 0.5 * static_cast<double>(count * (count - 1) * group * group * receivers);
+    return std::sqrt(std::max(0.0, sum) / pairs);
+  };
+  Change change{mean_of(squares, groups)};
+  if (groups < 3) return change;
+  std::vector<double> pseudo_values;
+  for (const double each : of_group)
+    pseudo_values.push_back(static_cast<double>(groups) * change.value -
+                            static_cast<double>(groups - 1) * mean_of(squares - each, groups - 1));
+  const MeanInterval interval = *find_mean_interval(pseudo_values);
+  change.reach = interval.high - interval.mean;
+  return change;
+}
+
+double find_p(const NoisyDifference& d) {
+  if (!std::isfinite(d.difference) || !std::isfinite(d.variance)) return 0.0;
+  if (d.difference == 0.0) return 1.0;
+  if (d.variance <= 0.0) return 0.0;
+  return 2.0 * gsl_cdf_tdist_Q(std::abs(d.difference) / std::sqrt(d.variance), d.degrees_of_freedom);
+}
+
+NoisyDifference add_differences(std::span<const NoisyDifference> differences) {
+  NoisyDifference sum{0.0, 0.0, 1.0};
+  double spread = 0.0;
+  for (const NoisyDifference& each : differences) {
+    sum.difference += each.difference;
+    sum.variance += each.variance;
+    spread += each.variance * each.variance / each.degrees_of_freedom;
+  }
+  if (spread > 0.0) sum.degrees_of_freedom = sum.variance * sum.variance / spread;
+  return sum;
+}
+
+double find_p(const Share& a, const Share& b) {
+  if (!std::isfinite(a.lit) || !std::isfinite(b.lit)) return 0.0;
+  const auto whole = [](double value) { return static_cast<unsigned>(std::llround(std::max(value, 0.0))); };
+  const unsigned of_a = whole(a.lookups), of_b = whole(b.lookups);
+  const unsigned lit_a = std::min(whole(a.lit), of_a), lit = lit_a + std::min(whole(b.lit), of_b);
+  const unsigned dark = of_a + of_b - lit;
+  // The number of lit lookups of a, drawn from an urn that holds the lookups of both.
+  const double at_most = gsl_cdf_hypergeometric_P(lit_a, lit, dark, of_a);
+  const double at_least = lit_a == 0 ? 1.0 : gsl_cdf_hypergeometric_Q(lit_a - 1, lit, dark, of_a);
+  return std::min(1.0, 2.0 * std::min(at_most, at_least));
+}
+
+PixelTest test_pixels(std::span<const double> probabilities, double level) {
+  PixelTest test;
+  test.tested = static_cast<std::int64_t>(probabilities.size());
+  if (probabilities.empty()) return test;
+  test.corrected_level = level / static_cast<double>(probabilities.size());
+  test.beyond =
+      std::count_if(probabilities.begin(), probabilities.end(), [&](double p) { return p < test.corrected_level; });
+  const auto worst = std::min_element(probabilities.begin(), probabilities.end());
+  test.worst = static_cast<std::size_t>(worst - probabilities.begin());
+  test.smallest_p = *worst;
+  return test;
+}
+
 }  // namespace shadowbench::metrics

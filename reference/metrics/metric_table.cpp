@@ -7,7 +7,6 @@
 
 #include "reference/metrics/artefacts.h"
 #include "reference/metrics/flip.h"
-#include "reference/metrics/penumbra_growth.h"
 
 namespace shadowbench::metrics {
 namespace {

@@ -5,16 +5,121 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "filters/random.h"
+#include "reference/truth/visibility.h"
 
 namespace shadowbench::truth {
+namespace {
+
+constexpr int kBits = 32;
+
+/// The second dimension's direction numbers, of the primitive polynomial x + 1: Pascal's triangle modulo 2.
+constexpr std::array<std::uint32_t, kBits> make_directions() {
+  std::array<std::uint32_t, kBits> directions{};
+  directions[0] = 1u << 31;
+  for (int i = 1; i < kBits; ++i) {
+    const std::uint32_t previous = directions[static_cast<std::size_t>(i - 1)];
+    directions[static_cast<std::size_t>(i)] = previous ^ (previous >> 1);
+  }
+  return directions;
+}
+
+std::uint32_t reverse_bits(std::uint32_t x) {
+  std::uint32_t reversed = 0;
+  for (int i = 0; i < kBits; ++i) reversed |= ((x >> i) & 1u) << (kBits - 1 - i);
+  return reversed;
+}
+
+std::uint32_t second_dimension(std::uint32_t index) {
+  static constexpr std::array<std::uint32_t, kBits> kDirections = make_directions();
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; index; index >>= 1, ++i)
+    if (index & 1u) bits ^= kDirections[i];
+  return bits;
+}
+
+/// Flips each bit by a hash of the bits above it, which is what Owen's nested scrambling asks for.
+std::uint32_t scramble(std::uint32_t bits, std::uint32_t seed) {
+  std::uint32_t result = 0;
+  for (int i = 0; i < kBits; ++i) {
+    const std::uint32_t above = i == 0 ? 0u : bits >> (kBits - i);
+    const std::uint32_t flip =
+        filters::hash_bits(above ^ filters::hash_bits(seed + 0x9e3779b9u * static_cast<std::uint32_t>(i + 1))) & 1u;
+    result |= (((bits >> (kBits - 1 - i)) & 1u) ^ flip) << (kBits - 1 - i);
+  }
+  return result;
+}
+
+/// Point `index` of the Sobol sequence's first two dimensions, Owen-scrambled by `seed`, as 32-bit fractions.
+///
+/// Different seeds give independent randomisations, each of them uniform: the mean over a scramble is unbiased, and
+/// several scrambles give an honest standard error. XOR with random bits (a digital shift) keeps both properties and
+/// makes a further randomisation cheaply. Cost: 64 hashes; keep the points.
+/// Source: Sobol 1967; Owen 1995; scrambling by hashing after Burley 2020, Practical Hash-based Owen Scrambling, JCGT
+/// 9(4).
+glm::uvec2 sobol_bits(std::uint32_t index, std::uint32_t seed) {
+  return {scramble(reverse_bits(index), filters::hash_bits(seed)),
+          scramble(second_dimension(index), filters::hash_bits(seed ^ 0x85ebca6bu))};
+}
+
+/// The place of `index` in a shuffle that keeps every aligned run of 2^k indices together, so that a second pair of
+/// dimensions, taken in this order, is as evenly spread as the first and independent of it. Source: Burley 2020,
+/// section 5.
+std::uint32_t shuffle_index(std::uint32_t index, std::uint32_t seed) {
+  return scramble(index, filters::hash_bits(seed ^ 0xc2b2ae35u));  // a bit depends on the bits above it only
+}
+
+/// Reads 32-bit fractions as a point of [0,1)^2.
+glm::dvec2 to_unit_square(glm::uvec2 bits) { return {bits.x * 0x1p-32, bits.y * 0x1p-32}; }
+
+/// Two pairs of dimensions of one point.
+struct Bits {
+  glm::uvec2 first;
+  glm::uvec2 second;
+};
+
+std::uint32_t mix(std::uint32_t a, std::uint32_t b) { return filters::hash_bits(a + filters::hash_bits(b)); }
+
+std::vector<Bits> make_scramble(int max_points, std::uint32_t seed) {
+  std::vector<Bits> points;
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(max_points); ++i)
+    points.push_back({sobol_bits(i, seed), sobol_bits(shuffle_index(i, seed), mix(seed, 1))});
+  return points;
+}
+
+}  // namespace
+
+SampleSets::SampleSets(int max_points, std::uint32_t seed, const Mapping& mapping)
+    : max_points_(max_points), lanes_(static_cast<std::size_t>(kSets) * static_cast<std::size_t>(max_points)) {
+  std::vector<std::vector<Bits>> scrambles(kScrambles);
+  tbb::parallel_for(
+      0, kScrambles,
+      [&](int s) {
+        scrambles[static_cast<std::size_t>(s)] = make_scramble(max_points, mix(static_cast<std::uint32_t>(s), seed));
+      });
+  tbb::parallel_for(0, kSets, [&](int set) {
+    for (std::size_t s = 0; s < scrambles.size(); ++s) {
+      const std::uint32_t key =
+          mix(static_cast<std::uint32_t>(set) * kScrambles + static_cast<std::uint32_t>(s), ~seed);
+      const glm::uvec2 shift(mix(key, 1), mix(key, 2)), other_shift(mix(key, 3), mix(key, 4));
+      for (int i = 0; i < max_points; ++i) {
+        const Bits& bits = scrambles[s][static_cast<std::size_t>(i)];
+        const glm::dvec2 offset =
+            mapping(to_unit_square(bits.first ^ shift), to_unit_square(bits.second ^ other_shift));
+        Lanes& lanes =
+            lanes_[static_cast<std::size_t>(set) * static_cast<std::size_t>(max_points) + static_cast<std::size_t>(i)];
+        lanes.x[s] = static_cast<float>(offset.x);
+        lanes.y[s] = static_cast<float>(offset.y);
+      }
+    }
+  });
+}
+
 namespace {
 
 /// An edge is not judged by fewer points per scramble: small counts make small standard errors by chance.
@@ -25,9 +130,6 @@ constexpr int kEdgePoints = 16;
 constexpr double kGainOfDoubling = 0.5946;
 
 constexpr int kTileSide = 16;
-
-/// What the first points of all pixels take of a whole image's time, roughly.
-constexpr double kFirstPart = 0.3;
 
 /// Transmittances that differ by less differ by the order of their factors.
 constexpr float kSameTransmittance = 1e-6f;
@@ -159,16 +261,14 @@ class AdaptiveTracer {
     truth_.ratio.assign(pixels, 1.0f);
     truth_.ratio_error.assign(pixels, 0.0f);
     truth_.variance.assign(pixels, 0.0f);
-    for (int side = settings_.coarsest; side >= 1; side /= 2) trace_first_points(side);
+    for_each_receiver([&](std::size_t i) { trace(i, kFirstPoints, kFirstPoints); });
     const std::vector<float> first = truth_.visibility;
-    for_each_tile(kFirstPart, 1.0, [&](const TracedTile& tile) {
-      for_each_receiver(tile, [&](std::size_t i) {
-        if (is_settled(first, static_cast<int>(i))) return;
-        if (has_edges_)
-          trace(i, kEdgePoints, samples_.max_points());
-        else
-          ++truth_.rays[i];
-      });
+    for_each_receiver([&](std::size_t i) {
+      if (is_settled(first, static_cast<int>(i))) return;
+      if (has_edges_)
+        trace(i, kEdgePoints, samples_.max_points());
+      else
+        ++truth_.rays[i];
     });
     return std::move(truth_);
   }
@@ -183,64 +283,24 @@ class AdaptiveTracer {
   const bool has_edges_ = samples_.max_points() >= kEdgePoints;
   TracedVisibility truth_;
 
-  /// Pixels are traced in tiles, because rays of neighbouring pixels visit the same parts of the scene.
+  /// Calls `work` with the pixels that count, in tiles, because rays of neighbouring pixels visit the same parts of the
+  /// scene.
   template <class Work>
-  void for_each_tile(double from, double to, Work work) {
+  void for_each_receiver(Work work) {
     const int width = receivers_.width, height = receivers_.height;
-    const int columns = (width + kTileSide - 1) / kTileSide, rows = (height + kTileSide - 1) / kTileSide;
-    std::atomic<int> visited = 0;
-    tbb::parallel_for(tbb::blocked_range2d<int>(0, rows, 0, columns), [&](const tbb::blocked_range2d<int>& some) {
-      for (int row = some.rows().begin(); row < some.rows().end(); ++row) {
-        for (int column = some.cols().begin(); column < some.cols().end(); ++column) {
-          const int x = column * kTileSide, y = row * kTileSide;
-          const TracedTile tile{x, y, std::min(kTileSide, width - x), std::min(kTileSide, height - y),
-                                truth_.visibility};
-          work(tile);
-          if (settings_.on_tile) settings_.on_tile(tile);
-          const double share = static_cast<double>(++visited) / (static_cast<double>(rows) * columns);
-          if (settings_.on_part) settings_.on_part(from + (to - from) * share);
-        }
-      }
-    });
-  }
-
-  /// Calls `work` with the pixels of a tile that count.
-  template <class Work>
-  void for_each_receiver(const TracedTile& tile, Work work) {
-    for (int y = tile.y; y < tile.y + tile.height; ++y) {
-      for (int x = tile.x; x < tile.x + tile.width; ++x) {
-        const std::size_t i =
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(receivers_.width) + static_cast<std::size_t>(x);
-        if (receivers_.points[i].counts) work(i);
-      }
-    }
-  }
-
-  /// Gives the first pixel of every square that counts its first points, if it has none yet, and shows its visibility
-  /// in those pixels of the square that have none either.
-  void trace_first_points(int side) {
-    const auto part_of = [](int s) { return kFirstPart / s / s; };
-    for_each_tile(side == settings_.coarsest ? 0.0 : part_of(2 * side), part_of(side), [&](const TracedTile& tile) {
-      for (int y = 0; y < tile.height; y += side) {
-        for (int x = 0; x < tile.width; x += side) {
-          const TracedTile square{tile.x + x, tile.y + y, std::min(side, tile.width - x),
-                                  std::min(side, tile.height - y), tile.visibility};
-          trace_first_of(square);
-        }
-      }
-    });
-  }
-
-  void trace_first_of(const TracedTile& square) {
-    std::optional<float> seen;
-    for_each_receiver(square, [&](std::size_t i) {
-      if (!seen) {
-        if (truth_.rays[i] == 0) trace(i, kFirstPoints, kFirstPoints);
-        seen = truth_.visibility[i];
-      } else if (truth_.rays[i] == 0) {
-        truth_.visibility[i] = *seen;
-      }
-    });
+    const tbb::blocked_range2d<int> all(0, height, kTileSide, 0, width, kTileSide);
+    tbb::parallel_for(
+        all,
+        [&](const tbb::blocked_range2d<int>& tile) {
+          for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
+            for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
+              const std::size_t i =
+                  static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+              if (receivers_.points[i].counts) work(i);
+            }
+          }
+        },
+        tbb::simple_partitioner());
   }
 
   /// Whether a pixel and those of its neighbours that count all see the whole light, or all see nothing of it. What is
@@ -268,7 +328,6 @@ class AdaptiveTracer {
     FanTracer tracer(fan);
     double foretold = HUGE_VAL;
     for (int points = least / 2, traced = 0;; points *= 2) {
-      if (settings_.stop.stop_requested()) throw TracingStopped();
       for (; traced < points; ++traced) tracer.trace(occluders_, offsets_of(fan, set, traced), settings_);
       const double error = conclude(pixel, tracer, points);
       if (fan.weighs) conclude(pixel, tracer.arrival());
@@ -334,7 +393,6 @@ TracedVisibility trace_fans(const Occluders& occluders, const ReceiverImage& rec
                             const TraceSettings& settings, const MakeFan& make_fan, const SampleSets* scaled) {
   assert(std::has_single_bit(static_cast<unsigned>(samples.max_points())));
   assert(samples.max_points() == kFirstPoints || samples.max_points() >= kEdgePoints);
-  assert(std::has_single_bit(static_cast<unsigned>(settings.coarsest)) && settings.coarsest <= kTileSide);
   return AdaptiveTracer(occluders, receivers, samples, settings, make_fan, scaled).run();
 }
 

@@ -1,15 +1,56 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "reference/truth/truth_cache.h"
 #include "reference/truth/visibility.h"
 
 namespace shadowbench::truth {
+
+/// What was traced for one view, as numbers of equal count for each layer.
+using Layers = std::vector<std::vector<float>>;
+
+/// What a run leaves of its cache, for prune(); the truths of a default run take some 15 MiB.
+inline constexpr std::uintmax_t kMaxCacheBytes = std::uintmax_t{1} << 30;
+
+/// Keeps what was traced between runs, one file each, named by all that the result depends on: geometry, receivers,
+/// light, settings and the code that traces. The files can be deleted at any time.
+class TruthCache {
+ public:
+  /// With an empty folder name nothing is kept. In a folder that holds other files, nothing is ever deleted; in one of
+  /// our own, what killed processes left half-written is. `note` is called once if the folder cannot be written.
+  TruthCache(std::filesystem::path folder, std::function<void(const std::string&)> note);
+
+  /// Returns what was kept under a name, or nothing if there is no file, or one that is damaged, of another name, or of
+  /// another size than `layers` times `values`.
+  std::optional<Layers> load(const std::string& name, std::size_t layers, std::size_t values);
+
+  void store(const std::string& name, const Layers& layers);
+
+  /// Whether something is kept under a name; nobody reads whether it is whole.
+  bool has(const std::string& name) const;
+
+  /// Deletes the files that were used longest ago until the folder holds at most `max_bytes`: no others than this class
+  /// wrote, and in a folder of our own.
+  void prune(std::uintmax_t max_bytes) const;
+
+  int loaded() const { return loaded_; }  ///< how often load() found what it was asked for
+  int traced() const { return traced_; }  ///< how often it did not
+
+ private:
+  std::filesystem::path folder_;
+  bool is_ours_;
+  std::function<void(const std::string&)> note_;
+  int loaded_ = 0;
+  int traced_ = 0;
+
+  std::filesystem::path path_of(const std::string& name) const { return folder_ / (name + ".truth"); }
+};
 
 /// What rays find for one view of one light; it does not depend on any shadow map.
 struct ViewRays {
@@ -29,19 +70,6 @@ class CachedTracer {
 
   /// `cache`, and what `list_meshes` refers to, must outlive this object.
   CachedTracer(MeshList list_meshes, TruthCache& cache, std::uint32_t seed);
-
-  /// Says from now on how much of an image is traced, 0 .. 1, from many threads.
-  void listen(std::function<void(double part)> on_part) { settings_.on_part = std::move(on_part); }
-
-  /// Shows from now on what is traced, tile by tile, from many threads: see TraceSettings. What the cache holds is not
-  /// traced.
-  void show(int coarsest, std::function<void(const TracedTile&)> on_tile) {
-    settings_.coarsest = coarsest;
-    settings_.on_tile = std::move(on_tile);
-  }
-
-  /// Lets tracing end with TracingStopped, from now on, where this asks for it. Nothing of it comes into the cache.
-  void heed(std::stop_token stop) { settings_.stop = std::move(stop); }
 
   /// Cost: 64 rays for most pixels, up to 16384 at the edges of shadows.
   ViewRays trace_view(const ReceiverImage& receivers, const AreaLight& light);

@@ -56,7 +56,7 @@ RayFan make_kernel_fan(const Occluders& occluders, const ReceiverPoint& point, c
 
 /// Calls `work` with up to a packet's number of receivers that count, row by row.
 template <class Work>
-void for_each_group(const ReceiverImage& receivers, const std::stop_token& stop, Work work) {
+void for_each_group(const ReceiverImage& receivers, Work work) {
   tbb::parallel_for(
       0, receivers.height,
       [&](int y) {
@@ -67,7 +67,6 @@ void for_each_group(const ReceiverImage& receivers, const std::stop_token& stop,
           if (receivers.points[i].counts) group.push_back(i);
           const bool is_last = x + 1 == receivers.width;
           if (group.size() < RayPacket::kSize && !(is_last && !group.empty())) continue;
-          if (stop.stop_requested()) throw TracingStopped();
           work(group);
           group.clear();
         }
@@ -150,10 +149,9 @@ TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& r
   });
 }
 
-std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
-                              const std::stop_token& stop) {
+std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light) {
   std::vector<float> visibility(receivers.points.size(), 1.0f);
-  for_each_group(receivers, stop, [&](const std::vector<std::size_t>& group) {
+  for_each_group(receivers, [&](const std::vector<std::size_t>& group) {
     RayPacket packet;
     for (std::size_t lane = 0; lane < group.size(); ++lane) {
       const ReceiverPoint& point = receivers.points[group[lane]];
@@ -170,9 +168,9 @@ std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& r
 }
 
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
-                                        const AreaLight& light, const std::stop_token& stop) {
+                                        const AreaLight& light) {
   std::vector<float> distances(receivers.points.size(), std::numeric_limits<float>::infinity());
-  for_each_group(receivers, stop, [&](const std::vector<std::size_t>& group) {
+  for_each_group(receivers, [&](const std::vector<std::size_t>& group) {
     RayPacket packet;
     RayPacket::Lanes lengths{};
     for (std::size_t lane = 0; lane < group.size(); ++lane) {

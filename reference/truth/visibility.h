@@ -1,12 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <exception>
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -67,36 +65,14 @@ struct ReceiverImage {
   std::string content = {};           ///< a name for these points, by which a cache knows them; may be empty
 };
 
-/// A tile of an image that is being traced. What lies in the tile is not written while this is looked at, what lies
-/// elsewhere may be.
-struct TracedTile {
-  int x = 0;  ///< of its first pixel
-  int y = 0;
-  int width = 0;
-  int height = 0;
-  const std::vector<float>& visibility;  ///< of the whole image; pixels without rays have that of one close by
-};
-
-/// Leaves a trace that was asked to stop; what was traced by then is lost.
-struct TracingStopped : std::exception {
-  const char* what() const noexcept override { return "tracing was stopped"; }
-};
-
-/// How sure a traced fraction is to be, and what may look on; the result depends on the first three alone.
+/// How sure a traced fraction is to be.
 struct TraceSettings {
   /// Wanted for every pixel that is not unanimous; some get a little more or less. 1: all that is asked of a pixel is
   /// whether its rays agree.
   double standard_error = 0.005;
   int max_points = 1024;  ///< per scramble; a power of two, at least 16, or 4: first points are all that is traced
   std::uint32_t seed = 1;
-  std::function<void(double part)> on_part = {};         ///< hears how much is traced, 0 .. 1, from many threads
   std::function<void(const RayPacket&)> on_packet = {};  ///< hears of every packet, from many threads; for measurement
-  std::function<void(const TracedTile&)> on_tile = {};   ///< hears of every tile when it was traced, from many threads
-  /// A power of two, 16 at most: one pixel of every square of so many pixels gets its first rays before all others,
-  /// then one of every square of half the side, and so on. Each tile is heard of once for every side, and when its
-  /// edges are traced.
-  int coarsest = 1;
-  std::stop_token stop = {};  ///< where it asks to stop, tracing ends with TracingStopped, each thread within a pixel
 };
 
 /// A traced fraction of rays at every receiver; 1 lit, 0 blocked, 1 where a point does not count. A ray that surfaces
@@ -187,14 +163,13 @@ TracedVisibility trace_square(const Occluders& occluders, const ReceiverImage& r
                               const MapGrid& grid, const TraceSettings& settings);
 
 /// Traces one ray from each receiver to the light's centre: 1 seen, 0 blocked, between them what surfaces that dim
-/// leave of it, 1 where a point does not count. Throws TracingStopped where `stop` asks for it.
-std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light,
-                              const std::stop_token& stop = {});
+/// leave of it, 1 where a point does not count.
+std::vector<float> trace_hard(const Occluders& occluders, const ReceiverImage& receivers, const AreaLight& light);
 
 /// Returns how far from each receiver, towards the light, the surface lies that the light meets first, one that dims
 /// included; metres. An ideal depth map would hold that surface. Infinity where nothing blocks the light and where a
-/// point does not count. Throws TracingStopped where `stop` asks for it.
+/// point does not count.
 std::vector<float> trace_first_blockers(const Occluders& occluders, const ReceiverImage& receivers,
-                                        const AreaLight& light, const std::stop_token& stop = {});
+                                        const AreaLight& light);
 
 }  // namespace shadowbench::truth

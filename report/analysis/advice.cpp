@@ -13,7 +13,7 @@
 #include <variant>
 
 #include "base/error.h"
-#include "base/nearest_name.h"
+#include "base/text.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
 #include "report/analysis/place_state.h"

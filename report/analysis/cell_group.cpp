@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "report/analysis/configuration.h"
 #include "report/records/cell_key.h"
 #include "report/records/json_values.h"

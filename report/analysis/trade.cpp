@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/configuration.h"
 #include "report/analysis/place_state.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "base/visible_text.h"
+#include "base/text.h"
 #include "report/document/blocks.h"
 #include "report/document/markdown.h"
 #include "report/files/file_name.h"

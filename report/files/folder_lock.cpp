@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 
 namespace shadowbench::files {
 namespace {

@@ -15,9 +15,8 @@
 #include <system_error>
 #include <utility>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/input_file.h"
+#include "base/files.h"
 #include "report/images/image_library.h"
 
 namespace shadowbench::images {

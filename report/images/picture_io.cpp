@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "base/atomic_file.h"
-#include "base/compression.h"
+#include "base/bytes.h"
+#include "base/files.h"
 
 namespace shadowbench::images {
 namespace {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/input_file.h"
-#include "base/nearest_name.h"
+#include "base/files.h"
+#include "base/text.h"
 
 namespace shadowbench::images {
 namespace {

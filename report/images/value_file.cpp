@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "base/atomic_file.h"
-#include "base/compression.h"
+#include "base/bytes.h"
 #include "base/error.h"
+#include "base/files.h"
 
 namespace shadowbench::images {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/atomic_file.h"
+#include "base/files.h"
 #include "report/document/blocks.h"
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"

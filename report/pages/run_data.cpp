@@ -6,7 +6,7 @@
 #include <cmath>
 #include <variant>
 
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/cell_group.h"

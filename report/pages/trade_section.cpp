@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "report/analysis/configuration.h"
 #include "report/pages/fronts_csv.h"
 #include "report/pages/text_tables.h"

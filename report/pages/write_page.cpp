@@ -9,7 +9,7 @@
 #include <iterator>
 #include <optional>
 
-#include "base/atomic_file.h"
+#include "base/files.h"
 
 namespace shadowbench::pages {
 namespace {

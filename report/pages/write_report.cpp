@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/atomic_file.h"
+#include "base/files.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/summary.h"
 #include "report/pages/frames_page.h"

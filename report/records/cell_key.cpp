@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "report/files/file_name.h"
 #include "report/records/json_values.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "base/split_list.h"
+#include "base/text.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 

@@ -2,8 +2,7 @@
 
 #include <fstream>
 
-#include "base/atomic_file.h"
-#include "base/input_file.h"
+#include "base/files.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "filters/filter_errors.h"
+#include "filters/filter_spec.h"
 
 namespace shadowbench::records {
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <vector>
 
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 
 namespace shadowbench::records {
 namespace {

@@ -9,8 +9,7 @@
 #include <system_error>
 
 #include "base/error.h"
-#include "base/input_file.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "report/files/file_name.h"
 #include "report/records/json_values.h"
 

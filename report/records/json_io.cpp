@@ -12,9 +12,8 @@
 #include <set>
 #include <string_view>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/input_file.h"
+#include "base/files.h"
 #include "report/records/cell_key.h"
 #include "report/records/json_values.h"
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "reference/metrics/metric_values.h"
+#include "reference/metrics/metric_table.h"
 #include "report/records/accumulation_record.h"
 
 namespace shadowbench::records {

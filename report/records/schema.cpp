@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "base/split_list.h"
+#include "base/text.h"
 #include "report/records/json_io.h"
 #include "report/records/json_values.h"
 

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "base/input_file.h"
+#include "base/files.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files.h"
 
 namespace shadowbench::regress {
 /// Ratios that no run is compared with are not kept: they would only make the files differ.

@@ -6,10 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/input_file.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "report/files/file_name.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_values.h"

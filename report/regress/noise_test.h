@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reference/metrics/z_test.h"
+#include "reference/metrics/error_stats.h"
 #include "report/regress/comparison.h"
 
 namespace shadowbench::regress {

@@ -10,10 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/input_file.h"
-#include "base/nearest_name.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/images/color_values.h"

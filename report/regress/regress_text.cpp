@@ -12,7 +12,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "base/split_list.h"
+#include "base/text.h"
 #include "report/pages/write_page.h"
 
 namespace shadowbench::regress {

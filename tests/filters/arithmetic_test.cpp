@@ -1,19 +1,25 @@
-// The pieces that models are made of.
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <functional>
+#include <numbers>
 #include <numeric>
 #include <random>
+#include <set>
 
+#include "filters/depth_map.h"
 #include "filters/kernel.h"
 #include "filters/random.h"
 #include "filters/scalar.h"
 #include "filters/store_format.h"
+#include "tests/filters/perspective_depth.h"
 
 namespace shadowbench::filters {
 namespace {
+
+// The pieces that models are made of.
 
 TEST(Tracked, BoundHoldsForSinglePrecision_OnRandomExpressions) {
   std::mt19937 generator(3);
@@ -122,6 +128,132 @@ TEST(StoreFormat, LargestNumber_IsTheLargest) {
 TEST(StoreFormat, HalfOverflowsAbove65504) {
   EXPECT_TRUE(std::isinf(round_to_store(std::exp(11.10f), StorePrecision::kHalf)));
   EXPECT_FALSE(std::isinf(round_to_store(std::exp(11.08f), StorePrecision::kHalf)));
+}
+
+// The texture of blue noise: that it is noise, and that it is blue.
+
+constexpr int kSide = static_cast<int>(kBlueNoiseSide);
+
+using Turn = std::function<float(glm::ivec2)>;
+
+/// The mean power of the frequencies whose distance from 0, in turns per texture, lies between two limits; white noise
+/// of turns has 1 at all of them.
+double measure_power(const Turn& turn, double from, double to) {
+  const int reach = static_cast<int>(to);
+  double power = 0.0;
+  int frequencies = 0;
+  for (int v = -reach; v <= reach; ++v) {
+    for (int u = -reach; u <= reach; ++u) {
+      if (const double distance = std::hypot(u, v); distance < from || distance >= to) continue;
+      std::complex<double> sum;
+      for (int i = 0; i < kSide * kSide; ++i) {
+        const glm::ivec2 pixel(i % kSide, i / kSide);
+        const double angle = 2.0 * std::numbers::pi * (u * pixel.x + v * pixel.y) / kSide;
+        sum += (static_cast<double>(turn(pixel)) - 0.5) * std::polar(1.0, angle);
+      }
+      power += std::norm(sum) * 12.0 / (kSide * kSide);
+      ++frequencies;
+    }
+  }
+  return power / frequencies;
+}
+
+TEST(BlueNoise, HasEveryRankOnce) {
+  const std::set<std::uint16_t> ranks(kBlueNoise.begin(), kBlueNoise.end());
+  EXPECT_EQ(ranks.size(), kBlueNoise.size());
+  EXPECT_EQ(*ranks.rbegin(), kBlueNoise.size() - 1);
+}
+
+TEST(BlueNoise, HasLittlePowerAtLowFrequencies) {
+  const Turn blue = [](glm::ivec2 p) { return blue_noise_turn(p, 1); };
+  const Turn white = [](glm::ivec2 p) { return random_turn(p, 1); };
+  EXPECT_NEAR(measure_power(white, 1.0, 12.0), 1.0, 0.2);
+  EXPECT_LT(measure_power(blue, 1.0, 4.0), 0.001);
+  EXPECT_LT(measure_power(blue, 1.0, 12.0), 0.01);
+  EXPECT_GT(measure_power(blue, 28.0, 32.0), 1.2);
+}
+
+TEST(BlueNoise, IsTheSameOnEveryMachine) {
+  std::uint32_t hash = 0;
+  for (const std::uint16_t rank : kBlueNoise) hash = hash_bits(hash + rank);
+  EXPECT_EQ(hash, 1520271867u);
+}
+
+TEST(BlueNoise, Repeats_AndIsShiftedByTheSeed) {
+  EXPECT_EQ(blue_noise_turn({3, 5}, 1), blue_noise_turn({3 + kSide, 5 + 2 * kSide}, 1));
+  int moved = 0;
+  for (int x = 0; x < kSide; ++x) moved += blue_noise_turn({x, 0}, 1) != blue_noise_turn({x, 0}, 2);
+  EXPECT_GT(moved, kSide / 2);
+}
+
+constexpr DepthPlanes kPlanes{0.01, 1e4};
+
+/// Every curve is exact at its ends, so that what was cleared is the far plane and nothing else is.
+TEST(DepthCurve, InSinglePrecision_IsExactAtItsEnds_Rises_AndGoesBack) {
+  for (const double ratio : {1.0, 1.3, 7.7, 1234.567, 1e5, 1e7}) {
+    for (const bool reversed : {false, true}) {
+      const DepthCurve curve{reversed, ratio};
+      EXPECT_EQ(curve.linear(curve.far_plane()), 1.0f) << ratio << reversed;
+      EXPECT_EQ(curve.linear(1.0f - curve.far_plane()), 0.0f) << ratio << reversed;
+      EXPECT_NEAR(curve.store(1.0f), curve.far_plane(), 2e-7f) << ratio << reversed;
+      EXPECT_EQ(curve.store(0.0f), 1.0f - curve.far_plane()) << ratio << reversed;
+      for (const float z : {0.001f, 0.2f, 0.5f, 0.93f}) {
+        EXPECT_TRUE(curve.is_lit(curve.store(z), curve.store(1.5f * z)));
+        const double step = depth_step(static_cast<double>(z), curve, {});
+        EXPECT_NEAR(static_cast<double>(curve.linear(curve.store(z))), static_cast<double>(z), 4.0 * step + 2e-7)
+            << ratio << reversed << z;
+      }
+    }
+  }
+}
+
+TEST(DepthCurve, BeforeTheNearPlane_IsLitByAllThatThereIs) {
+  for (const bool reversed : {false, true}) {
+    const DepthCurve curve{reversed, 1000.0};
+    for (const float z : {-1e-4f, -0.001f, -5.0f}) EXPECT_TRUE(curve.is_lit(curve.store(z), curve.store(0.0f))) << z;
+  }
+}
+
+TEST(DepthCurve, EndsAtThePlanes) {
+  EXPECT_NEAR(depth_of_distance(0.01, kPlanes, false), 0.0, 1e-15);
+  EXPECT_NEAR(depth_of_distance(1e4, kPlanes, false), 1.0, 1e-15);
+  EXPECT_NEAR(depth_of_distance(0.01, kPlanes, true), 1.0, 1e-15);
+  EXPECT_NEAR(depth_of_distance(1e4, kPlanes, true), 0.0, 1e-15);
+}
+
+TEST(DepthCurve, ReversedIsOneLess_AndTheInverseGoesBack) {
+  for (const double d : {0.02, 1.0, 37.0, 9000.0}) {
+    EXPECT_NEAR(depth_of_distance(d, kPlanes, false) + depth_of_distance(d, kPlanes, true), 1.0, 1e-15);
+    for (const bool reversed : {false, true}) {
+      EXPECT_NEAR(distance_of_depth(depth_of_distance(d, kPlanes, reversed), kPlanes, reversed), d, 1e-9 * d)
+          << reversed;
+    }
+  }
+}
+
+/// The step is the curve's inverse slope times the quantum.
+TEST(DepthCurve, Step_IsWhatOneQuantumMovesTheDistance) {
+  for (const double d : {0.5, 10.0, 100.0}) {
+    for (const bool reversed : {false, true}) {
+      const double depth = depth_of_distance(d, kPlanes, reversed);
+      const double quantum = depth_quantum(depth, {24, false});
+      const double moved = std::abs(distance_of_depth(depth + quantum, kPlanes, reversed) -
+                                    distance_of_depth(depth - quantum, kPlanes, reversed));
+      EXPECT_NEAR(distance_step(d, kPlanes, {24, false}, reversed), 0.5 * moved, 0.01 * moved) << d;
+    }
+  }
+}
+
+TEST(DepthCurve, Quantum_IsTheFormats) {
+  EXPECT_EQ(depth_quantum(0.3, {16, false}), 1.0 / 65535.0);
+  for (const float depth : {0.3f, 0.75f, 1e-4f})
+    EXPECT_EQ(depth_quantum(static_cast<double>(depth), {}), static_cast<double>(std::nextafter(depth, 2.0f) - depth));
+}
+
+TEST(DepthCurve, ReversedFloat_IsRelativelyExactEverywhere_StandardIsNot) {
+  for (const double d : {0.02, 1.0, 100.0, 5000.0})
+    EXPECT_LE(distance_step(d, kPlanes, {}, true) / d, std::exp2(-22)) << d;
+  EXPECT_GT(distance_step(5000.0, kPlanes, {}, false) / 5000.0, 0.01);
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
-// Names that filters may use.
-
-#include "filters/format/glsl_words.h"
+#include "filters/glsl_words.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,8 @@
 
 namespace shadowbench::filters {
 namespace {
+
+// Names that filters may use.
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
@@ -52,6 +53,27 @@ TEST(DeclaredNames, AreWhatStandsBehindATypeOrDefine) {
                                   "struct Disk { vec2 at; };\n/* float no; */ Disk turn(Disk d) { return d; }"),
               ElementsAre("square", "radius", "Disk", "at", "turn", "d"));
   EXPECT_THAT(list_declared_names(""), ElementsAre());
+}
+
+TEST(CountLoops, WrapsEveryCondition_AndKeepsTheLines) {
+  const CountedLoops counted = count_loops(
+      "for (int i = 0; i < n(2, 3); ++i)\n  while (x < 1.0) x += 1.0;\nfor (;;) break;\ndo { y(); } while (z == 1);\n");
+  EXPECT_EQ(counted.body,
+            "for (int i = 0; count_turn(0,  i < n(2, 3)); ++i)\n  while ( count_turn(1, x < 1.0)) x += 1.0;\n"
+            "for (; count_turn(2, true);) break;\ndo { y(); } while ( count_turn(3, z == 1));\n");
+  EXPECT_EQ(counted.loops, 4);
+}
+
+TEST(CountLoops, LeavesTheRestAsItIs) {
+  for (const char* glsl :
+       {"", "float x = 1.0;", "// for (int i = 0; i < 9; ++i)\n/* while (x) */ float before; float meanwhile;",
+        "while (bool more = next()) {}", "for (int i = 0; bool more = i < 3; ++i) {}", "for", "for (int i = 0; i < 3",
+        "#define each for\n", "while ()"}) {
+    const CountedLoops counted = count_loops(glsl);
+    EXPECT_EQ(counted.body, glsl);
+    EXPECT_EQ(counted.loops, 0) << glsl;
+  }
+  EXPECT_EQ(count_loops("for (int i = 0; i <= 3; ++i) {}").loops, 1) << "a comparison declares nothing";
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include <set>
 
 #include "filters/catalogue.h"
-#include "filters/kernel_width.h"
 #include "filters/model.h"
 #include "filters/percentage_closer.h"
 

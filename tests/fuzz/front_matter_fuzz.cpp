@@ -1,7 +1,7 @@
 // A filter file: its front matter, and what is told from its GLSL without compiling it.
 
 #include "filters/catalogue.h"
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
 #include "tests/fuzz/scratch_folder.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

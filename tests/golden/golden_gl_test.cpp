@@ -6,7 +6,7 @@
 #include <csignal>
 #include <map>
 
-#include "filters/kernel_width.h"
+#include "filters/kernel.h"
 #include "harness/gl/context/context.h"
 #include "report/regress/baseline.h"
 #include "report/regress/noise_test.h"

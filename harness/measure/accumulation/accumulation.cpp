@@ -11,7 +11,6 @@
 
 #include "harness/measure/timing/statistics.h"
 #include "reference/metrics/error_stats.h"
-#include "reference/metrics/flicker.h"
 
 namespace shadowbench::measure {
 namespace {

@@ -10,8 +10,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/nearest_name.h"
-#include "base/split_list.h"
+#include "base/text.h"
 
 namespace shadowbench::render {
 namespace {

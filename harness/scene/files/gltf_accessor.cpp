@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "harness/scene/files/gltf_parse.h"
+#include "harness/scene/files/gltf.h"
 
 namespace shadowbench::scene {
 namespace {

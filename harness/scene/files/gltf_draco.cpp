@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "base/error.h"
-#include "harness/scene/files/gltf_parse.h"
+#include "harness/scene/files/gltf.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "harness/scene/files/gltf_parse.h"
+#include "harness/scene/files/gltf.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/input_file.h"
+#include "base/files.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
@@ -58,6 +58,14 @@ MeshFile import_gltf(const std::filesystem::path& file, const glm::dvec3& origin
 /// material library or colour picture is a warning; a reference outside the file's folder an error. Throws kInput for
 /// text that is UTF-16, and, with the line, for a coordinate that is not a finite number or an index out of range.
 MeshFile import_obj(const std::filesystem::path& file, const glm::dvec3& origin = glm::dvec3(0.0));
+
+/// The bytes of a .glb file of a scene: its meshes as they stand in the world, materials, textures, cameras of this
+/// aspect (width / height), and its light as KHR_lights_punctual has it. What glTF has no word for goes into
+/// `extras.shadowbench`, from where import_gltf() takes it: a light's size and all else of it in the words of a scene
+/// file, `casts_shadow` and `may_cull_front` of a node, `title` and `background` of the scene. A spot's cookie is left
+/// out.
+/// Throws Error(kOutput) where a texture cannot be packed.
+std::string write_glb(const Scene& scene, double aspect);
 
 /// Adds geometry, materials, textures and warnings to a scene, but neither cameras nor lights.
 Scene add_mesh_file(Scene scene, MeshFile file);

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/split_list.h"
+#include "base/text.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
 
-#include "base/content_hash.h"
+#include "base/bytes.h"
 #include "base/error.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"

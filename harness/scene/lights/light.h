@@ -7,9 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "harness/scene/lights/point.h"
-#include "harness/scene/lights/spot.h"
-#include "harness/scene/lights/sun.h"
+#include "harness/scene/lights/light_kinds.h"
 #include "reference/truth/area_light.h"
 
 namespace shadowbench::scene {

@@ -4,16 +4,149 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <charconv>
 #include <cmath>
+#include <functional>
 #include <glm/gtx/component_wise.hpp>
+#include <iterator>
 #include <limits>
 #include <span>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
+namespace {
+
+constexpr std::array<std::string_view, 10> kFitNames = {"sphere", "tight", "view",   "cascades",  "focused", "lispsm",
+                                                        "psm",    "tsm",   "logpsm", "paraboloid"};  // as FitMode
+
+constexpr int kMostCascades = 4;
+constexpr double kLeastMetres = 1e-3, kMostMetres = 1e6;
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, "--fit: " + message); }
+
+double read_number(std::string_view key, std::string_view text, double least, double most, const char* words = "") {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end == text.data() + text.size() && number >= least && number <= most) return number;
+  refuse(fmt::format("{} is '{}' and must be {} .. {}{}", key, text, least, most, words));
+}
+
+double read_split(std::string_view text) {
+  if (text == "uniform") return 0.0;
+  if (text == "practical") return 0.5;
+  if (text == "logarithmic") return 1.0;
+  return read_number("split", text, 0.0, 1.0, ", or uniform (0), practical (0.5) or logarithmic (1)");
+}
+
+double read_metres(std::string_view key, std::string_view text) {
+  return read_number(key, text, kLeastMetres, kMostMetres, " metres");
+}
+
+std::vector<double> read_splits(std::string_view text) {
+  std::vector<double> splits;
+  for (const std::string& each : split_list(std::string(text), "/")) splits.push_back(read_metres("splits", each));
+  if (splits.empty() || splits.size() + 1 > kMostCascades)
+    refuse(
+        fmt::format("splits is '{}' and must be 1 to {} depths in metres, as in splits=5/20", text, kMostCascades - 1));
+  return splits;
+}
+
+void set_key(CascadeRule& rule, std::string_view key, std::string_view value) {
+  if (key == "count") {
+    const double count = read_number(key, value, 2.0, kMostCascades);
+    rule.count = static_cast<int>(count);
+    if (rule.count != count) refuse(fmt::format("count is '{}' and must be a whole number", value));
+  } else if (key == "split") {
+    rule.split = read_split(value);
+  } else if (key == "splits") {
+    rule.splits = read_splits(value);
+  } else if (key == "near") {
+    rule.near_m = read_metres(key, value);
+  } else if (key == "far") {
+    rule.far_m = read_metres(key, value);
+  } else if (key == "blend") {
+    rule.blend = read_number(key, value, 0.0, 0.5);
+  } else if (key == "depths") {
+    if (value != "all" && value != "seen") refuse(fmt::format("depths is '{}' and must be all or seen", value));
+    rule.seen = value == "seen";
+  } else {
+    refuse(
+        fmt::format("cascades have no '{}'; they have count, split, splits, near, far, blend and depths, e.g. "
+                    "cascades:count=3,split=logarithmic or cascades:splits=5/20,far=80",
+                    key));
+  }
+}
+
+void require_ascent(const CascadeRule& rule) {
+  std::vector<double> depths = rule.splits;
+  if (rule.near_m > 0.0) depths.insert(depths.begin(), rule.near_m);
+  if (rule.far_m > 0.0) depths.push_back(rule.far_m);
+  const auto fall = std::ranges::adjacent_find(depths, std::greater_equal());
+  if (fall != depths.end())
+    refuse(fmt::format("{} m follows {} m: near, splits and far must ascend", *std::next(fall), *fall));
+}
+
+/// Holds splits in metres against the keys that say how many slices there are, and in which ratio.
+void take_splits(CascadeRule& rule, const std::set<std::string>& keys) {
+  if (keys.contains("split")) refuse("split and splits are both given: splits are metres, and leave nothing to split");
+  const int count = static_cast<int>(rule.splits.size()) + 1;
+  if (keys.contains("count") && rule.count != count)
+    refuse(fmt::format("{} splits make {} cascades, not {}: leave count out", count - 1, count, rule.count));
+  rule.count = count;
+}
+
+CascadeRule parse_cascades(std::string_view text) {
+  CascadeRule rule;
+  std::set<std::string> keys;
+  for (const auto& [key, value] : split_assignments(text, "--fit")) {
+    set_key(rule, key, value);
+    keys.insert(key);
+  }
+  if (!rule.splits.empty()) take_splits(rule, keys);
+  require_ascent(rule);
+  return rule;
+}
+
+}  // namespace
+
+std::vector<std::string> list_fit_names() { return {kFitNames.begin(), kFitNames.end()}; }
+
+std::string_view name_of(FitMode mode) { return kFitNames[static_cast<std::size_t>(mode)]; }
+
+std::string describe_fit(const FitRule& rule) {
+  if (rule.mode != FitMode::kCascades) return std::string(name_of(rule.mode));
+  const CascadeRule& cascades = rule.cascades;
+  const std::string split = cascades.splits.empty() ? fmt::format("split={}", cascades.split)
+                                                    : fmt::format("splits={}", fmt::join(cascades.splits, "/"));
+  std::string text = fmt::format("cascades:count={},{},blend={},depths={}", cascades.count, split, cascades.blend,
+                                 cascades.seen ? "seen" : "all");
+  if (cascades.near_m > 0.0) text += fmt::format(",near={}", cascades.near_m);
+  if (cascades.far_m > 0.0) text += fmt::format(",far={}", cascades.far_m);
+  return text;
+}
+
+std::set<std::string> describe_fits(const std::vector<FitRule>& rules) {
+  std::set<std::string> all;
+  for (const FitRule& rule : rules) all.insert(describe_fit(rule));
+  return all;
+}
+
+FitRule parse_fit_rule(std::string_view text) {
+  const std::string_view name = text.substr(0, text.find(':'));
+  const auto found = std::find(kFitNames.begin(), kFitNames.end(), name);
+  if (found == kFitNames.end()) refuse(fmt::format("unknown fit '{}'; there are {}", name, fmt::join(kFitNames, ", ")));
+  FitRule rule{static_cast<FitMode>(found - kFitNames.begin()), {}};
+  if (name.size() == text.size()) return rule;
+  if (rule.mode != FitMode::kCascades) refuse(fmt::format("'{}' takes no values; only cascades do", name));
+  rule.cascades = parse_cascades(text.substr(name.size() + 1));
+  return rule;
+}
+
 namespace {
 
 /// A direction as a paraboloid sees it: along the light's right and up, and along its axis.
@@ -263,6 +396,89 @@ LightFrustum fit_perspective(const Beam& beam, double tangent, const AxisExtent&
   fit.depth_range_ws = fit.perspective->far_m - fit.perspective->near_m;
   set_perspective(fit, tangent, 2.0 * request.shift_texels / static_cast<double>(request.map_size));
   return fit;
+}
+
+namespace {
+
+/// A plane; points with dot(normal, p) + offset >= 0 are inside.
+struct HalfSpace {
+  glm::dvec3 normal;
+  double offset;
+  double distance(const glm::dvec3& p) const { return glm::dot(normal, p) + offset; }
+};
+
+std::vector<HalfSpace> bound_view(const Camera& camera, double aspect, const std::optional<DepthSpan>& span) {
+  const auto [eye, forward, right, up, half_height, tangent] = ViewAxes(camera);
+  std::vector<HalfSpace> bounds;
+  const auto add = [&bounds, &eye = eye](const glm::dvec3& normal, double offset) {
+    bounds.push_back({normal, offset - glm::dot(normal, eye)});
+  };
+  for (const double side : {-1.0, 1.0}) {
+    add(side * right + (half_height > 0.0 ? 0.0 : tangent * aspect) * forward, half_height * aspect);
+    add(side * up + (half_height > 0.0 ? 0.0 : tangent) * forward, half_height);
+  }
+  if (!(half_height > 0.0)) add(forward, 0.0);
+  if (span) {
+    add(forward, -span->near_m);
+    add(-forward, span->far_m);
+  }
+  return bounds;
+}
+
+using Polygon = std::vector<glm::dvec3>;
+
+Polygon cut(const Polygon& polygon, const HalfSpace& bound) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double da = bound.distance(a), db = bound.distance(b);
+    if (da >= 0.0) kept.push_back(a);
+    if ((da >= 0.0) != (db >= 0.0)) kept.push_back(a + (b - a) * (da / (da - db)));
+  }
+  return kept;
+}
+
+}  // namespace
+
+double view_depth(const Camera& camera, const glm::dvec3& point_ws) {
+  return glm::dot(point_ws - glm::dvec3(camera.position_ws), glm::dvec3(camera.forward_ws));
+}
+
+DepthSpan find_depth_span(const Camera& camera, const std::vector<glm::dvec3>& points) {
+  DepthSpan span{std::numeric_limits<double>::max(), 0.0};
+  for (const glm::dvec3& p : points) {
+    const double depth = view_depth(camera, p);
+    span = {std::min(span.near_m, depth), std::max(span.far_m, depth)};
+  }
+  return span;
+}
+
+ViewCorners list_view_corners(const Camera& camera, double aspect, const DepthSpan& span) {
+  const ViewAxes axes(camera);
+  ViewCorners corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const double depth = i < 4 ? span.near_m : span.far_m;
+    const double half = axes.half_height > 0.0 ? axes.half_height : axes.tangent * depth;
+    corners[i] = axes.eye + depth * axes.forward + (i % 2 ? half : -half) * aspect * axes.right +
+                 (i / 2 % 2 ? half : -half) * axes.up;
+  }
+  return corners;
+}
+
+std::vector<glm::dvec3> list_visible_corners(const Scene& scene, const Camera& camera, double aspect,
+                                             const std::optional<DepthSpan>& span) {
+  const std::vector<HalfSpace> bounds = bound_view(camera, aspect, span);
+  std::vector<glm::dvec3> corners;
+  for (const Mesh& mesh : scene.meshes) {
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      Polygon polygon;
+      for (std::size_t k = 0; k < 3; ++k) polygon.emplace_back(mesh.vertices[mesh.indices[i + k]].position_ws);
+      for (const HalfSpace& bound : bounds)
+        if (!polygon.empty()) polygon = cut(polygon, bound);
+      corners.insert(corners.end(), polygon.begin(), polygon.end());
+    }
+  }
+  return corners;
 }
 
 }  // namespace shadowbench::scene

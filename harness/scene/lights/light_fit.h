@@ -1,16 +1,117 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <glm/glm.hpp>
 #include <optional>
+#include <set>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
-#include "harness/scene/lights/fit_rule.h"
 #include "harness/scene/scene.h"
-#include "harness/scene/view_clip.h"
 #include "reference/truth/visibility.h"
 
 namespace shadowbench::scene {
+
+/// Chooses what the light's frustum encloses.
+enum class FitMode {
+  kSphere,    ///< a sphere around the scene: its size does not change when the light turns
+  kTight,     ///< casters and receivers, as the light sees them
+  kView,      ///< what the camera sees of the scene, with the casters between that and the light
+  kCascades,  ///< slices of that, each with a layer of the map for itself
+  kFocused,   ///< what the camera sees, its width and its length by themselves; see fit_warped() for this and the next
+              ///< four
+  kLispsm,
+  kPsm,
+  kTsm,
+  kLogpsm,
+  kParaboloid,  ///< of a point light: two halves in place of a cube's six faces
+};
+
+/// Whether the sun's map goes through a projection that follows the camera.
+constexpr bool is_warped(FitMode mode) { return mode >= FitMode::kFocused && mode <= FitMode::kLogpsm; }
+
+/// How cascades share what the camera sees.
+struct CascadeRule {
+  int count = 4;       ///< 2 .. 4
+  double split = 0.5;  ///< 0: slices of equal depth, 1: of equal ratios of depth; between them: a mean of both
+  std::vector<double> splits = {};  ///< metres, ascending: where all slices but the last end, in place of `split`
+  double blend = 0.1;               ///< the last share of a slice, over which it fades into the next
+  bool seen = false;                ///< split the depths that pixels show, and not those of all geometry in view
+  double near_m = 0.0;              ///< where the first slice begins; 0: with what is in view
+  double far_m = 0.0;               ///< where the last slice ends; 0: with what is in view
+
+  bool operator==(const CascadeRule&) const = default;
+};
+
+/// `--fit` as it was asked for.
+struct FitRule {
+  FitMode mode = FitMode::kTight;
+  CascadeRule cascades;  ///< FitMode::kCascades only
+
+  /// Whether each camera has a map of its own.
+  bool follows_view() const { return mode == FitMode::kView || mode == FitMode::kCascades || is_warped(mode); }
+};
+
+/// Every fit's name, as FitMode has them.
+std::vector<std::string> list_fit_names();
+
+/// The fit's name on the command line and in records.
+std::string_view name_of(FitMode mode);
+
+/// The rule as parse_fit_rule() reads it: "tight", "cascades:count=4,split=0.5,blend=0.1,depths=all",
+/// "cascades:count=3,splits=5/20,blend=0.1,depths=all,far=80".
+std::string describe_fit(const FitRule& rule);
+
+/// All of these, as describe_fit() has each.
+std::set<std::string> describe_fits(const std::vector<FitRule>& rules);
+
+/// Reads a rule. Throws kUsage for a name that is no fit, or a key or value that cascades have not, with those there
+/// are.
+FitRule parse_fit_rule(std::string_view text);
+
+/// Depths along a camera's axis, metres.
+struct DepthSpan {
+  double near_m = 0.0;
+  double far_m = 0.0;
+};
+
+/// Where a camera stands, its axes, and how far it sees aside.
+struct ViewAxes {
+  explicit ViewAxes(const Camera& camera)
+      : eye(camera.position_ws),
+        forward(camera.forward_ws),
+        right(glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)))),
+        up(glm::cross(right, forward)),
+        half_height(0.5 * static_cast<double>(camera.orthographic_height_m)),
+        tangent(std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad))) {}
+
+  glm::dvec3 eye, forward, right, up;
+  double half_height;  ///< of an orthographic camera; else 0
+  double tangent;      ///< of half the angle of view of another one
+};
+
+/// How far along its axis a camera sees a point, metres.
+double view_depth(const Camera& camera, const glm::dvec3& point_ws);
+
+/// The least and the greatest of these depths; without points the least is the largest number there is.
+DepthSpan find_depth_span(const Camera& camera, const std::vector<glm::dvec3>& points);
+
+/// The corners of the scene's triangles after cutting them at the sides of what a camera sees, in world space; empty
+/// where it sees nothing, or nothing between the two depths of `span`. Surfaces behind others are kept. `aspect` is
+/// width / height of the picture.
+///
+/// A perspective camera sees nothing behind itself; an orthographic one is not cut along its direction.
+/// Cost: one pass over the triangles, in double.
+/// Source: Sutherland and Hodgman 1974, Reentrant Polygon Clipping, CACM 17(1).
+std::vector<glm::dvec3> list_visible_corners(const Scene& scene, const Camera& camera, double aspect,
+                                             const std::optional<DepthSpan>& span = std::nullopt);
+
+/// The eight corners of what a camera sees between two depths.
+using ViewCorners = std::array<glm::dvec3, 8>;
+ViewCorners list_view_corners(const Camera& camera, double aspect, const DepthSpan& span);
 
 /// What a light's frustum is fitted to, and how.
 struct FitRequest {

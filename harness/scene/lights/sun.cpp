@@ -1,5 +1,3 @@
-#include "harness/scene/lights/sun.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,9 +6,9 @@
 #include <limits>
 
 #include "harness/scene/lights/light_fit.h"
+#include "harness/scene/lights/light_kinds.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/validate.h"
-#include "harness/scene/view_clip.h"
+#include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "tests/harness/cli/faults.h"
 
 namespace shadowbench::test {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::engines {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/temporary_files.h"
+#include "base/files.h"
 
 namespace shadowbench::live {
 namespace {

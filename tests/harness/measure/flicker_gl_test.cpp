@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "harness/measure/scene_measurement.h"
-#include "reference/truth/truth_cache.h"
+#include "reference/truth/cached_tracer.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

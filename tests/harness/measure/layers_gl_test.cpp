@@ -7,7 +7,6 @@
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/primitives.h"
 #include "harness/scene/scene.h"
 #include "tests/harness/render/bench_fixture.h"
 

@@ -11,7 +11,6 @@
 #include "harness/measure/view_receivers.h"
 #include "harness/render/bias/bias_theory.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/primitives.h"
 #include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/bench_fixture.h"

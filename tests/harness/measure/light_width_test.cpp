@@ -5,7 +5,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/primitives.h"
 
 namespace shadowbench::measure {
 namespace {

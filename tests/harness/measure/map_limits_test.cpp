@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
 #include "filters/store_format.h"
 
 namespace shadowbench::measure {

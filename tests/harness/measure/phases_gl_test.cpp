@@ -3,13 +3,13 @@
 #include <numeric>
 #include <random>
 
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
 #include "reference/metrics/error_stats.h"
-#include "reference/truth/truth_cache.h"
+#include "reference/truth/cached_tracer.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

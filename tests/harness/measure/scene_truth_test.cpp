@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "harness/scene/primitives.h"
+#include "harness/scene/mesh_tools.h"
 #include "reference/truth/occluders.h"
 
 namespace shadowbench::measure {

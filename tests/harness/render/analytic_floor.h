@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "harness/scene/primitives.h"
-#include "harness/scene/validate.h"
+#include "harness/scene/mesh_tools.h"
+#include "harness/scene/scene.h"
 #include "tests/harness/render/contract_fixture.h"
 
 namespace shadowbench::test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
 
 namespace shadowbench::render {
 namespace {

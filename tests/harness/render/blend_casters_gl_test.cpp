@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "harness/render/shadow_map.h"
-#include "harness/scene/primitives.h"
+#include "harness/scene/mesh_tools.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

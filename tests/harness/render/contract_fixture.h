@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
 #include "filters/model.h"
 #include "harness/render/image_target.h"
 #include "tests/harness/render/bench_fixture.h"

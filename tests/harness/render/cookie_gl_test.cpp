@@ -1,7 +1,7 @@
 // A lamp's cookie colours its light where the closed form says, and nothing else: no shadow, nothing behind the lamp.
 
 #include "harness/render/shade_pass.h"
-#include "harness/scene/primitives.h"
+#include "harness/scene/mesh_tools.h"
 #include "report/images/picture_io.h"
 #include "tests/harness/render/bench_fixture.h"
 

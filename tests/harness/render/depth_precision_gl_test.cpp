@@ -5,7 +5,6 @@
 
 #include "filters/depth_map.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/primitives.h"
 #include "tests/filters/perspective_depth.h"
 #include "tests/harness/render/bench_fixture.h"
 

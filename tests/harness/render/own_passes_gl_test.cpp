@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
-#include "filters/format/front_matter.h"
+#include "filters/front_matter.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

@@ -4,7 +4,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/primitives.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

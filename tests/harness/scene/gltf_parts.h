@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/scene/files/mesh_file.h"
-#include "harness/scene/validate.h"
+#include "harness/scene/scene.h"
 #include "tests/harness/scene/test_files.h"
 
 namespace shadowbench::scene {

@@ -7,7 +7,6 @@
 
 #include "harness/scene/complete.h"
 #include "harness/scene/lights/light_fit.h"
-#include "harness/scene/view_clip.h"
 #include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {

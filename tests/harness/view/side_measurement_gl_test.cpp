@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "harness/view/side_measurement.h"
+#include "harness/view/stage.h"
 #include "report/records/error_parts.h"
 #include "tests/harness/view/view_fixture.h"
 
@@ -94,6 +95,18 @@ class SideMeasurementTest : public ViewTest {
       EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr("shadowbench-view"))) << "left by the measurement";
   }
 
+  /// The texels of the map under a pixel that the window shows, over those that count.
+  static double find_median_texels(const view::ViewState& state, const view::MeasuredSides& sides) {
+    view::Stage stage(renderer(), state.scene);
+    stage.draw(state, view::Changes::all());
+    std::vector<float> texels = stage.texels_per_pixel(state).texels;
+    for (std::size_t i = texels.size(); i-- > 0;)
+      if (sides.truth_mask.texels[i] == 0.0f || texels[i] == 0.0f)
+        texels.erase(texels.begin() + static_cast<std::ptrdiff_t>(i));
+    std::ranges::sort(texels);
+    return static_cast<double>(texels.at(texels.size() / 2));
+  }
+
   static void expect_sum(const view::MeasuredSides& sides, const measure::MeasuredCell& cell) {
     ASSERT_EQ(cell.error_parts.size(), records::list_error_parts().size());
     std::size_t counted = 0;
@@ -129,6 +142,14 @@ TEST_F(SideMeasurementTest, Finished_HasBothSides_WithPartsThatAddUpToTheError) 
   }
   EXPECT_FALSE(sides.find_side(0)->stability.variance.empty());
   EXPECT_TRUE(sides.find_side(1)->stability.variance.empty()) << "tent3x3 stores none";
+  EXPECT_NEAR(find_median_texels(state, sides), sides.find_side(0)->record.coverage.texels_per_pixel.value(), 1e-3);
+  EXPECT_GT(std::ranges::max(sides.blockers.texels), 0.1f);
+  const images::Image truth = sides.truth, mask = sides.truth_mask;
+  measurement.start(state, view::Measurand::kTruthAlone);
+  ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
+  EXPECT_EQ(measurement.results().find_side(0), nullptr);
+  EXPECT_EQ(measurement.results().truth.texels, truth.texels);
+  EXPECT_EQ(measurement.results().truth_mask.texels, mask.texels);
   expect_nothing_left();
 }
 
@@ -166,6 +187,8 @@ TEST_F(SideMeasurementTest, NothingThatFacesTheLight_LeavesFieldsAbsentWithReaso
   view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
   measurement.start(state);
   ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
+  EXPECT_TRUE(measurement.results().truth.empty());
+  EXPECT_THAT(measurement.results().no_truth, HasSubstr("faces the light"));
   const measure::MeasuredCell& cell = *measurement.results().find_side(0);
   EXPECT_FALSE(cell.record.error.rmse.has_value());
   EXPECT_FALSE(cell.record.absent.at("error").empty());

@@ -7,7 +7,7 @@
 #include "filters/catalogue.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/view/save.h"
+#include "harness/view/view_state.h"
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {

@@ -1,7 +1,6 @@
-// Ray-traced visibility against closed forms, by z-tests: the truth that filters are scored against is itself checked.
-
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +9,8 @@
 
 namespace shadowbench::truth {
 namespace {
+
+// Ray-traced visibility against closed forms, by z-tests: the truth that filters are scored against is itself checked.
 
 constexpr double kOccluderHeight = 2.0;
 constexpr double kLightHeight = 10.0;
@@ -139,6 +140,145 @@ TEST(AreaTruth, SphereOnItsAxis_CoversADisk) {
                     const double tangent = std::tan(std::asin(kRadius / (kCentre - p.y)));
                     return 1.0 - std::min(1.0, std::pow((kLightHeight - p.y) * tangent / kLightRadius, 2.0));
                   }));
+}
+
+// Ray-traced visibility of a sphere that shines: shares of the solid angle that it fills, and where its rays end.
+
+/// The share of a cone of directions that lies above a plane through its apex; angles in radians, that of the axis to
+/// the plane positive above it. The boundary is an arc of psi in azimuth, whose geodesic curvature adds up to
+/// psi cos(half), and an arc of a great circle; they meet at two corners of interior angle gamma. By Gauss and Bonnet
+/// the area is 2 gamma - psi cos(half), of all the cone's 2 pi (1 - cos(half)).
+double cone_above_plane(double half, double axis_to_plane) {
+  if (std::abs(axis_to_plane) >= half) return axis_to_plane > 0.0 ? 1.0 : 0.0;
+  const double gamma = std::acos(-std::sin(axis_to_plane) / std::sin(half));
+  const double psi = 2.0 * std::acos(-std::tan(axis_to_plane) / std::tan(half));
+  return (2.0 * gamma - psi * std::cos(half)) / (2.0 * std::numbers::pi * (1.0 - std::cos(half)));
+}
+
+/// The share of a sphere above a plane through `p` with this normal.
+double sphere_above_plane(const glm::dvec3& centre, double radius, const glm::dvec3& p, const glm::dvec3& normal) {
+  const glm::dvec3 way = centre - p;
+  const double distance = glm::length(way);
+  return cone_above_plane(std::asin(radius / distance), std::asin(glm::dot(way, glm::normalize(normal)) / distance));
+}
+
+ZScores score_sphere(const std::vector<OccluderMesh>& meshes, const AreaLight& light, const ReceiverImage& image,
+                     const std::function<double(const glm::dvec3&)>& exact) {
+  const Occluders occluders(meshes);
+  return score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
+                     exact);
+}
+
+TEST(ClosedForm, ConeAbovePlane_HasItsLimits) {
+  for (const double half : {0.01, 0.3, 1.0, 1.5}) {
+    EXPECT_NEAR(cone_above_plane(half, 0.0), 0.5, 1e-9);
+    EXPECT_NEAR(cone_above_plane(half, half * (1.0 - 1e-9)), 1.0, 1e-6);
+    EXPECT_NEAR(cone_above_plane(half, 0.4 * half) + cone_above_plane(half, -0.4 * half), 1.0, 1e-9);
+  }
+  // Of a hemisphere a plane cuts off a lune, of a narrow cone what a chord cuts off its disk.
+  EXPECT_NEAR(cone_above_plane(0.5 * std::numbers::pi, 0.3), 0.5 + 0.3 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(cone_above_plane(1e-3, 0.4e-3), (std::acos(-0.4) + 0.4 * std::sqrt(1.0 - 0.16)) / std::numbers::pi, 1e-6);
+}
+
+/// A half-plane that fills x < 0, under a sphere over its edge. A wide sphere tells solid angles from the areas of a
+/// disk, a narrow one is seen as a disk.
+TEST(SphereTruth, OverHalfPlane_FollowsTheClosedForm) {
+  struct Case {
+    double radius, light_height, edge_height, reach;
+  };
+  for (const Case& c : {Case{1.0, 10.0, 2.0, 0.35}, Case{2.5, 4.0, 1.0, 1.2}, Case{3.6, 4.0, 0.2, 0.6}}) {
+    const glm::dvec3 centre(0.0, c.light_height, 0.0);
+    // The plane through a receiver and the edge: the edge runs along z.
+    expect_agreement(score_sphere({make_sheet(-40.0, 0.0, -40.0, 40.0, c.edge_height)},
+                                  AreaLight::make_sphere(centre, c.radius), make_line(-c.reach, c.reach, 240),
+                                  [&](const glm::dvec3& p) {
+                                    return sphere_above_plane(centre, c.radius, p, {c.edge_height, p.x, 0.0});
+                                  }));
+  }
+}
+
+TEST(SphereTruth, ItsPartBelowTheReceiversPlane_IsBlocked) {
+  const glm::dvec3 centre(0.0, 0.3, 0.0);
+  expect_agreement(
+      score_sphere({}, AreaLight::make_sphere(centre, 1.0), make_line(1.0, 3.0, 240), [&](const glm::dvec3& p) {
+        return sphere_above_plane(centre, 1.0, p, {0.0, 1.0, 0.0});
+      }));
+}
+
+TEST(SphereTruth, OfASmallSphere_IsThatOfAFacingDisk) {
+  constexpr double kRadius = 0.2, kCentre = 10.0, kEdge = 2.0, kPenumbra = kRadius * kEdge / (kCentre - kEdge);
+  expect_agreement(score_sphere({make_sheet(-40.0, 0.0, -40.0, 40.0, kEdge)},
+                                AreaLight::make_sphere({0.0, kCentre, 0.0}, kRadius),
+                                make_line(-1.2 * kPenumbra, 1.2 * kPenumbra, 240), [&](const glm::dvec3& p) {
+                                  const double t = std::clamp(-p.x / kPenumbra, -1.0, 1.0);
+                                  return (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
+                                }));
+}
+
+TEST(SphereTruth, IsAllOrNothing_AwayFromTheEdge_AndHalfOnIt) {
+  const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-40.0, 0.0, -40.0, 40.0, 1.0)});
+  const AreaLight light = AreaLight::make_sphere({0.0, 4.0, 0.0}, 2.5);
+  ReceiverImage image{3, 64, {}};
+  for (int i = 0; i < 3 * 64; ++i)
+    image.points.push_back(
+        {{2.0f * static_cast<float>(i % 3 - 1), 0.0f, 0.05f * static_cast<float>(i / 3)}, {0.0f, 1.0f, 0.0f}, true});
+  const TracedVisibility truth = trace_area(occluders, image, light, {});
+  double sum = 0.0;
+  for (std::size_t i = 0; i < image.points.size(); i += 3) {
+    EXPECT_EQ(truth.visibility[i], 0.0f);
+    EXPECT_NEAR(truth.visibility[i + 1], 0.5, 8.0 * static_cast<double>(truth.standard_error[i + 1]));
+    EXPECT_EQ(truth.visibility[i + 2], 1.0f);
+    sum += static_cast<double>(truth.visibility[i + 1]);
+  }
+  EXPECT_NEAR(sum / 64.0, 0.5, 0.003);
+}
+
+/// Spheres of triangles around the light's own centre, just within its surface and just outside.
+TEST(SphereTruth, RaysEndAtItsSurface) {
+  const glm::dvec3 centre(0.5, 4.0, 0.0);
+  const ReceiverImage image = make_line(-6.0, 6.0, 64);
+  const AreaLight light = AreaLight::make_sphere(centre, 2.0);
+  const Occluders within(std::vector<OccluderMesh>{make_sphere(centre, 1.999)}),
+      around(std::vector<OccluderMesh>{make_sphere(centre, 2.001)});
+  for (const float v : trace_area(within, image, light, {}).visibility) ASSERT_EQ(v, 1.0f);
+  for (const float v : trace_area(around, image, light, {}).visibility) ASSERT_EQ(v, 0.0f);
+}
+
+TEST(SphereTruth, OfRadiusZero_IsTheHardShadow) {
+  const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-40.0, 0.0, -40.0, 40.0, 1.0)});
+  const AreaLight light = AreaLight::make_sphere({0.3, 4.0, 0.1}, 0.0);
+  const ReceiverImage image = make_line(-1.0, 1.0, 64);
+  EXPECT_EQ(trace_area(occluders, image, light, {}).visibility, trace_hard(occluders, image, light));
+  const AreaLight large = AreaLight::make_sphere({0.3, 4.0, 0.1}, 2.0);
+  EXPECT_EQ(trace_hard(occluders, image, large), trace_hard(occluders, image, light)) << "to the centre";
+}
+
+/// A floor through the sphere, its centre included, with a ceiling close above it.
+TEST(SphereTruth, AReceiverInside_SeesAllOfIt) {
+  const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-40.0, 40.0, -40.0, 40.0, 0.01)});
+  for (const double centre_height : {0.0, 0.5, -0.5}) {
+    const AreaLight light = AreaLight::make_sphere({0.0, centre_height, 0.0}, 1.0);
+    ReceiverImage image = make_line(-2.0, 2.0, 257, 1);
+    image.points.push_back({{0.0f, static_cast<float>(centre_height), 0.0f}, {0.0f, 1.0f, 0.0f}, true});
+    image.width = 258;
+    const TracedVisibility truth = trace_area(occluders, image, light, {});
+    for (std::size_t i = 0; i < image.points.size(); ++i) {
+      const double distance = glm::distance(glm::dvec3(image.points[i].position_ws), {0.0, centre_height, 0.0});
+      if (distance < 0.999) ASSERT_EQ(truth.visibility[i], 1.0f) << distance;
+      ASSERT_TRUE(truth.visibility[i] >= 0.0f && truth.visibility[i] <= 1.0f) << distance;
+      ASSERT_TRUE(std::isfinite(truth.standard_error[i])) << distance;
+    }
+  }
+}
+
+/// A hair outside the surface the sphere fills half of all directions.
+TEST(SphereTruth, AReceiverNearItsSurface_IsLit) {
+  const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-1.0, 1.0, -1.0, 1.0, 1.0)});
+  const AreaLight light = AreaLight::make_sphere({0.0, 1.0, 0.0}, 1.0);
+  ReceiverImage image{64, 1, {}};
+  for (int i = 0; i < 64; ++i)
+    image.points.push_back({{0.0f, -std::exp2(-static_cast<float>(i)), 0.0f}, {0.0f, 1.0f, 0.0f}, true});
+  for (const float v : trace_area(occluders, image, light, {}).visibility) ASSERT_EQ(v, 1.0f);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <pugixml.hpp>
 #include <regex>
 
-#include "base/atomic_file.h"
+#include "base/files.h"
 #include "tests/report/document/example_page.h"
 #include "tests/report/records/synthetic.h"
 

@@ -1,12 +1,10 @@
-#include "base/atomic_file.h"
-
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
 #include <csignal>
 
 #include "base/error.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
 

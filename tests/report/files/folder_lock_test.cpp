@@ -7,9 +7,8 @@
 #include <functional>
 #include <set>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::files {

@@ -9,9 +9,8 @@
 #include <functional>
 #include <limits>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/input_file.h"
+#include "base/files.h"
 #include "report/images/stored_picture.h"
 #include "tests/report/records/synthetic.h"
 

@@ -6,8 +6,8 @@
 
 #include <array>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
 

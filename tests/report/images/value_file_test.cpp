@@ -8,9 +8,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "base/atomic_file.h"
-#include "base/compression.h"
+#include "base/bytes.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 

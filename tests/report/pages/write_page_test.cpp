@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/atomic_file.h"
+#include "base/files.h"
 
 namespace shadowbench::pages {
 namespace {

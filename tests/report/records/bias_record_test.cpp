@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-#include "base/temporary_files.h"
+#include "base/files.h"
 
 namespace shadowbench::records {
 namespace {

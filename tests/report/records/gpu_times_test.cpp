@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "base/temporary_files.h"
+#include "base/files.h"
 
 namespace shadowbench::records {
 namespace {

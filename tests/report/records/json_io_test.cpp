@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/files.h"
 #include "reference/metrics/metric_table.h"
 #include "report/records/json_values.h"
 #include "synthetic.h"

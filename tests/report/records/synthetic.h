@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-#include "base/temporary_files.h"
+#include "base/files.h"
 #include "report/images/grid.h"
 #include "report/records/cell_key.h"
 #include "report/records/error_parts.h"

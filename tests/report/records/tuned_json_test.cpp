@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "base/atomic_file.h"
+#include "base/files.h"
 #include "report/pages/tune_page.h"
 #include "report/records/tuned_record.h"
 #include "tests/report/pages/answer.h"

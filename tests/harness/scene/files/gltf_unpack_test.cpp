@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "harness/scene/files/gltf_parse.h"
+#include "harness/scene/files/gltf.h"
 #include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {

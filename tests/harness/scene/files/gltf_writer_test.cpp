@@ -1,10 +1,9 @@
-#include "harness/scene/files/gltf_writer.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/load.h"
-#include "harness/scene/validate.h"
+#include "harness/scene/scene.h"
 #include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {

@@ -1,0 +1,289 @@
+#include "harness/view/inspection.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+#include "filters/map_reader.h"
+#include "harness/gl/pixel_format.h"
+#include "harness/render/gbuffer.h"
+
+namespace shadowbench::view {
+namespace {
+
+constexpr int kPixels = 13;  ///< along a side, odd
+constexpr int kPixelSide = 12;
+constexpr int kGap = 8;  ///< between the two sides, in pixels of the window
+
+std::string write(const std::vector<float>& values) { return fmt::format("{:.6g}", fmt::join(values, "  ")); }
+
+}  // namespace
+
+std::vector<float> Magnifier::read_value(const render::DisplayedValues& shown, const glm::ivec2& pixel) {
+  const glm::ivec2 at(pixel.x, shown.values->height() - 1 - pixel.y);
+  if (shown.colors == render::Colors::kPicture) return shown.values->read_texel(at.x, at.y, 3);
+  float value = shown.values->read_texel(at.x, at.y, shown.channel + 1).back();
+  if (shown.less) value -= shown.less->read_texel(at.x, at.y, 1).front();
+  return {value};
+}
+
+void Magnifier::lay_out(Look& look, const Layer& layer, const std::array<ShownLayer, kSides>& shown,
+                        const std::optional<glm::ivec2>& pixel, const glm::vec2& corner, float scale) {
+  last_pixel_ = glm::clamp(pixel.value_or(last_pixel_), glm::ivec2(0),
+                           glm::ivec2(bench_.state().options.width - 1, bench_.state().options.height - 1));
+  ImGui::SetNextWindowPos({corner.x, corner.y}, ImGuiCond_Appearing, {1.0f, 0.0f});
+  ImGui::Begin("Magnifier", &look.magnifier, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+  show_pixels(shown, static_cast<int>(static_cast<float>(kPixelSide) * scale));
+  show_values(layer, shown);
+  ImGui::End();
+}
+
+void Magnifier::show_pixels(const std::array<ShownLayer, kSides>& shown, int magnified) {
+  const int side = kPixels * magnified, width = 2 * side + kGap;
+  if (!target_ || target_->texture().width() != width) target_.emplace("magnified pixels", GL_RGBA8, width, side);
+  const glm::vec2 first(static_cast<float>(last_pixel_.x - kPixels / 2),
+                        static_cast<float>(bench_.state().options.height - 1 - last_pixel_.y - kPixels / 2));
+  target_->clear(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+  for (std::size_t i = 0; i < kSides; ++i) {
+    const glm::ivec2 corner(static_cast<int>(i) * (side + kGap), 0);
+    display_.draw(
+        bench_.renderer().shaders, {shown[i].values, shown[i].values},
+        {.corner = corner, .size = glm::ivec2(side), .first_pixel = first, .magnified = static_cast<float>(magnified)},
+        &*target_);
+  }
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  widgets_.show("magnifier.image", target_->texture());
+  for (std::size_t i = 0; i < kSides; ++i) {
+    const auto x = at.x + static_cast<float>(static_cast<int>(i) * (side + kGap) + side / 2);
+    const auto y = at.y + static_cast<float>(side / 2), half = 0.5f * static_cast<float>(magnified) + 1.0f;
+    ImGui::GetWindowDrawList()->AddRect({x - half, y - half}, {x + half, y + half}, IM_COL32(255, 200, 40, 255), 0.0f,
+                                        0, 2.0f);
+  }
+}
+
+void Magnifier::show_values(const Layer& layer, const std::array<ShownLayer, kSides>& shown) const {
+  ImGui::Text("pixel %d, %d", last_pixel_.x, last_pixel_.y);
+  for (std::size_t side = 0; side < kSides; ++side) {
+    const char* name = kSideNames[side];
+    if (shown[side].absent.empty())
+      ImGui::Text("%s: %s %s %s", name, layer.title.c_str(), write(read_value(shown[side].values, last_pixel_)).c_str(),
+                  layer.unit.c_str());
+    else
+      ImGui::Text("%s: %s", name, shown[side].absent.c_str());
+  }
+  Stage& stage = bench_.stage();
+  for (std::size_t side = 0; side < kSides; ++side) {
+    const render::DisplayedValues visibility{.values = &stage.visibility(side, {0, bench_.state().options.width}),
+                                             .colors = render::Colors::kGrey};
+    const float value = read_value(visibility, last_pixel_).front();
+    std::string line = fmt::format("{}: visibility {:.6g}", kSideNames[side], value);
+    if (stage.truth()) {
+      const render::DisplayedValues truth{.values = stage.truth(), .colors = render::Colors::kGrey};
+      line += fmt::format(", less the truth {:+.6g}", value - read_value(truth, last_pixel_).front());
+    }
+    ImGui::TextUnformatted(line.c_str());
+  }
+  if (const auto place = stage.find_surface(last_pixel_))
+    ImGui::Text("at %.4g %.4g %.4g m, %.4g m away", static_cast<double>(place->x), static_cast<double>(place->y),
+                static_cast<double>(place->z), static_cast<double>(place->w));
+  else
+    ImGui::TextDisabled("no surface");
+}
+
+namespace {
+
+constexpr float kLargestSide = 400.0f, kShareOfWindow = 0.2f;  ///< the map's side is no larger
+constexpr ImU32 kReceiverInk = IM_COL32(255, 60, 60, 255);
+constexpr ImU32 kKernelInk = IM_COL32(255, 200, 40, 255);
+constexpr ImU32 kReadInk = IM_COL32(255, 255, 255, 200);
+
+}  // namespace
+
+void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::size_t side, float scale) {
+  const glm::vec2 pixels(bench_.state().options.width, bench_.state().options.height);
+  if (pixel) {
+    last_place_ = (glm::vec2(*pixel) + 0.5f) / pixels;
+    last_side_ = side;
+  }
+  ImGui::SetNextWindowPos({20.0f * scale, 60.0f * scale}, ImGuiCond_Appearing);
+  ImGui::Begin("Shadow map", &look.map, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+  footprint_ = footprints_.find(last_side_, glm::clamp(last_place_ * pixels, glm::vec2(0.0f), pixels - 1.0f));
+  std::vector<std::string> contents = {"depth, linear"};
+  if (const render::FilterPasses* passes = bench_.stage().passes(last_side_); passes && passes->encoded_format())
+    for (int channel = 0; channel < gl::pixel_format(*passes->encoded_format()).channels; ++channel)
+      contents.push_back(fmt::format("{} stores: channel {}", passes->request().spec.id, channel + 1));
+  content_ = std::min(content_, contents.size() - 1);
+  widgets_.choose("map.content", "content", contents, content_);
+  widgets_.slide("map.zoom", "zoom", {.min = 1.0, .max = 128.0, .logarithmic = true}, zoom_,
+                 "Around the receiver under the pointer.");
+  // What stands above and below the map takes ten lines.
+  const float room = ImGui::GetIO().DisplaySize.y - 60.0f * scale - 10.0f * ImGui::GetTextLineHeightWithSpacing();
+  const float largest = std::min(kLargestSide * scale, kShareOfWindow * ImGui::GetIO().DisplaySize.x);
+  const float side_pixels = std::clamp(std::min(room, largest), 100.0f * scale, kLargestSide * scale);
+  show_map(static_cast<int>(side_pixels), footprint_ ? footprint_->receiver.layer : 0);
+  ImGui::End();
+}
+
+void MapPanel::look_at(const MapReading& reading) {
+  last_place_ = find_place(bench_.state(), reading.place_ws);
+  last_side_ = reading.side;
+  zoom_ = reading.zoom;
+  content_ = reading.content;
+}
+
+images::Image MapPanel::read_content(int layer) const {
+  const render::ShadowMap& map = bench_.stage().light_map().map;
+  const int size = map.size();
+  images::Image image(size, size, 1);
+  if (content_ == 0) {
+    const filters::DepthMap depth = map.read(layer);
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
+        *image.at(x, size - 1 - y) = depth.curve.linear(depth.stored[static_cast<std::size_t>(y * size + x)]);
+    return image;
+  }
+  const render::EncodedTexels stored = bench_.stage().passes(last_side_)->encoded_map(layer)->read();
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x)
+      *image.at(x, size - 1 - y) =
+          stored.values[static_cast<std::size_t>((y * size + x) * stored.channels) + content_ - 1];
+  return image;
+}
+
+void MapPanel::show_map(int side_pixels, int layer) {
+  const std::string id = fmt::format("map {} {} {}", content_, last_side_, layer);
+  const render::DisplayedValues values = layers_.upload(id, bench_.drawings(), [&] { return read_content(layer); });
+  if (!target_ || target_->texture().width() != side_pixels)
+    target_.emplace("shadow map, shown", GL_RGBA8, side_pixels, side_pixels);
+  const double texels = bench_.state().map_size(), shown = texels / zoom_;
+  const glm::dvec2 centre = footprint_ ? footprint_->place_texels : glm::dvec2(0.5 * texels);
+  const glm::dvec2 first = glm::clamp(centre - 0.5 * shown, glm::dvec2(0.0), glm::dvec2(texels - shown));
+  const auto magnified = static_cast<float>(side_pixels / shown);
+  display_.draw(bench_.renderer().shaders, {values, values},
+                {.size = glm::ivec2(side_pixels), .first_pixel = glm::vec2(first), .magnified = magnified}, &*target_);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  widgets_.show("map.image", target_->texture());
+  draw_footprint({corner.x, corner.y}, side_pixels, first);
+  ImGui::Text("%.4g (dark) .. %.4g", static_cast<double>(values.low), static_cast<double>(values.high));
+  if (!footprint_) return ImGui::TextDisabled("No receiver in the map under the pointer.");
+  ImGui::Text("texel %.2f, %.2f of layer %d, depth %.6f", footprint_->place_texels.x, footprint_->place_texels.y,
+              footprint_->receiver.layer, static_cast<double>(footprint_->receiver.depth));
+  std::string kernel = "kernel: " + footprint_->shape;
+  if (!footprint_->reads.empty()) kernel += fmt::format("; {} texels read", footprint_->reads.size());
+  ImGui::TextUnformatted(kernel.c_str());
+}
+
+void MapPanel::draw_footprint(const glm::vec2& corner, int side_pixels, const glm::dvec2& first_texel) const {
+  if (!footprint_) return;
+  const double pixels = side_pixels / (bench_.state().map_size() / zoom_);
+  const auto place = [&](const glm::dvec2& texel) {
+    const glm::dvec2 at = (texel - first_texel) * pixels;
+    return ImVec2(corner.x + static_cast<float>(at.x), corner.y + static_cast<float>(side_pixels - at.y));
+  };
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->PushClipRect({corner.x, corner.y},
+                     {corner.x + static_cast<float>(side_pixels), corner.y + static_cast<float>(side_pixels)}, true);
+  if (pixels >= 3.0)
+    for (const glm::ivec2& read : footprint_->reads)
+      list->AddRect(place(glm::dvec2(read) + glm::dvec2(0.08, 0.92)), place(glm::dvec2(read) + glm::dvec2(0.92, 0.08)),
+                    kReadInk);
+  const glm::dvec2 centre = footprint_->place_texels;
+  const double reach = footprint_->half_width_texels;
+  if (footprint_->is_disk)
+    list->AddCircle(place(centre), static_cast<float>(reach * pixels), kKernelInk, 0, 2.0f);
+  else
+    list->AddRect(place(centre + glm::dvec2(-reach, reach)), place(centre + glm::dvec2(reach, -reach)), kKernelInk,
+                  0.0f, 0, 2.0f);
+  const ImVec2 middle = place(centre);
+  for (const auto& [x, y] : {std::pair(6.0f, 0.0f), std::pair(0.0f, 6.0f)})
+    list->AddLine({middle.x - x, middle.y - y}, {middle.x + x, middle.y + y}, kReceiverInk, 2.0f);
+  list->PopClipRect();
+}
+
+std::optional<Footprint> FootprintFinder::find(std::size_t side, const glm::ivec2& pixel) {
+  const render::FilterPasses* passes = bench_.stage().passes(side);
+  if (passes == nullptr) return std::nullopt;
+  const auto receiver = find_receiver(passes->light(), pixel);
+  if (!receiver) return std::nullopt;
+  const filters::FilterRequest& request = passes->request();
+  Footprint footprint;
+  footprint.receiver = *receiver;
+  footprint.place_texels = glm::dvec2(receiver->uv) * static_cast<double>(bench_.state().map_size());
+  if (const auto kernel = filters::find_kernel(request.spec, request.values)) {
+    footprint.half_width_texels = kernel->half_width();
+    footprint.is_disk = kernel->disk_radius() > 0.0;
+  } else {
+    footprint.half_width_texels = filters::radius_texels(request.spec, request.values);
+  }
+  add_reads(footprint, side);
+  footprint.shape = footprint.half_width_texels > 0.0
+                        ? fmt::format("{} of {:.3g} texels to each side", footprint.is_disk ? "a disk" : "a square",
+                                      footprint.half_width_texels)
+                        : "a point";
+  return footprint;
+}
+
+/// One pixel's receiver, with the bits that the lookup pass has.
+std::optional<filters::Receiver> FootprintFinder::find_receiver(const render::LightLayers& light,
+                                                                const glm::ivec2& pixel) const {
+  const render::GBuffer& seen = bench_.stage().gbuffer();
+  const glm::ivec2 at(pixel.x, seen.height() - 1 - pixel.y);
+  const auto place = bench_.stage().find_surface(pixel);
+  if (!place) return std::nullopt;
+  render::GBuffer one(1, 1);
+  one.upload(std::span(&place->x, 4), seen.normal().read_texel(at.x, at.y, 4));
+  std::optional<filters::Receiver> found;
+  for (const render::LightSetup& layer : light) {
+    for (filters::Receiver& receiver : render::read_receivers(bench_.renderer().shaders, one, layer))
+      if (!found || receiver.layer_share > found->layer_share) found = receiver;
+  }
+  if (found) found->pixel = at;
+  return found;
+}
+
+FootprintFinder::Prepared* FootprintFinder::prepare(std::size_t side, int layer) {
+  if (drawing_ != bench_.drawings()) {
+    drawing_ = bench_.drawings();
+    prepared_.clear();
+    prepared_.resize(kSides);
+  }
+  const render::ShadowMap& map = bench_.stage().light_map().map;
+  prepared_[side].resize(static_cast<std::size_t>(map.layers()));
+  std::unique_ptr<Prepared>& prepared = prepared_[side][static_cast<std::size_t>(layer)];
+  if (prepared) return prepared.get();
+  const filters::FilterRequest& request = bench_.stage().passes(side)->request();
+  const bool reads_depth = !request.spec.has_encode && request.spec.passes.empty();
+  std::unique_ptr<filters::ScalarModel> model = reads_depth ? filters::make_model(request.spec) : nullptr;
+  if (!model) return nullptr;
+  prepared = std::make_unique<Prepared>(Prepared{request, map.read(layer), std::move(model), nullptr});
+  const ViewState& state = bench_.state();
+  prepared->lookup = prepared->model->prepare({.spec = prepared->request.spec,
+                                               .values = prepared->request.values,
+                                               .map = prepared->map,
+                                               .seed = state.options.seed,
+                                               .plane_max_tangent = state.options.bias.plane_max_tangent()},
+                                              filters::Precision::kFloat);
+  return prepared.get();
+}
+
+void FootprintFinder::add_reads(Footprint& footprint, std::size_t side) {
+  const Prepared* prepared = prepare(side, footprint.receiver.layer);
+  if (prepared == nullptr) return;
+  filters::ReadLog log;
+  const filters::ModelResult result = prepared->lookup->at(footprint.receiver);
+  const auto size = static_cast<std::size_t>(bench_.state().map_size());
+  std::set<std::size_t> texels;  // row by row
+  for (const filters::TexelRead& read : log.reads()) texels.insert(read.texel);
+  for (const std::size_t texel : texels)
+    footprint.reads.emplace_back(static_cast<int>(texel % size), static_cast<int>(texel / size));
+  if (result.disk_radius_texels > 0.0) {
+    footprint.half_width_texels = result.disk_radius_texels + 1.0;  // read through 2x2 texels
+    footprint.is_disk = true;
+  }
+}
+
+}  // namespace shadowbench::view

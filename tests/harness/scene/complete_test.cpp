@@ -1,0 +1,258 @@
+// Camera and sun of a scene that has none: chosen by the edges of shadows, and never in place of what was given.
+
+#include "harness/scene/complete.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "harness/scene/load.h"
+#include "harness/scene/mesh_tools.h"
+#include "test_files.h"
+
+namespace shadowbench::scene {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr ViewFreedom kAllFree{.camera = true, .sun = true};
+
+Mesh moved(const Mesh& mesh, const glm::dvec3& by) { return transform_mesh(mesh, glm::translate(glm::dmat4(1.0), by)); }
+
+Scene make_bare(std::vector<Mesh> meshes) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.meshes = std::move(meshes);
+  return scene;
+}
+
+/// A wall that faces the usual camera, which stands on its side in shadow, and a box behind it.
+Scene make_wall() {
+  return make_bare({moved(make_box({8.0f, 4.0f, 0.2f}, 1), {0.0, 2.0, 0.0}),
+                    moved(make_box({1.0f, 1.0f, 1.0f}, 1), {0.0, 2.0, -1.5})});
+}
+
+Scene make_box_on_floor() {
+  return make_bare({make_plane({6.0f, 6.0f}, 1), moved(make_box({1.0f, 1.0f, 1.0f}, 1), {0.0, 0.5, 0.0})});
+}
+
+Camera make_camera() {
+  Camera camera;
+  camera.name = "own";
+  camera.position_ws = {1.0f, 6.0f, -7.0f};
+  camera.forward_ws = glm::normalize(-camera.position_ws);
+  return camera;
+}
+
+double turn_between(const SkyAngles& a, const SkyAngles& b) {
+  return std::abs(std::remainder(a.azimuth_deg - b.azimuth_deg, 360.0));
+}
+
+Mesh make_triangle() {
+  Mesh triangle;
+  triangle.vertices = {{{0.0f, 1.0f, 0.0f}}, {{1.0f, 1.0f, 0.0f}}, {{0.0f, 1.0f, 1.0f}}};
+  triangle.indices = {0, 2, 1};
+  return triangle;
+}
+
+TEST(ViewChoice, WallWithABoxBehind_IsSeenFromWhereTheSunIs) {
+  const ViewChoice choice = choose_view(make_wall(), kAllFree);
+  EXPECT_FALSE(choice.is_usual);
+  EXPECT_GT(choice.edges.share(), 0.02);
+  EXPECT_GT(choice.edges.share(), 4.0 * choice.usual_edges.share());
+  EXPECT_LT(std::cos(glm::radians(choice.angles.camera.azimuth_deg)), 0.0) << "the camera stands behind the wall";
+}
+
+TEST(ViewChoice, ChosenSun_ShinesOnSidesThatAreSeen) {
+  for (const Scene& scene : {make_wall(), make_box_on_floor()}) {
+    const ViewChoice choice = choose_view(scene, kAllFree);
+    EXPECT_LT(turn_between(choice.angles.camera, choice.angles.sun), 115.0);
+    EXPECT_GE(choice.edges.share(), choice.usual_edges.share());
+  }
+}
+
+/// A floor with a row of boxes on either side.
+Scene make_street(float length_m) {
+  std::vector<Mesh> meshes = {make_plane({8.0f, length_m}, 1)};
+  for (double z = 2.0 - 0.5 * static_cast<double>(length_m); z < 0.5 * static_cast<double>(length_m); z += 5.0)
+    for (const double x : {-3.0, 3.0}) meshes.push_back(moved(make_box({1.0f, 6.0f, 1.0f}, 1), {x, 3.0, z}));
+  return make_bare(meshes);
+}
+
+TEST(Completion, CameraOfAStreet_StandsInItAtEyeHeight_AndLooksAlongIt) {
+  const Scene street = complete(make_street(80.0f), {.needs_sun = true}, "x");
+  const Camera& camera = street.cameras.at(0);
+  EXPECT_NEAR(camera.position_ws.y, 1.5, 1e-3) << "a quarter of its height";
+  EXPECT_LT(std::abs(camera.position_ws.x), 2.5f) << "between the boxes";
+  EXPECT_LT(std::abs(camera.position_ws.z), 40.0f);
+  EXPECT_GT(std::abs(camera.forward_ws.z), 0.99f);
+  EXPECT_LT(camera.position_ws.z * camera.forward_ws.z, -30.0f) << "from one end to the other";
+  EXPECT_THAT(street.notes, testing::Contains(HasSubstr("at eye height")));
+  const Scene square = complete(make_street(20.0f), {.needs_sun = true}, "x");
+  EXPECT_GT(square.cameras.at(0).position_ws.y, 6.0f) << "no longer than wide and high";
+}
+
+TEST(Completion, WithAFloorUnderAPartAlone_TheCameraStaysOutside) {
+  Scene row = make_street(80.0f);
+  row.meshes.front() = make_plane({8.0f, 30.0f}, 1);
+  EXPECT_GT(complete(row, {.needs_sun = true}, "x").cameras.at(0).position_ws.y, 6.0f);
+}
+
+TEST(ViewChoice, IsTheSameAgain) {
+  const ViewChoice first = choose_view(make_box_on_floor(), kAllFree),
+                   second = choose_view(make_box_on_floor(), kAllFree);
+  EXPECT_EQ(describe_choice(first, kAllFree), describe_choice(second, kAllFree));
+  EXPECT_EQ(first.edges.at_edge, second.edges.at_edge);
+}
+
+TEST(ViewChoice, LongWallWithBoxesBefore_IsSeenFromAnEnd_UnlessItIsHigh) {
+  const auto choose = [](float height_m) {
+    std::vector<Mesh> meshes = {make_box({20.0f, height_m, 0.2f}, 1)};
+    for (int i = -4; i <= 4; ++i) meshes.push_back(moved(make_box({0.8f, 0.8f, 0.8f}, 1), {2.0 * i, 0.5 * i, 1.0}));
+    return choose_view(make_bare(meshes), kAllFree);
+  };
+  EXPECT_LT(std::abs(std::sin(glm::radians(choose(8.0f).angles.camera.azimuth_deg))), 0.8);
+  const ViewChoice choice = choose(6.0f);
+  EXPECT_GT(choice.edges.share(), 0.0);
+  EXPECT_GT(std::abs(std::sin(glm::radians(choice.angles.camera.azimuth_deg))), 0.8);
+}
+
+TEST(Completion, ChosenDirectionsDoNotDependOnTheSizeOfThePicture) {
+  const Scene wide = complete(make_wall(), {.needs_sun = true, .aspect = 3.0}, "x");
+  const Scene tall = complete(make_wall(), {.needs_sun = true, .aspect = 0.5}, "x");
+  EXPECT_EQ(wide.cameras[0].forward_ws, tall.cameras[0].forward_ws);
+  EXPECT_NE(wide.cameras[0].position_ws, tall.cameras[0].position_ws);
+  EXPECT_EQ(to_light(wide.light, {}), to_light(tall.light, {}));
+}
+
+TEST(Completion, ChoiceIsNoted_WithItsScoreAndTheUsualOne) {
+  const Scene scene = complete(make_wall(), {.needs_sun = true}, "x");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.notes,
+              ElementsAre(AllOf(HasSubstr("camera from azimuth "), HasSubstr("; sun from azimuth "),
+                                HasSubstr(" % of the picture's surfaces ("), HasSubstr(" % in the usual view)"))));
+}
+
+TEST(Completion, CameraOfItsOwn_StaysAndOnlyTheSunIsChosen) {
+  Scene own = make_wall();
+  own.cameras = {make_camera()};
+  const Scene scene = complete(own, {.needs_sun = true}, "x");
+  ASSERT_EQ(scene.cameras.size(), 1U);
+  EXPECT_EQ(scene.cameras[0].name, "own");
+  EXPECT_EQ(scene.cameras[0].position_ws, own.cameras[0].position_ws);
+  EXPECT_EQ(scene.cameras[0].forward_ws, own.cameras[0].forward_ws);
+  EXPECT_THAT(scene.notes, ElementsAre(AllOf(HasSubstr("sun from"), Not(HasSubstr("camera")))));
+  EXPECT_NE(to_light(scene.light, {}), to_light(place_in_sky({}, usual_view(own.bounds()).sun), {}));
+}
+
+TEST(Completion, LightOfItsOwn_StaysAndOnlyTheCameraIsChosen) {
+  Scene own = make_wall();
+  own.light = place_in_sky({}, {190.0, 40.0});
+  const Scene scene = complete(own, {}, "x");
+  EXPECT_EQ(to_light(scene.light, {}), to_light(own.light, {}));
+  EXPECT_LT(glm::dot(scene.cameras[0].forward_ws, to_light(own.light, {})), 0.0f);
+  EXPECT_THAT(scene.notes, ElementsAre(AllOf(HasSubstr("camera from"), Not(HasSubstr("sun")))));
+}
+
+TEST(Completion, PlaceThatWasAskedFor_IsWhereTheSunStands) {
+  for (const bool needs_sun : {true, false}) {
+    const SkyAngles asked{190.0, 40.0};
+    const Scene scene = complete(make_wall(), {.needs_sun = needs_sun, .ground = true, .light = asked}, "x");
+    EXPECT_EQ(to_light(scene.light, {}), to_light(place_in_sky({}, asked), {}));
+    EXPECT_THAT(scene.notes, ElementsAre(Not(HasSubstr("sun"))));
+    Bounds floor;
+    for (const Vertex& vertex : scene.meshes.back().vertices) floor.add(vertex.position_ws);
+    const glm::vec3 way = to_light(scene.light, {});
+    for (const Vertex& vertex : scene.meshes.front().vertices) {
+      const glm::vec3 shadow = vertex.position_ws - way * ((vertex.position_ws.y - floor.min.y) / way.y);
+      EXPECT_TRUE(shadow.x > floor.min.x && shadow.x < floor.max.x && shadow.z > floor.min.z && shadow.z < floor.max.z);
+    }
+  }
+}
+
+TEST(Completion, NothingIsChosenWhereNothingLacks) {
+  Scene own = make_wall();
+  own.cameras = {make_camera()};
+  const Scene scene = complete(own, {}, "x");
+  EXPECT_EQ(scene.cameras[0].position_ws, own.cameras[0].position_ws);
+  EXPECT_EQ(to_light(scene.light, {}), to_light(own.light, {}));
+  EXPECT_THAT(scene.notes, IsEmpty());
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+TEST(Completion, NoEdgeAnywhere_IsTheUsualViewAndAWarning) {
+  const std::vector<Mesh> shadowless = {make_triangle(), make_plane({2.0f, 2.0f}, 4), make_box({1.0f, 1.0f, 1.0f}, 2),
+                                        make_sphere(1.0f, 24)};
+  for (const Mesh& mesh : shadowless) {
+    const Scene bare = make_bare({mesh});
+    const Scene scene = complete(bare, {.needs_sun = true}, "x");
+    const ViewAngles usual = usual_view(bare.bounds());
+    EXPECT_EQ(to_light(scene.light, {}), to_light(place_in_sky({}, usual.sun), {}));
+    EXPECT_EQ(scene.cameras[0].forward_ws, frame_camera(scene, usual.camera, 16.0 / 9.0, {}).forward_ws);
+    EXPECT_THAT(scene.notes, IsEmpty());
+    EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("the usual view"), HasSubstr("--ground"))));
+  }
+}
+
+TEST(Completion, MoreThanAMillionTriangles_GetTheUsualView) {
+  const Scene scene = complete(make_bare({make_plane({2.0f, 2.0f}, 730)}), {.needs_sun = true}, "x");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.notes, ElementsAre(AllOf(HasSubstr("azimuth 30, elevation 24"), HasSubstr("1048576 triangles"))));
+}
+
+TEST(Completion, FloorUnderATriangle_ShowsItsShadow) {
+  const Scene scene = complete(make_bare({make_triangle()}), {.needs_sun = true, .ground = true}, "x");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.notes, ElementsAre(HasSubstr("edges of shadows")));
+}
+
+TEST(Completion, SceneFileWithoutACamera_KeepsItsLight) {
+  const TestFolder folder;
+  const auto file = folder.write("a.toml", R"(title = "a"
+[light]
+direction = [0.5, -1, 0.5]
+[[object]]
+shape = "plane"
+size = [6, 6]
+[[object]]
+shape = "box"
+center = [0, 0.5, 0]
+size = [1, 1, 1]
+)");
+  const Scene scene = load_scene(file);
+  EXPECT_LT(glm::distance(-to_light(scene.light, {}), glm::normalize(glm::vec3(0.5f, -1.0f, 0.5f))), 1e-6f);
+  EXPECT_THAT(scene.notes, ElementsAre(AllOf(HasSubstr("camera from"), Not(HasSubstr("sun")))));
+}
+
+TEST(Completion, EachOfSeveralLights_HasAViewOfItsOwn_ALampFromNearBy) {
+  Scene wide = make_bare({make_plane({40.0f, 40.0f}, 1), moved(make_box({1.0f, 1.0f, 1.0f}, 1), {8.0, 0.5, 8.0}),
+                          moved(make_box({2.0f, 6.0f, 2.0f}, 1), {-10.0, 3.0, -10.0})});
+  wide.light = place_in_sky({}, {60.0, 35.0});
+  wide.light.name = "sun";
+  Light& spot = wide.other_lights.emplace_back();
+  spot.name = "spot";
+  spot.kind = Spot{.position_ws = {10.0f, 3.0f, 9.0f}, .target_ws = {8.0f, 0.0f, 8.0f}};
+  const std::vector<Scene> lit = separate_lights(complete(wide, {}, "x"));
+  ASSERT_EQ(lit.size(), 2U);
+  double shares[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(lit[i].cameras.size(), 1U);
+    EXPECT_EQ(lit[i].cameras[0].name, lit[i].light.name);
+    shares[i] = EdgeMeter(lit[i]).count(lit[i].cameras[0], lit[i].light, 16.0 / 9.0).share();
+  }
+  EXPECT_GT(shares[1], 5.0 * EdgeMeter(lit[1]).count(lit[0].cameras[0], lit[1].light, 16.0 / 9.0).share())
+      << "than in the sun's view";
+  EXPECT_GT(shares[1], 0.02);
+  EXPECT_THAT(lit[0].notes, ElementsAre(HasSubstr("camera for the light 'sun' from azimuth"),
+                                        AllOf(HasSubstr("camera for the light 'spot' from azimuth"),
+                                              HasSubstr("near the light: edges of shadows touch"))));
+}
+
+}  // namespace
+}  // namespace shadowbench::scene

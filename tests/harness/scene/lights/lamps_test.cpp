@@ -1,0 +1,296 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <set>
+
+#include "filters/depth_map.h"
+#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/lights/light_kinds.h"
+#include "harness/scene/load.h"
+#include "harness/scene/mesh_tools.h"
+#include "tests/harness/scene/test_files.h"
+
+namespace shadowbench::scene {
+namespace {
+
+constexpr int kSpotMap = 256;
+constexpr double kSpotPadding = 5.5;
+
+/// A floor under a box, and a spot that looks at it from somewhere.
+Scene make_spot_scene(const glm::vec3& position) {
+  Scene scene;
+  scene.meshes.push_back(make_plane({10.0f, 8.0f}, 4));
+  scene.meshes.push_back(make_box({1.0f, 2.0f, 0.5f}, 2));
+  scene.light.kind = Spot{position, {0.3f, 0.2f, -0.1f}, 50.0f, 40.0f, 0.1f};
+  return scene;
+}
+
+const std::vector<glm::vec3> kLampPositions{
+    {0.3f, 5.0f, -0.1f}, {4.0f, 3.0f, 2.0f}, {-5.0f, 0.5f, 0.0f}, {0.3f, -4.0f, -0.1f}};
+
+TEST(SpotFit, HoldsItsCone_AndDepthIsLinearAlongTheAxis) {
+  for (const glm::vec3& position : kLampPositions) {
+    const Scene scene = make_spot_scene(position);
+    const LightFrustum fit = fit_light(scene, FitMode::kTight, kSpotMap, kSpotPadding);
+    ASSERT_TRUE(fit.perspective);
+    const PerspectiveMap& map = *fit.perspective;
+    const glm::dmat4 world_from_light = glm::inverse(fit.light_from_world);
+    const double tangent = std::tan(glm::radians(25.0));
+    const filters::DepthCurve curve{false, map.far_over_near()};
+    for (const double distance : {map.near_m, 0.5 * (map.near_m + map.far_m), map.far_m}) {
+      const double depth = (distance - map.near_m) / (map.far_m - map.near_m);
+      for (const glm::dvec2& edge : {glm::dvec2(0, 0), {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+        const glm::dvec4 point = world_from_light * glm::dvec4(tangent * distance * edge, -distance, 1.0);
+        const glm::vec4 seen = fit.uv_depth_from_world * glm::vec4(point);
+        const glm::dvec3 place = fit.place(glm::dvec3(point), kSpotMap);
+        for (int i = 0; i < 2; ++i) {
+          const double expected = 0.5 * kSpotMap + edge[i] * (0.5 * kSpotMap - kSpotPadding);
+          EXPECT_NEAR(static_cast<double>(seen[i] / seen.w) * kSpotMap, expected, 0.01);
+          EXPECT_NEAR(place[i], expected, 1e-9);
+        }
+        EXPECT_NEAR(static_cast<double>(seen.z), depth, 1e-6);
+        EXPECT_NEAR(place.z, depth, 1e-9);
+        const glm::vec4 clip = fit.clip_from_world * glm::vec4(point);
+        EXPECT_NEAR(static_cast<double>(clip.z / clip.w), curve.store(depth), 1e-4) << "what the map stores";
+      }
+      const glm::dvec3 on_axis = map.beam.position_ws + distance * map.beam.axis_ws;
+      EXPECT_NEAR(fit.texel_size_at(on_axis), 2.0 * tangent * distance / (kSpotMap - 2.0 * kSpotPadding), 1e-9);
+    }
+  }
+}
+
+TEST(SpotFit, EveryVertexInTheCone_HasADepth) {
+  for (const glm::vec3& position : kLampPositions) {
+    const Scene scene = make_spot_scene(position);
+    const LightFrustum fit = fit_light(scene, FitMode::kTight, kSpotMap, kSpotPadding);
+    int inside = 0;
+    for (const Mesh& mesh : scene.meshes) {
+      for (const Vertex& vertex : mesh.vertices) {
+        if (fit.perspective->beam.cone_at(glm::dvec3(vertex.position_ws)) == 0.0) continue;
+        const double depth = fit.place(glm::dvec3(vertex.position_ws), kSpotMap).z;
+        EXPECT_GT(depth, 0.0);
+        EXPECT_LT(depth, 1.0);
+        ++inside;
+      }
+    }
+    EXPECT_GT(inside, 0);
+  }
+}
+
+TEST(SpotFit, MovesByPartsOfATexel) {
+  const Scene scene = make_spot_scene(kLampPositions[1]);
+  FitRequest request{.map_size = kSpotMap, .pad_texels = kSpotPadding};
+  const glm::dvec3 point(0.4, 0.1, 0.2), before = fit_light(scene, request).place(point, kSpotMap);
+  request.shift_texels = {0.25, -0.5};
+  const glm::dvec3 moved = fit_light(scene, request).place(point, kSpotMap) - before;
+  EXPECT_NEAR(moved.x, -0.25, 1e-9);
+  EXPECT_NEAR(moved.y, 0.5, 1e-9);
+  EXPECT_NEAR(moved.z, 0.0, 1e-12);
+}
+
+TEST(SpotFit, NothingInTheCone_AndThingsAtTheLamp_StillGiveAFrustum) {
+  for (const glm::vec3& target : {glm::vec3(0.0f, 9.0f, 0.0f), glm::vec3(0.1f, 0.0f, 0.0f)}) {
+    Scene scene = make_spot_scene({0.0f, 0.5f, 0.0f});  // within the box
+    std::get<Spot>(scene.light.kind).target_ws = target;
+    const LightFrustum fit = fit_light(scene, FitMode::kTight, kSpotMap, kSpotPadding);
+    EXPECT_GT(fit.perspective->near_m, 0.0);
+    EXPECT_GT(fit.perspective->far_m, fit.perspective->near_m);
+    EXPECT_LE(fit.perspective->far_over_near(), 500.0 + 1e-9);
+  }
+}
+
+TEST(Beam, FadesFromTheInnerConeToTheOuter) {
+  const Beam beam = *find_beam(Spot{{0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 60.0f, 40.0f, 0.0f});
+  const auto at = [&](double degrees) { return beam.cone_at({2.0 * std::tan(glm::radians(degrees)), 0.0, 0.0}); };
+  EXPECT_EQ(at(0.0), 1.0);
+  EXPECT_EQ(at(19.9), 1.0);
+  EXPECT_EQ(at(30.1), 0.0);
+  for (double degrees = 20.5; degrees < 30.0; degrees += 0.5) EXPECT_LT(at(degrees), at(degrees - 0.5));
+  EXPECT_EQ(beam.cone_at({0.0, 4.0, 0.0}), 0.0) << "behind";
+  EXPECT_EQ(beam.cone_at({0.0, 2.0, 0.0}), 0.0) << "the lamp itself";
+}
+
+TEST(Spot, WithASize_IsARectangleAlongItsMap) {
+  Scene scene = make_spot_scene(kLampPositions[1]);
+  auto& spot = std::get<Spot>(scene.light.kind);
+  const truth::AreaLight disk = make_area_light(scene.light);
+  EXPECT_NEAR(glm::length(disk.half_u()), 0.1, 1e-7);
+  EXPECT_NEAR(light_size(scene.light), 0.2, 1e-7);
+  spot.size_m = {0.6f, 0.2f};
+  const truth::AreaLight rectangle = make_area_light(scene.light);
+  const LightFrustum fit = fit_light(scene, FitMode::kTight, kSpotMap, kSpotPadding);
+  const glm::dvec3 u = glm::dmat3(fit.light_from_world) * rectangle.half_u(),
+                   v = glm::dmat3(fit.light_from_world) * rectangle.half_v();
+  EXPECT_NEAR(glm::distance(u, glm::dvec3(0.3, 0.0, 0.0)), 0.0, 1e-7);
+  EXPECT_NEAR(glm::distance(v, glm::dvec3(0.0, 0.1, 0.0)), 0.0, 1e-7);
+  EXPECT_NEAR(std::numbers::pi * std::pow(0.5 * light_size(scene.light), 2.0), 0.6 * 0.2, 1e-7) << "a disk of its area";
+}
+
+TEST(Spot, GoesRoundItsTarget) {
+  Light light;
+  light.kind = Spot{{3.0f, 4.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 50.0f, 40.0f, 0.1f};
+  const Light quarter = turn_about_vertical(light, glm::radians(90.0));
+  EXPECT_NEAR(glm::distance(std::get<Spot>(quarter.kind).position_ws, glm::vec3(0.0f, 4.0f, -3.0f)), 0.0f, 1e-5f);
+  const auto high = std::get<Spot>(place_in_sky(light, {90.0, 90.0}).kind);
+  EXPECT_NEAR(glm::distance(high.position_ws, glm::vec3(0.0f, 5.0f, 0.0f)), 0.0f, 1e-5f);
+}
+
+Scene load_lantern() {
+  return load("lantern", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
+}
+
+/// The face that a direction belongs to: its longest axis, x before y before z.
+int face_of(const glm::dvec3& way) {
+  int axis = 0;
+  for (int i = 1; i < 3; ++i)
+    if (std::abs(way[i]) > std::abs(way[axis])) axis = i;
+  return 2 * axis + (way[axis] < 0.0 ? 1 : 0);
+}
+
+TEST(PointLight, ItsSixFacesHoldEverythingAround_WithTheirPadding) {
+  const Scene scene = load_lantern();
+  const auto faces = fit_layers(scene, {.map_size = 256, .pad_texels = 5.0});
+  ASSERT_EQ(faces.size(), 6u);
+  const glm::dvec3 light(std::get<PointLight>(scene.light.kind).position_ws);
+  std::set<int> met;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Vertex& vertex : mesh.vertices) {
+      const glm::dvec3 p(vertex.position_ws);
+      const int face = face_of(p - light);
+      met.insert(face);
+      const glm::dvec3 place = faces[static_cast<std::size_t>(face)].place(p, 256);
+      for (int axis = 0; axis < 2; ++axis) {
+        EXPECT_GE(place[axis], 5.0 - 1e-3);
+        EXPECT_LE(place[axis], 251.0 + 1e-3);
+      }
+      EXPECT_GT(place.z, 0.0);
+      EXPECT_LT(place.z, 1.0);
+    }
+  }
+  EXPECT_EQ(met.size(), 6u) << "the scene stands all around its light";
+  for (const LightFrustum& face : faces) {
+    EXPECT_EQ(face.depth_range_ws, faces.front().depth_range_ws) << "one curve stores the depth of all";
+    EXPECT_EQ(face.texel_size_ws, faces.front().texel_size_ws);
+  }
+}
+
+TEST(PointLight, ShinesAllAround_AndFallsOffWithTheSquareOfItsDistance) {
+  const Scene scene = load_lantern();
+  for (const glm::vec3 p : {glm::vec3(0.1f, 3.0f, 0.05f), glm::vec3(-2.0f, 0.0f, 1.0f), glm::vec3(2.0f, 1.3f, -4.0f)})
+    EXPECT_TRUE(shines_on(scene.light, p));
+  EXPECT_EQ(light_size(scene.light), 2.0 * static_cast<double>(std::get<PointLight>(scene.light.kind).radius_m));
+}
+
+/// A sphere's rays leave every receiver around its own way to the centre; a disk's only where it faces the receiver.
+TEST(PointLight, IsTracedAsASphere_FromEverySide) {
+  Light light;
+  light.kind = PointLight{.position_ws = {1.0f, 2.0f, 3.0f}, .radius_m = 0.25f};
+  const truth::AreaLight area = make_area_light(light);
+  for (int face = 0; face < kCubeFaces; ++face) {
+    glm::dvec3 from(1.0, 2.0, 3.0);
+    from[face / 2] += face % 2 == 0 ? 4.0 : -4.0;
+    const truth::AreaLight::Aim aim = area.aim(from);
+    const glm::dvec3 way = area.centre_direction(from);
+    EXPECT_NEAR(glm::length(way), 4.0, 1e-6);
+    for (const glm::dvec3& half : {aim.u, aim.v}) {
+      EXPECT_NEAR(glm::dot(half, way), 0.0, 1e-9) << face;
+      EXPECT_NEAR(glm::length(half), 0.25, 1e-3) << face;
+    }
+  }
+}
+
+TEST(PointLight, GoesRoundTheOrigin) {
+  Light light;
+  light.kind = PointLight{.position_ws = {3.0f, 4.0f, 0.0f}};
+  const Light quarter = turn_about_vertical(light, glm::radians(90.0));
+  EXPECT_NEAR(glm::distance(std::get<PointLight>(quarter.kind).position_ws, glm::vec3(0.0f, 4.0f, -3.0f)), 0.0f, 1e-5f);
+  const auto high = std::get<PointLight>(place_in_sky(light, {90.0, 90.0}).kind);
+  EXPECT_NEAR(glm::distance(high.position_ws, glm::vec3(0.0f, 5.0f, 0.0f)), 0.0f, 1e-5f);
+}
+
+// The picture that a spot shines through: how a scene file names it, and what is refused.
+
+using testing::HasSubstr;
+
+constexpr int kCookieLine = 6;
+
+/// A lamp over a floor, with a cookie in line 6.
+std::string cookie_scene(const std::string& value,
+                         const std::string& light = "type = 'spot'\nposition = [0, 3, 0]\ntarget = [0, 0, 0]") {
+  return fmt::format("title = 'Cookie'\n[light]\n{}\ncookie = {}\n[[object]]\nshape = 'plane'\nsize = [1, 1]\n", light,
+                     value);
+}
+
+/// A picture of 32 bits a pixel, rows from the top.
+std::string make_tga(std::uint16_t width, std::uint16_t height, const std::vector<std::uint8_t>& bgra) {
+  return std::string("\0\0\2\0\0\0\0\0\0\0\0\0", 12) + bytes_of(std::vector{width, height}) + "\x20\x28" +
+         bytes_of(bgra);
+}
+
+const std::string kRedAndBlue = make_tga(1, 2, {0, 0, 255, 255, 255, 0, 0, 128});
+
+TEST(Cookie, IsReadBesideTheScene) {
+  const TestFolder folder;
+  folder.write("pictures/two.tga", kRedAndBlue);
+  const Scene scene = load_scene(folder.write("a.toml", cookie_scene("'pictures/two.tga'")));
+  const Texture* cookie = find_cookie(scene.light);
+  ASSERT_TRUE(cookie);
+  EXPECT_EQ(cookie->width, 1);
+  EXPECT_EQ(cookie->height, 2);
+  EXPECT_EQ(cookie->rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 0, 255, 128}));
+  EXPECT_EQ(find_cookie(place_in_sky(scene.light, {10.0, 40.0})), cookie) << "the light keeps it when it is turned";
+  EXPECT_TRUE(scene.textures.empty());
+}
+
+TEST(Cookie, IsAPartOfTheLightsContent_ByItsPixels) {
+  const TestFolder folder;
+  const auto content = [&](const char* name, const std::string& picture) {
+    folder.write(name, picture);
+    return list_light_content(load_scene(folder.write("a.toml", cookie_scene(fmt::format("'{}'", name)))).light);
+  };
+  const std::vector<std::string> two = content("two.tga", kRedAndBlue);
+  EXPECT_EQ(content("copy.tga", kRedAndBlue), two);
+  EXPECT_NE(content("two.tga", make_tga(2, 1, {0, 0, 255, 255, 255, 0, 0, 128})), two) << "the same pixels in a row";
+  EXPECT_NE(content("two.tga", make_tga(1, 2, {0, 0, 254, 255, 255, 0, 0, 128})), two);
+  Light bare = load_scene(folder.path() / "a.toml").light;
+  std::get<Spot>(bare.kind).cookie = nullptr;
+  EXPECT_EQ(list_light_content(bare), std::vector(two.begin(), two.end() - 1));
+}
+
+TEST(Cookie, ThatCannotBeRead_IsTheFaultOfTheLineThatNamesIt) {
+  const TestFolder folder;
+  const auto expect_complaint = [&](const std::string& value, const std::vector<std::string>& words) {
+    const auto scene = folder.write("bad.toml", cookie_scene(value));
+    const Error error = error_of([&] { load_scene(scene); });
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    EXPECT_EQ(error.where(), fmt::format("{}:{}", scene.string(), kCookieLine)) << error.what();
+    for (const std::string& word : words) EXPECT_THAT(error.message(), HasSubstr(word));
+    EXPECT_THAT(error.message(), testing::Not(HasSubstr("\n")));
+  };
+  const auto expect_bad_picture = [&](const std::string& bytes, const std::string& word) {
+    folder.write("x.png", bytes);
+    expect_complaint("'x.png'", {"'cookie' in [light]", (folder.path() / "x.png").string(), word});
+  };
+  expect_complaint("'none.png'", {"'cookie' in [light]", "there is no file", "none.png"});
+  expect_complaint("'.'", {"'cookie' in [light]", "this is not a file"});
+  expect_complaint("''", {"'cookie' in [light]", "this is not a file"});
+  expect_complaint("7", {"'cookie' in [light] must be a string"});
+  expect_bad_picture("", "no usable size: 0 bytes");
+  expect_bad_picture("a text", "cannot be decoded: use PNG or JPEG");
+  const std::string png("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16);
+  expect_bad_picture(png + std::string("\0\0\0\2\0\0\0\5\x08\2\0\0\0", 13), "cannot be decoded");
+  expect_bad_picture(png + std::string("\0\0\0\0\0\0\0\5\x08\2\0\0\0", 13), "has no pixels: 0 x 5");
+  expect_bad_picture(png + std::string("\0\1\0\0\0\1\0\0\x08\2\0\0\0", 13), "65536 x 65536 pixels; at most 16384");
+}
+
+TEST(Cookie, OfASun_IsAnUnknownKey) {
+  const TestFolder folder;
+  folder.write("two.tga", kRedAndBlue);
+  const auto scene = folder.write("sun.toml", cookie_scene("'two.tga'", "elevation_deg = 40\nazimuth_deg = 0"));
+  EXPECT_THAT(error_of([&] { load_scene(scene); }).message(), HasSubstr("unknown key 'cookie' in [light]"));
+}
+
+}  // namespace
+}  // namespace shadowbench::scene

@@ -1,0 +1,419 @@
+#include "harness/scene/scene.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "harness/scene/lights/light_fit.h"
+#include "harness/scene/load.h"
+#include "harness/scene/mesh_tools.h"
+#include "reference/truth/visibility.h"
+#include "test_files.h"
+#include "tests/harness/scene/gltf_parts.h"
+
+namespace shadowbench::scene {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Scene make_scene() {
+  Scene scene;
+  scene.meshes.push_back(make_plane({2.0f, 2.0f}, 2));
+  scene.meshes.back().name = "floor";
+  scene.materials.push_back({.name = "grey"});
+  scene.cameras.emplace_back();
+  return scene;
+}
+
+std::string message_of(const Scene& scene) {
+  const Error error = error_of([&] { validate(scene, "file.toml"); });
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  EXPECT_EQ(error.where(), "file.toml");
+  return error.message();
+}
+
+TEST(ValidateTest, SoundScene_PassesUnchanged) {
+  const Scene scene = validate(make_scene(), "file.toml");
+  EXPECT_EQ(scene.triangle_count(), 8U);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(ValidateTest, PositionNotFinite_NamesMeshAndVertex) {
+  for (const float bad : {kNaN, kInfinity, -kInfinity, 1e30f}) {
+    Scene scene = make_scene();
+    scene.meshes[0].vertices[3].position_ws.y = bad;
+    EXPECT_THAT(message_of(scene), AllOf(HasSubstr("vertex 3"), HasSubstr("'floor'")));
+  }
+}
+
+TEST(ValidateTest, NormalOrTextureCoordinateNotFinite_NamesMeshAndVertex) {
+  Scene scene = make_scene();
+  scene.meshes[0].vertices[2].normal_ws.x = kNaN;
+  EXPECT_THAT(message_of(scene), AllOf(HasSubstr("vertex 2"), HasSubstr("normal")));
+  scene = make_scene();
+  scene.meshes[0].vertices[1].uv.x = kInfinity;
+  EXPECT_THAT(message_of(scene), AllOf(HasSubstr("vertex 1"), HasSubstr("texture coordinate")));
+}
+
+TEST(ValidateTest, AlphaThatCannotBlend_IsNamed) {
+  for (const float bad : {1.5f, -0.25f, kNaN, kInfinity}) {
+    Scene scene = make_scene();
+    scene.materials[0].base_color.a = bad;
+    if (std::isfinite(bad)) EXPECT_NO_THROW(validate(scene, "file.toml")) << "an opaque material's says nothing";
+    scene.materials[0].alpha_mode = AlphaMode::kBlend;
+    EXPECT_THAT(message_of(scene), AllOf(HasSubstr("'grey'"), HasSubstr(fmt::format("{}", bad)), HasSubstr("0 and 1")));
+  }
+}
+
+TEST(ValidateTest, IndexOutOfRange_IsAnError) {
+  Scene scene = make_scene();
+  scene.meshes[0].indices[5] = 9;
+  EXPECT_THAT(message_of(scene), AllOf(HasSubstr("index 5"), HasSubstr("9 vertices")));
+}
+
+TEST(ValidateTest, MaterialOrTextureOutOfRange_IsAnError) {
+  Scene scene = make_scene();
+  scene.meshes[0].material = 1;
+  EXPECT_THAT(message_of(scene), HasSubstr("material 1 of 1"));
+  scene = make_scene();
+  scene.materials[0].base_color_texture = 0;
+  EXPECT_THAT(message_of(scene), HasSubstr("texture 0 of 0"));
+}
+
+TEST(ValidateTest, EmptyScene_IsAnError) {
+  Scene scene = make_scene();
+  scene.meshes.clear();
+  EXPECT_THAT(message_of(scene), HasSubstr("empty"));
+}
+
+TEST(ValidateTest, TrianglesWithoutArea_AreDroppedCountedAndTold) {
+  Scene scene = make_scene();
+  scene.meshes[0].indices.insert(scene.meshes[0].indices.end(), {0, 0, 1, 0, 1, 2});
+  const Scene valid = validate(scene, "file.toml");
+  EXPECT_EQ(valid.triangle_count(), 8U);
+  EXPECT_THAT(valid.warnings, testing::ElementsAre(HasSubstr("2 of 10 triangles")));
+}
+
+TEST(ValidateTest, TinyButSoundTriangles_AreKept) {
+  Scene scene = make_scene();
+  for (Vertex& vertex : scene.meshes[0].vertices) vertex.position_ws *= 1e-12f;
+  EXPECT_EQ(validate(scene, "file.toml").triangle_count(), 8U);
+}
+
+TEST(ValidateTest, OnlyTrianglesWithoutArea_IsAnError) {
+  Scene scene = make_scene();
+  scene.meshes[0].indices = {0, 0, 1};
+  EXPECT_THAT(message_of(scene), HasSubstr("none of its 1 triangles has an area"));
+}
+
+TEST(ValidateTest, VerticesThatNoTriangleUses_DoNotWidenTheBounds) {
+  Scene scene = make_scene();
+  scene.meshes[0].vertices.push_back({glm::vec3(500.0f), {0, 1, 0}, {}});
+  EXPECT_FLOAT_EQ(validate(scene, "file.toml").bounds().max.x, 1.0f);
+}
+
+TEST(ValidateTest, NormalsOfAnyLength_BecomeUnitLength) {
+  Scene scene = make_scene();
+  scene.meshes[0].vertices[0].normal_ws = {0.0f, 5.0f, 0.0f};
+  scene.meshes[0].vertices[1].normal_ws = glm::vec3(0.0f);
+  const Scene valid = validate(scene, "file.toml");
+  for (const Vertex& v : valid.meshes[0].vertices) EXPECT_EQ(v.normal_ws, glm::vec3(0, 1, 0));
+}
+
+TEST(ValidateTest, LightWithoutDirection_IsAnError) {
+  Scene scene = make_scene();
+  scene.light.kind = Sun{glm::vec3(0.0f)};
+  EXPECT_THAT(message_of(scene), HasSubstr("light has no direction"));
+  scene.light.kind = Sun{{0.0f, kNaN, 0.0f}};
+  EXPECT_THAT(message_of(scene), HasSubstr("light has no direction"));
+}
+
+TEST(ValidateTest, LightDirection_BecomesUnitLength) {
+  Scene scene = make_scene();
+  scene.light.kind = Sun{{0.0f, -8.0f, 0.0f}};
+  EXPECT_EQ(-to_light(validate(scene, "file.toml").light, {}), glm::vec3(0, -1, 0));
+}
+
+TEST(ValidateTest, NegativeOrInfiniteLight_IsAnError) {
+  Scene scene = make_scene();
+  scene.light.intensity = -1.0f;
+  EXPECT_THAT(message_of(scene), HasSubstr("intensity"));
+  scene.light.intensity = 1.0f;
+  scene.light.color.x = kInfinity;
+  EXPECT_THAT(message_of(scene), HasSubstr("colour"));
+  scene.light.color.x = 1.0f;
+  std::get<Sun>(scene.light.kind).angular_diameter_deg = kNaN;
+  EXPECT_THAT(message_of(scene), HasSubstr("angular diameter"));
+}
+
+TEST(ValidateTest, CameraWithoutDirectionOrView_IsAnError) {
+  Scene scene = make_scene();
+  scene.cameras[0].forward_ws = glm::vec3(0.0f);
+  EXPECT_THAT(message_of(scene), HasSubstr("camera 'main' has no direction"));
+  scene = make_scene();
+  scene.cameras[0].vertical_fov_rad = 4.0f;
+  EXPECT_THAT(message_of(scene), HasSubstr("field of view"));
+  scene = make_scene();
+  scene.cameras[0].position_ws.z = kNaN;
+  EXPECT_THAT(message_of(scene), HasSubstr("stands at"));
+}
+
+TEST(ValidateTest, CameraUpAlongItsView_IsReplacedByAnAxisAcrossIt) {
+  for (const glm::vec3& forward : {glm::vec3(0, -1, 0), glm::vec3(0, 1, 0), glm::vec3(0, -3, 0)}) {
+    Scene scene = make_scene();
+    scene.cameras[0].forward_ws = forward;
+    const Camera camera = validate(scene, "file.toml").cameras[0];
+    EXPECT_NEAR(glm::length(camera.up_ws), 1.0f, 1e-6f);
+    EXPECT_NEAR(glm::dot(camera.up_ws, camera.forward_ws), 0.0f, 1e-6f);
+  }
+}
+
+TEST(ValidateTest, CamerasOfEqualName_AreToldApart) {
+  Scene scene = make_scene();
+  scene.cameras.resize(3);
+  const Scene valid = validate(scene, "file.toml");
+  EXPECT_EQ(valid.cameras[1].name, "main 2");
+  EXPECT_EQ(valid.cameras[2].name, "main 3");
+}
+
+// What rays hit of a scene: what casts a shadow, but for the holes of its material; and where kernels lie in a map.
+
+/// A roof over the left half of a floor that is seen from above.
+Scene make_roofed_scene() {
+  Scene scene;
+  scene.materials.emplace_back();
+  Mesh roof;
+  for (const glm::vec3 p : {glm::vec3(-2, 1, -2), glm::vec3(0, 1, -2), glm::vec3(-2, 1, 2), glm::vec3(0, 1, 2)})
+    roof.vertices.push_back({p, {0.0f, 1.0f, 0.0f}, {0.5f * p.x, 0.5f * p.z}});
+  roof.indices = {0, 1, 2, 2, 1, 3};
+  scene.meshes = {roof};
+  return scene;
+}
+
+truth::ReceiverImage make_receivers() {
+  truth::ReceiverImage receivers{32, 1, {}};
+  for (int i = 0; i < 32; ++i) {
+    const float x = -1.0f + 2.0f * (static_cast<float>(i) + 0.5f) / 32.0f;
+    receivers.points.push_back({{x, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, true});
+  }
+  return receivers;
+}
+
+std::vector<float> trace_hard(const Scene& scene) {
+  return truth::trace_hard(truth::Occluders(list_occluders(scene)), make_receivers(), make_area_light(scene.light));
+}
+
+TEST(Occluders, MeshesThatCastNoShadow_BlockNothing) {
+  Scene scene = make_roofed_scene();
+  EXPECT_EQ(trace_hard(scene).front(), 0.0f);
+  EXPECT_EQ(trace_hard(scene).back(), 1.0f);
+  scene.meshes[0].casts_shadow = false;
+  EXPECT_TRUE(list_occluders(scene).empty());
+  EXPECT_EQ(trace_hard(scene), std::vector<float>(32, 1.0f));
+}
+
+TEST(Occluders, HolesOfAMaterial_LetRaysThrough) {
+  Scene scene = make_roofed_scene();
+  scene.materials[0].alpha_mode = AlphaMode::kMask;
+  scene.materials[0].base_color.a = 0.2f;
+  EXPECT_EQ(trace_hard(scene), std::vector<float>(32, 1.0f));
+  scene.materials[0].alpha_cutoff = 0.1f;
+  EXPECT_EQ(trace_hard(scene).front(), 0.0f);
+  // u runs from -1 to 0 under the roof, and from -0.5 above the receivers: the texture's second texel, then its first.
+  scene.materials[0].alpha_cutoff = 0.5f;
+  scene.materials[0].base_color.a = 1.0f;
+  scene.materials[0].base_color_texture = 0;
+  scene.textures.push_back(
+      {"striped", 4, 1, {255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 255}});
+  const std::vector<float> hard = trace_hard(scene);
+  EXPECT_NEAR(static_cast<double>(std::count(hard.begin(), hard.begin() + 16, 1.0f)), 8.0, 2.0)
+      << "the transparent texel";
+  EXPECT_EQ(hard[15], 0.0f) << "an opaque one";
+}
+
+TEST(Occluders, AMaterialThatBlends_DimsRays) {
+  Scene scene = make_roofed_scene();
+  scene.materials[0].alpha_mode = AlphaMode::kBlend;
+  scene.materials[0].base_color.a = 0.2f;
+  EXPECT_NEAR(trace_hard(scene).front(), 0.8f, 1e-6f);
+  EXPECT_EQ(trace_hard(scene).back(), 1.0f);
+  scene.materials[0].base_color_texture = 0;
+  scene.textures.push_back({"half", 1, 1, {255, 255, 255, 51}});
+  EXPECT_NEAR(trace_hard(scene).front(), 1.0f - 0.2f * 0.2f, 1e-6f);
+}
+
+/// Whether light falls through a roof over the receivers' left and right half. The roof is a picture whose right half
+/// is a hole, under a KHR_texture_transform.
+std::pair<bool, bool> lit_halves(const std::string& transform) {
+  scene::GltfParts parts = scene::textured_parts(R"({"bufferView": 3, "mimeType": "image/png"})");
+  parts.nodes = R"([{"mesh": 0, "translation": [-1, 1, 1], "scale": [2, 2, 2],
+      "rotation": [-0.70710678118654752, 0, 0, 0.70710678118654752]}])";
+  parts.more = fmt::format(R"(, "images": [{{"bufferView": 3, "mimeType": "image/png"}}], "textures": [{{"source": 0}}],
+      "materials": [{{"alphaMode": "MASK", "alphaCutoff": 0.75, "pbrMetallicRoughness": {{"baseColorTexture":
+      {{"index": 0, "extensions": {{"KHR_texture_transform": {}}}}}}}}}])",
+                           transform);
+  const std::vector<float> hard = trace_hard(scene::add_mesh_file({}, scene::import_parts(parts)));
+  const auto lit = [&](std::ptrdiff_t first) { return std::count(&hard[0] + first, &hard[0] + first + 16, 1.0f); };
+  EXPECT_EQ(lit(0) + lit(16), 16) << "half of them";
+  return {lit(0) == 16, lit(16) == 16};
+}
+
+TEST(Occluders, HoleOfATransformedTexture_IsWhereTheTransformPutsIt) {
+  EXPECT_EQ(lit_halves("{}"), std::pair(false, true));
+  EXPECT_EQ(lit_halves(R"({"offset": [0.5, 0]})"), std::pair(true, false));
+  EXPECT_EQ(lit_halves(R"({"scale": [-1, 1]})"), std::pair(true, false));
+  EXPECT_EQ(lit_halves(R"({"rotation": 3.14159265358979})"), std::pair(true, false));
+}
+
+TEST(MapGrid, IsThatOfTheLightsMap) {
+  Scene scene = make_roofed_scene();
+  scene.light.kind = Sun{glm::normalize(glm::vec3(-0.5f, -1.0f, -0.25f))};
+  const LightFrustum frustum = fit_light(scene, FitMode::kTight, 64, 2.0);
+  const truth::MapGrid grid = make_map_grid(frustum);
+  const auto texel_of = [&](const glm::dvec3& p) {
+    return 64.0 * glm::dvec3(glm::dmat4(frustum.uv_depth_from_world) * glm::dvec4(p, 1.0));
+  };
+  const glm::dvec3 start = texel_of(glm::dvec3(0.0));
+  const glm::dvec3 right = texel_of(grid.texel_size_ws * grid.right) - start;
+  const glm::dvec3 up = texel_of(grid.texel_size_ws * grid.up) - start;
+  const glm::dvec3 towards = texel_of(grid.to_light) - start;
+  EXPECT_LT(glm::distance(right, glm::dvec3(1.0, 0.0, 0.0)), 1e-4);
+  EXPECT_LT(glm::distance(up, glm::dvec3(0.0, 1.0, 0.0)), 1e-4);
+  EXPECT_LT(glm::length(glm::dvec2(towards)), 1e-4);
+  EXPECT_LT(towards.z, 0.0);
+}
+
+// A scene far from its origin: every stage sees it as if it were near.
+
+/// A floor and a model, under a lamp, moved along x and z.
+std::string toml_at(double distance) {
+  const auto at = [&](double x, double y, double z) {
+    return fmt::format("[{:.12g}, {}, {:.12g}]\n", distance + x, y, distance + z);
+  };
+  return "title = \"far\"\n[camera]\nposition = " + at(3.1, 2.5, 4.3) + "target = " + at(0.3, 0.5, 0.2) +
+         "[[light]]\nname = \"lamp\"\ntype = \"spot\"\nposition = " + at(1.3, 3.7, 0.1) +
+         "target = " + at(0.1, 0.0, 0.7) +
+         "[[light]]\nname = \"sun\"\nazimuth_deg = 40\nelevation_deg = 50\nmap_center = " + at(0.1, 0.0, 0.3) +
+         "map_width = 3\n[[object]]\nshape = \"plane\"\nsize = [8.2, 8.2]\ncenter = " + at(0.1, 0.1, 0.3) +
+         "[[object]]\nshape = \"model\"\nfile = \"far.obj\"\nscale = 2\nrotation_deg = [0, 90, 0]\n";
+}
+
+/// A square whose place is in its vertices.
+std::string obj_at(double x, double z) {
+  return fmt::format("v {0} 0 {1}\nv {2} 0 {1}\nv {2} 1.1 {1}\nv {0} 1.1 {1}\nf 1 2 3 4\n", x, z, x + 1.3);
+}
+
+struct Place {
+  const char* what;
+  std::function<Scene(double distance)> load_at;
+};
+
+std::vector<Place> list_places() {
+  return {{"a scene file",
+           [](double d) {
+             const TestFolder folder;
+             // Turned by a quarter and doubled, the square stands at twice (z, -x).
+             folder.write("far.obj", obj_at(-0.5 * d, 0.5 * d));
+             return load(folder.write("far.toml", toml_at(d)).string(), {});
+           }},
+          {"an OBJ file",
+           [](double d) {
+             const TestFolder folder;
+             return load(folder.write("far.obj", obj_at(d, d)).string(), {});
+           }},
+          {"a glTF file",
+           [](double d) {
+             const TestFolder folder;
+             GltfParts parts;
+             parts.nodes = fmt::format(R"([{{"mesh": 0, "translation": [{0}, 0.3, {0}]}},
+                 {{"extensions": {{"KHR_lights_punctual": {{"light": 0}}}}, "translation": [{0}, 5, {0}]}},
+                 {{"camera": 0, "translation": [{1}, 2, {1}]}}])",
+                                       d, d + 3.1);
+             parts.scenes = R"([{"nodes": [0, 1, 2]}])";
+             parts.more = R"(, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual":
+                 {"lights": [{"type": "point"}]}}, "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}])";
+             folder.write("data.bin", parts.buffer);
+             return load(folder.write("far.gltf", gltf_of(parts)).string(), {});
+           }}};
+}
+
+/// A scene's places as its file has them.
+std::vector<glm::dvec3> list_places_of(const Scene& scene) {
+  std::vector<glm::dvec3> all;
+  for (const Mesh& mesh : scene.meshes)
+    for (const Vertex& v : mesh.vertices) all.emplace_back(v.position_ws);
+  for (const Camera& camera : scene.cameras) all.emplace_back(camera.position_ws);
+  for (const Scene& lit : separate_lights(scene)) {
+    if (const auto beam = find_beam(lit.light)) all.push_back(beam->position_ws);
+    if (lit.light.map_window) all.push_back(lit.light.map_window->center_ws);
+  }
+  for (glm::dvec3& place : all) place += scene.origin_ws;
+  return all;
+}
+
+double largest_of(const Scene& scene) {
+  const Bounds bounds = scene.bounds();
+  const glm::vec3 most = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+  return static_cast<double>(std::max({most.x, most.y, most.z}));
+}
+
+TEST(SceneOrigin, FarScenes_KeepEveryDigitOfTheirFile) {
+  for (const Place& place : list_places()) {
+    SCOPED_TRACE(place.what);
+    const Scene near = place.load_at(0.0);
+    EXPECT_EQ(near.origin_ws, glm::dvec3(0.0));
+    const std::vector<glm::dvec3> expected = list_places_of(near);
+    for (const double distance : {100.0, 200.0, 500.0, 10e3, 1e6, 1e9}) {
+      SCOPED_TRACE(distance);
+      const Scene far = place.load_at(distance);
+      EXPECT_LT(largest_of(far), 16.0);
+      EXPECT_THAT(far.warnings, testing::ElementsAreArray(near.warnings));
+      const std::vector<glm::dvec3> places = list_places_of(far);
+      ASSERT_EQ(places.size(), expected.size());
+      const double rounding = 2e-6 + 4e-16 * distance;
+      for (std::size_t i = 0; i < places.size(); ++i)
+        EXPECT_LT(glm::distance(places[i] - glm::dvec3(distance, 0.0, distance), expected[i]), rounding) << i;
+    }
+  }
+}
+
+TEST(SceneOrigin, WhatIsSaved_IsReadBack) {
+  const TestFolder folder;
+  folder.write("far.obj", obj_at(-5e3, 5e3));
+  const auto file = folder.write("far.toml", toml_at(10e3));
+  const Scene scene = load(file.string(), {});
+  const Scene read =
+      load(folder
+               .write("saved.toml", write_scene({file, &scene, scene.cameras, {scene.light, scene.other_lights.at(0)}},
+                                                folder.path() / "saved.toml"))
+               .string(),
+           {});
+  EXPECT_EQ(read.origin_ws, scene.origin_ws);
+  EXPECT_EQ(list_places_of(read), list_places_of(scene));
+}
+
+TEST(SceneOrigin, PositionsThatTheirFileHasRounded_AreAWarning) {
+  const auto load_at = [](float distance) {
+    const TestFolder folder;
+    GltfParts parts;
+    std::vector<float> quad = kQuad;
+    for (float& number : quad) number += distance;
+    parts.buffer = bytes_of(quad) + bytes_of(kQuadIndices);
+    folder.write("data.bin", parts.buffer);
+    return load(folder.write("baked.gltf", gltf_of(parts)).string(), LoadOptions{{}, true}).warnings;
+  };
+  EXPECT_THAT(load_at(0.0f), testing::IsEmpty());
+  EXPECT_THAT(load_at(100.0f), testing::IsEmpty());
+  EXPECT_THAT(load_at(10e3f), testing::ElementsAre(testing::HasSubstr("rounds positions in its file to 0.0012 m")));
+}
+
+}  // namespace
+}  // namespace shadowbench::scene

@@ -1,0 +1,404 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "base/error.h"
+#include "harness/run/float_images.h"
+#include "harness/run/run_plan.h"
+#include "harness/view/side_measurement.h"
+#include "harness/view/stage.h"
+#include "harness/view/view_state.h"
+#include "reference/metrics/error_stats.h"
+#include "report/records/json_io.h"
+#include "tests/harness/scene/gltf_parts.h"
+#include "tests/harness/scene/same_scene.h"
+#include "tests/harness/view/view_fixture.h"
+
+namespace shadowbench::test {
+namespace {
+
+// What is saved from the window is what the window shows: loaded again, and run.
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class SaveTest : public ViewTest {
+ protected:
+  /// Moves what can be moved, by what is no round number.
+  static void move(view::ViewSettings& settings) {
+    for (scene::Camera& camera : settings.cameras) {
+      camera.position_ws += 0.07f * glm::length(camera.position_ws) * glm::vec3(0.31f, 0.17f, -0.23f);
+      camera.forward_ws = glm::normalize(camera.forward_ws + glm::vec3(0.013f, -0.031f, 0.017f));
+      camera.vertical_fov_rad *= 1.01f;
+    }
+    for (scene::Light& light : settings.lights)
+      light = scene::turn_light(
+          light, [](const glm::vec3& v) { return glm::normalize(v + glm::vec3(0.1234f, -0.05f, -0.0777f)); });
+  }
+
+  /// Saves the scene and loads it: the same triangles, cameras and lights, and the same images through both sides.
+  void expect_same_scene(const view::ViewState& state) const {
+    const fs::path file = folder() / "saved" / "again.toml";
+    view::save_scene(state, file);
+    scene::Scene loaded = run::load_scene(state.options, file.string());
+    expect_same_geometry(loaded, state.scene);
+    expect_views(loaded, state.cameras, state.lights);
+    loaded.light = list_lights(loaded)[state.light];
+    loaded.other_lights.clear();
+    for (std::size_t side = 0; side < view::kSides; ++side)
+      EXPECT_EQ(count_different(draw(state.options, loaded, loaded.cameras[state.camera], state.sides[side].filter),
+                                draw(state, side)),
+                0u)
+          << side;
+  }
+
+  /// Saves the experiment and runs it: its cells are the sides, with the very images that these draw.
+  void expect_same_run(const view::ViewState& state) const {
+    view::save_experiment(state, folder() / "e" / "shown.toml");
+    const Outcome outcome = run("run e/shown.toml --grids --out out --no-truth --rounds 1 --phases 2");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err << read_text(folder() / "e" / "shown.toml");
+    const records::Results results = records::read_results(folder() / "out" / "results.json");
+    EXPECT_THAT(results.run.experiment.title, HasSubstr(state.scene.title));
+    ASSERT_EQ(results.cells.size(), state.options.filters.size());
+    images::ExrFile exr = images::read_exr(folder() / "out" / results.cells.front().images.exr.value());
+    for (std::size_t i = 0; i < results.cells.size(); ++i) {
+      const filters::FilterRequest& request = state.options.filters[i];
+      EXPECT_EQ(results.cells[i].filter, request.spec.id);
+      EXPECT_EQ(results.cells[i].view, state.active_camera().name);
+      measure::MeasuredCell cell;
+      cell.label = results.cells[i].images.parts.value();
+      run::take_float_images(cell, exr.parts);
+      const images::Image drawn = draw(state.options, state.scene, state.active_camera(), request);
+      EXPECT_EQ(count_different(cell.visibility, drawn), 0u) << cell.label;
+      const auto [least, most] = std::ranges::minmax(drawn.texels);
+      EXPECT_LT(least, 0.3f) << "there is shadow";
+      EXPECT_GT(most, 0.9f) << "there is light";
+    }
+  }
+
+  void expect_same(const view::ViewState& state) const {
+    expect_same_scene(state);
+    expect_same_run(state);
+  }
+};
+
+TEST_F(SaveTest, CubesUnderAnotherSun) {
+  view::ViewState state = view::make_view_state(make_options(), "cubes", sides("vsm:radius=6", "tent3x3"));
+  change(state, [&](view::ViewSettings& settings) {
+    move(settings);
+    settings.sides[0].filter.values["min_variance"] = 3.1e-5;
+  });
+  expect_same(state);
+}
+
+TEST_F(SaveTest, SpotLight) {
+  options::RunOptions options = make_options();
+  options.range.behind_test = false;
+  view::ViewState state = view::make_view_state(options, "lamp", sides("vsm:radius=6", "tent3x3"));
+  change(state, move);
+  expect_same(state);
+  EXPECT_THAT(read_text(folder() / "e" / "shown.toml"), HasSubstr("behind_test = 'off'"));
+}
+
+TEST_F(SaveTest, SpotLightNarrowerThanItsInnerCone) {
+  view::ViewState state = view::make_view_state(make_options(), "lamp", sides("tent3x3", "none"));
+  change(state, [](view::ViewSettings& settings) { std::get<scene::Spot>(settings.lights[0].kind).cone_deg = 40.0f; });
+  expect_same(state);
+}
+
+TEST_F(SaveTest, OneOfThreeLights) {
+  view::ViewState state = view::make_view_state(make_options(), "three_lights", sides("vsm:radius=6", "tent3x3"));
+  for (const std::size_t light : {1u, 2u}) {
+    change(state, [&](view::ViewSettings& settings) {
+      settings.light = light;
+      move(settings);
+    });
+    expect_same(state);
+  }
+}
+
+TEST_F(SaveTest, ALightChosenByItsName_Shines) {
+  view::ViewState state = view::make_view_state(make_options(), "three_lights", sides("vsm:radius=6", "tent3x3"));
+  view::choose_light(state, "spot");
+  EXPECT_EQ(state.scene.light.name, "spot");
+  EXPECT_EQ(state.lights[state.light].name, "spot");
+}
+
+TEST_F(SaveTest, BareModelOnItsFloor_ThroughTheSecondCamera) {
+  scene::GltfParts parts;
+  parts.more = R"(, "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}},
+      {"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 1.3, "znear": 0, "zfar": 10}}])";
+  parts.nodes = R"([{"mesh": 0}, {"camera": 0, "translation": [0.5, 0.4, 4]},
+      {"camera": 1, "translation": [0.5, 0.9, 4], "rotation": [-0.1, 0.2, 0, 0.97]}])";
+  parts.scenes = R"([{"nodes": [0, 1, 2]}])";
+  write("data.bin", parts.buffer);
+  const fs::path model = write("quad.gltf", scene::gltf_of(parts));
+  options::RunOptions options = make_options();
+  options.ground = true;
+  view::ViewState state = view::make_view_state(options, model.string(), sides("vsm:radius=6", "tent3x3"));
+  ASSERT_TRUE(state.scene.floor.has_value());
+  for (const std::size_t camera : {0u, 1u}) {
+    change(state, [&](view::ViewSettings& settings) {
+      settings.camera = camera;
+      settings.cameras[0].position_ws += glm::vec3(0.013f, 0.7f, -0.017f);
+      settings.cameras[0].forward_ws = glm::normalize(glm::vec3(0.013f, -0.2f, -1.0f));
+    });
+    expect_same(state);
+  }
+}
+
+TEST_F(SaveTest, EverySettingOfTheMapAndTheLookup) {
+  options::RunOptions options = make_options();
+  options.map = {GL_DEPTH_COMPONENT16, {false, 30.0}};
+  options.range = {filters::Border::kEdge, false, true};
+  options.seed = 17;
+  view::ViewState state = view::make_view_state(options, "edge", sides("poisson:radius=3", "tent3x3"));
+  change(state, [&](view::ViewSettings& settings) {
+    view::set_bias(settings, {"constant:depth=1e-4", "slope:texels=0.7"});
+  });
+  expect_same(state);
+  options = make_options();
+  options.map.curve = {true, 1e5};
+  options.snap = true;
+  options.pad_texels = 13.0;
+  state = view::make_view_state(options, "cubes", sides("none", "tent3x3"));
+  for (const char* fit : {"cascades:count=3,split=0.37", "view"}) {
+    change(state, [&](view::ViewSettings& settings) { view::set_fit(settings, fit); });
+    expect_same(state);
+  }
+}
+
+TEST_F(SaveTest, OneFilterTwice_AndAUsersOwn) {
+  view::ViewState state = view::make_view_state(make_options(), "cubes", sides("vsm:radius=2", "vsm:radius=9"));
+  expect_same_run(state);
+  const fs::path own = write("filters/own.glsl", read_text(user_filter("clamped_reference.glsl")));
+  change(state, [&](view::ViewSettings& settings) {
+    settings.sides[0].filter = request("own", own);
+    settings.sides[1].filter = settings.sides[0].filter;
+  });
+  ASSERT_EQ(state.options.filters.size(), 1u);
+  expect_same_run(state);
+  EXPECT_THAT(read_text(folder() / "e" / "shown.toml"), HasSubstr("'../filters/own.glsl'"));
+}
+
+TEST_F(SaveTest, TruthIsNoCell_AndTwoTruthsMakeARunAllTheSame) {
+  view::ViewState state = view::make_view_state(make_options(), "cubes", sides("tent3x3", "none"));
+  change(state, [&](view::ViewSettings& settings) { settings.sides[1].truth = true; });
+  expect_same_run(state);
+  change(state, [&](view::ViewSettings& settings) { settings.sides[0].truth = true; });
+  view::save_experiment(state, folder() / "truths.toml");
+  ASSERT_EQ(run("run truths.toml --grids --out out --no-truth --rounds 1 --phases 2").exit_code, 0);
+  EXPECT_EQ(records::read_results(folder() / "out" / "results.json").cells.size(), 1u);
+}
+
+TEST_F(SaveTest, NoFileIsWrittenOverAScene) {
+  options::RunOptions options = make_options();
+  const std::string cubes = read_text(options.resources.scenes / "cubes.toml");
+  options.resources.scenes = folder() / "built-in";
+  const fs::path edge = write("built-in/teaching/edge.toml", cubes), own = write("own.toml", cubes);
+  const view::ViewState state = view::make_view_state(options, own.string(), sides("tent3x3", "none"));
+  const auto refusal = [&](const fs::path& file) {
+    try {
+      view::save_scene(state, file);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+      return error.message();
+    }
+    return std::string("none");
+  };
+  EXPECT_THAT(refusal(folder() / "." / "own.toml"), HasSubstr("loaded from this file"));
+  fs::create_symlink(own, folder() / "link.toml");
+  EXPECT_THAT(refusal(folder() / "link.toml"), HasSubstr("loaded from this file"));
+  EXPECT_THAT(refusal(folder() / "built-in" / "new.toml"), HasSubstr("built-in scenes"));
+  EXPECT_THAT(refusal(edge), HasSubstr("built-in scenes"));
+  EXPECT_THAT(refusal(folder() / "scene.gltf"), HasSubstr("end in .toml"));
+  EXPECT_EQ(refusal(folder() / "other.toml"), "none");
+  EXPECT_EQ(refusal(folder() / "other.toml"), "none") << "what was saved may be saved again";
+  EXPECT_THROW(view::save_experiment(state, own), Error);
+  EXPECT_EQ(read_text(own), cubes);
+  EXPECT_EQ(read_text(edge), cubes);
+}
+
+// Every lesson shows the fault that it names, by its metric, and reads the map where it lies.
+
+using State = view::SideMeasurement::State;
+
+class LessonsTest : public ViewTest {
+ protected:
+  static filters::Catalogue& catalogue() {
+    static filters::Catalogue all(options::find_resources().filters);
+    return all;
+  }
+
+  static view::Lesson find(const std::string& title) {
+    for (view::Lesson& lesson : view::read_lessons(options::find_resources().lessons))
+      if (lesson.title == title) return lesson;
+    ADD_FAILURE() << "there is no lesson '" << title << "'";
+    return {};
+  }
+
+  view::ViewState make_state(const view::Lesson& lesson, bool instead = false, int width = 480) const {
+    view::ViewState state = view::make_lesson_state(lesson, make_options(width, width * 9 / 16), catalogue());
+    if (instead) change(state, [&](view::ViewSettings& settings) { set_shared(settings, lesson.instead); });
+    state.options.attribution = false;
+    return state;
+  }
+
+  /// What the window measures of a state, in a run of its own.
+  static view::MeasuredSides measure(const view::ViewState& state) {
+    view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+    measurement.start(state);
+    for (int i = 0; i < 12000 && measurement.poll() == State::kRunning; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(measurement.poll(), State::kFinished) << measurement.text();
+    return measurement.results();
+  }
+
+  static const records::CellRecord& record(const view::MeasuredSides& sides, std::size_t side) {
+    return sides.find_side(side)->record;
+  }
+
+  static glm::ivec2 find_pixel(const view::ViewState& state, const glm::vec3& point_ws) {
+    return glm::ivec2(find_place(state, point_ws) * glm::vec2(state.options.width, state.options.height));
+  }
+
+  static void expect_lit_where_the_map_is_read(const view::Lesson& lesson, const view::ViewState& state,
+                                               const view::MeasuredSides& sides, float more_than) {
+    const glm::ivec2 pixel = find_pixel(state, lesson.reading.place_ws);
+    EXPECT_EQ(*sides.truth.at(pixel.x, pixel.y), 0.0f);
+    EXPECT_GT(*sides.find_side(lesson.reading.side)->visibility.at(pixel.x, pixel.y), more_than);
+  }
+};
+
+TEST_F(LessonsTest, Each_ReadsTheMapForAReceiverThatIsSeen) {
+  const auto lessons = view::read_lessons(options::find_resources().lessons);
+  EXPECT_EQ(lessons.size(), 5u);
+  for (const view::Lesson& lesson : lessons) {
+    SCOPED_TRACE(lesson.title);
+    const view::ViewState state = make_state(lesson);
+    view::Stage stage(renderer(), state.scene);
+    stage.draw(state, view::Changes::all());
+    const auto seen = stage.find_surface(find_pixel(state, lesson.reading.place_ws));
+    ASSERT_TRUE(seen);
+    EXPECT_LT(glm::distance(glm::vec3(*seen), lesson.reading.place_ws), 0.05f) << "something stands before it";
+    ASSERT_NE(stage.passes(lesson.reading.side), nullptr);
+    EXPECT_EQ(lesson.reading.content > 0, stage.passes(lesson.reading.side)->encoded_format().has_value());
+  }
+}
+
+TEST_F(LessonsTest, LightLeaks_AreOfOneSide_AndWhereTheMapIsRead) {
+  const view::Lesson lesson = find("Light leaks of VSM");
+  const view::ViewState state = make_state(lesson);
+  const view::MeasuredSides sides = measure(state);
+  EXPECT_GT(*record(sides, 0).artefact.leak, 0.3);
+  EXPECT_LT(*record(sides, 1).artefact.leak, 0.05);
+  expect_lit_where_the_map_is_read(lesson, state, sides, 0.2f);
+}
+
+/// How wide the penumbra of the post's shadow is, so far from its foot: metres in which visibility is between the two.
+double measure_penumbra_m(const view::ViewState& state, const images::Image& visibility, float away_m) {
+  const glm::vec3 foot_ws(1.75f, 0.0f, -0.85f);  // in ball.toml
+  const glm::vec3 along = -scene::to_light(state.scene.light, foot_ws),
+                  ahead = glm::normalize(along * glm::vec3(1, 0, 1));
+  const glm::vec3 across(ahead.z, 0.0f, -ahead.x);
+  constexpr int kSteps = 1200;
+  constexpr float kReach_m = 0.6f;
+  int between = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const float aside_m = kReach_m * (2.0f * static_cast<float>(i) / kSteps - 1.0f);
+    const glm::vec2 at = find_place(state, foot_ws + away_m * ahead + aside_m * across);
+    const glm::ivec2 pixel(at * glm::vec2(visibility.width, visibility.height));
+    const float value = *visibility.at(pixel.x, pixel.y);
+    between += value > 0.1f && value < 0.9f;
+  }
+  return 2.0 * static_cast<double>(kReach_m) * between / kSteps;
+}
+
+TEST_F(LessonsTest, Penumbra_GrowsWithTheDistanceOfItsCaster_OnlyWithPcss) {
+  const view::ViewState state = make_state(find("PCSS hardens at contacts"));
+  const view::MeasuredSides sides = measure(state);
+  const auto width = [&](std::size_t side, float away_m) {
+    return measure_penumbra_m(state, sides.find_side(side)->visibility, away_m);
+  };
+  const float near_m = 0.5f, far_m = 2.5f;
+  std::printf("left %.3f .. %.3f m, right %.3f .. %.3f m; RMSE %.4f, %.4f\n", width(0, near_m), width(0, far_m),
+              width(1, near_m), width(1, far_m), *record(sides, 0).error.rmse, *record(sides, 1).error.rmse);
+  EXPECT_GT(width(1, far_m), 2.0 * width(1, near_m));
+  EXPECT_LT(width(0, far_m), 1.3 * width(0, near_m));
+  EXPECT_LT(width(1, near_m), 0.5 * width(0, near_m));
+  EXPECT_LT(*record(sides, 1).error.rmse, 0.5 * *record(sides, 0).error.rmse);
+}
+
+TEST_F(LessonsTest, AcneWithoutBias_BecomesAContactGapWithMuch) {
+  const view::Lesson lesson = find("Acne against contact gap");
+  const auto faults = [&](bool instead) { return record(measure(make_state(lesson, instead, 960)), 0).artefact; };
+  const auto without = faults(false), with = faults(true);
+  ASSERT_TRUE(without.acne && with.acne && without.contact_gap && with.contact_gap) << "too few receivers";
+  std::printf("acne %.3f, %.3f; contact gap %.3f, %.3f\n", *without.acne, *with.acne, *without.contact_gap,
+              *with.contact_gap);
+  EXPECT_GT(*without.acne, 0.3);
+  EXPECT_LT(*without.contact_gap, 0.05);
+  EXPECT_LT(*with.acne, 0.05);
+  EXPECT_GT(*with.contact_gap, 0.5);
+}
+
+TEST_F(LessonsTest, EsmOverflows_AndLightsWhatIsDark) {
+  const view::Lesson lesson = find("ESM overflows");
+  const view::ViewState state = make_state(lesson);
+  const view::MeasuredSides sides = measure(state);
+  EXPECT_GT(*record(sides, 0).stability.overflow_texels, 10000);
+  EXPECT_EQ(record(sides, 1).stability.overflow_texels.value_or(0), 0);
+  EXPECT_GT(*record(sides, 0).artefact.leak, 0.3);
+  EXPECT_LT(*record(sides, 1).artefact.leak, 0.05);
+  expect_lit_where_the_map_is_read(lesson, state, sides, 0.99f);
+}
+
+class SeamsTest : public LessonsTest {
+ protected:
+  /// How far visibility jumps from one row to the next where both show the ground and a cascade ends between them: the
+  /// mean over all such places. The cascades are those of the first state that is asked for.
+  double measure_step(const view::ViewState& state) {
+    view::Stage stage(renderer(), state.scene);
+    stage.draw(state, view::Changes::all());
+    if (ends_m_.empty())
+      for (const scene::LightFrustum& layer : stage.light_map().layers)
+        ends_m_.push_back(std::get<scene::ViewSlice>(layer.share).end_m);
+    const images::Image places = render::read_image(stage.gbuffer().position(), 4);
+    const images::Image shown = render::read_image(stage.visibility(0, {0, state.options.width}), 1);
+    double sum = 0.0;
+    int count = 0;
+    for (int y = 0; y + 1 < shown.height; ++y)
+      for (int x = 0; x < shown.width; ++x) {
+        const float *far = places.at(x, y), *near = places.at(x, y + 1);
+        if (!is_ground(far) || !is_ground(near) || !has_seam(near[3], far[3])) continue;
+        sum += static_cast<double>(std::abs(*shown.at(x, y) - *shown.at(x, y + 1)));
+        ++count;
+      }
+    EXPECT_GT(count, 300);
+    return sum / count;
+  }
+
+ private:
+  std::vector<double> ends_m_;
+
+  static bool is_ground(const float* place) { return place[3] > 0.0f && std::abs(place[1]) < 1e-3f; }
+
+  /// Behind the last cascade there is none.
+  bool has_seam(float near_m, float far_m) const {
+    return std::any_of(
+        ends_m_.begin(), ends_m_.end() - 1,
+        [&](double end_m) { return static_cast<double>(near_m) < end_m && end_m <= static_cast<double>(far_m); });
+  }
+};
+
+TEST_F(SeamsTest, Step_IsGoneWithABlend) {
+  const view::Lesson lesson = find("Seams of cascades");
+  const double without = measure_step(make_state(lesson)), with = measure_step(make_state(lesson, true));
+  std::printf("step %.4f without a blend, %.4f with one\n", without, with);
+  EXPECT_GT(without, 0.05);
+  EXPECT_LT(with, 0.5 * without);
+}
+
+}  // namespace
+}  // namespace shadowbench::test

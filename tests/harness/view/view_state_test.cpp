@@ -1,0 +1,73 @@
+// What a file of lessons may say.
+
+#include "harness/view/view_state.h"
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "base/error.h"
+#include "base/files.h"
+
+namespace shadowbench::test {
+namespace {
+
+constexpr const char* kGood =
+    "[[lesson]]\n"
+    "title = 'A'\n"
+    "text = ['One.', 'Two.', 'Three.']\n"
+    "scene = 'cubes'\n"
+    "left = 'none'\n"
+    "right = 'truth'\n"
+    "map_size = 64\n"
+    "layer = 'error'\n"
+    "reading = {place = [0, 0, 0], side = 'right', zoom = 2, channel = 1}\n";
+
+class LessonsFile : public ::testing::Test {
+ protected:
+  std::vector<view::Lesson> read(const std::string& text) const {
+    write_text_file(file_, text);
+    return view::read_lessons(file_);
+  }
+
+  /// What is said of the good file with a line in place of another.
+  std::string refuse(const std::string& old_line, const std::string& line) const {
+    std::string text = kGood;
+    text.replace(text.find(old_line), old_line.size(), line);
+    try {
+      read(text);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kInput);
+      return error.what();
+    }
+    return "accepted";
+  }
+
+ private:
+  ScratchFolder folder_{make_temporary_folder_path(std::filesystem::temp_directory_path(), "lessons")};
+  std::filesystem::path file_ = folder_.path() / "lessons.toml";
+};
+
+TEST_F(LessonsFile, Good_IsReadWhole) {
+  const std::vector<view::Lesson> lessons = read(kGood);
+  ASSERT_EQ(lessons.size(), 1u);
+  EXPECT_EQ(lessons[0].sides[1], "truth");
+  EXPECT_EQ(lessons[0].layer, "error");
+  EXPECT_EQ(lessons[0].reading.side, 1u);
+  EXPECT_EQ(lessons[0].reading.content, 1u);
+  EXPECT_EQ(lessons[0].settings.fit, "tight");
+  EXPECT_TRUE(lessons[0].instead_title.empty());
+}
+
+TEST_F(LessonsFile, Bad_IsRefusedWithItsLine) {
+  using ::testing::AllOf;
+  using ::testing::HasSubstr;
+  EXPECT_THAT(refuse("'Three.'", ""), AllOf(HasSubstr("lessons.toml:3"), HasSubstr("three sentences")));
+  EXPECT_THAT(refuse("layer = 'error'", "layer = 'eror'"), AllOf(HasSubstr("lessons.toml:8"), HasSubstr("error")));
+  EXPECT_THAT(refuse("left = ", "lft = "), AllOf(HasSubstr("lessons.toml:5"), HasSubstr("left")));
+  EXPECT_THAT(refuse("zoom = 2", "zoom = 0"), HasSubstr("lessons.toml:9"));
+  EXPECT_THAT(refuse("reading = ", "divider = 0.3 # "), HasSubstr("reading"));
+}
+
+}  // namespace
+}  // namespace shadowbench::test
