@@ -12,7 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/content_hash.h"
 #include "base/error.h"
-#include "harness/gl/pixel_format.h"
+#include "harness/gl/objects.h"
 #include "harness/spirv/webgl.h"
 #include "report/images/value_file.h"
 

@@ -11,7 +11,7 @@
 #include "harness/gl/context/context.h"
 #include "harness/gpu/gpu.h"
 #include "harness/options/round_limits.h"
-#include "harness/render/bias/bias_rule.h"
+#include "harness/render/bias.h"
 #include "harness/scene/lights/fit_rule.h"
 #include "harness/scene/lights/sun.h"
 

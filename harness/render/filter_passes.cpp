@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "filters/format/glsl_words.h"
 #include "filters/noise/blue_noise.h"
-#include "harness/render/filter_glsl.h"
+#include "harness/render/prefilter.h"
 
 namespace shadowbench::render {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "harness/measure/filter_setup.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 #include "report/analysis/summary.h"
 #include "report/images/grid.h"
 #include "report/images/map_figures.h"

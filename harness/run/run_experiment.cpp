@@ -13,7 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/content_hash.h"
 #include "base/error.h"
-#include "harness/gl/texture.h"
+#include "harness/gl/objects.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"

@@ -11,7 +11,7 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/view_receivers.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/run/task_images.h"
 #include "report/files/file_name.h"
 #include "report/images/canvas.h"

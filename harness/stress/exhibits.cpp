@@ -10,7 +10,7 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/map_limits.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/run/scene_loading.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/truth/truth_cache.h"

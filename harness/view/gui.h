@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/render/display_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/view/captions.h"
 #include "harness/view/error_meter.h"
 #include "harness/view/layers.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/render/display_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/view/workbench.h"
 
 namespace shadowbench::view {

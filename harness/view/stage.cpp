@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "filters/format/front_matter.h"
 #include "harness/measure/phases.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 
 namespace shadowbench::view {
 namespace {

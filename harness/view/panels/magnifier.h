@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "harness/render/display_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/view/layers.h"
 #include "harness/view/look.h"
 #include "harness/view/panels/widgets.h"

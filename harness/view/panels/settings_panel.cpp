@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "harness/gl/pixel_format.h"
-#include "harness/render/bias/bias_theory.h"
+#include "harness/gl/objects.h"
+#include "harness/render/bias.h"
 #include "harness/view/controls.h"
 #include "harness/view/layers.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "harness/render/display_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/tune/param_scale.h"
 
 namespace shadowbench::view {

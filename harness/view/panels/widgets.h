@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "filters/filter_spec.h"
-#include "harness/gl/texture.h"
+#include "harness/gl/objects.h"
 #include "harness/view/view_log.h"
 
 namespace shadowbench::view {
