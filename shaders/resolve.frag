@@ -1,5 +1,5 @@
 // Accumulates visibility over frames: what was resolved before, found again by the receiver's position, and this frame
-// by its weight. harness/render/resolve_pass.h names the sources.
+// by its weight. harness/render/picture_passes.h names the sources.
 #include "lib/gbuffer.glsl"
 layout(binding = 4) uniform sampler2D visibility_image;
 layout(binding = 12) uniform sampler2D history;  // resolved visibility, frames it holds, view depth; 0 frames: nothing

@@ -11,7 +11,7 @@
 #include "harness/engines/exported_scene.h"
 #include "harness/engines/own_map.h"
 #include "harness/measure/cell_analysis.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/run/float_images.h"
 #include "harness/run/task_images.h"
 #include "reference/metrics/error_stats.h"

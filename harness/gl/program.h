@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
@@ -10,11 +11,70 @@
 #include <vector>
 
 #include "base/error.h"
-#include "harness/gl/handle.h"
-#include "harness/gl/shader_log.h"
-#include "harness/gl/shader_source.h"
+#include "harness/gl/objects.h"
 
 namespace shadowbench::gl {
+
+/// Line numbers tell the files apart: line 14 of file 2 is `#line 200014 2`. The index alone is not enough, since Mesa
+/// reports file 0 for all errors but those of syntax.
+inline constexpr int kLinesPerFile = 100'000;
+
+/// One shader stage, ready to compile.
+struct ShaderSource {
+  std::string text;                ///< GLSL from `#version` on; `#line` directives say file and line, see kLinesPerFile
+  std::vector<std::string> files;  ///< names for messages; 0 is what the program itself puts on top
+};
+
+/// Text that stands in for a file, such as a filter's GLSL without its front matter.
+struct Piece {
+  std::string include_name;  ///< what `#include "..."` calls it
+  std::string text;
+  std::string display_name;  ///< what messages call it: the file that the user wrote
+  int first_line = 1;        ///< the number of `text`'s first line in that file
+};
+
+/// What `build_source` is to build.
+struct SourceOptions {
+  std::vector<std::filesystem::path> roots;                  ///< folders that includes are looked up in, in order
+  std::string main_file;                                     ///< relative to a root, or a piece's include name
+  std::vector<std::pair<std::string, std::string>> defines;  ///< name, value; put right after `#version`
+  std::vector<Piece> pieces;                                 ///< taken before files of the same name
+};
+
+/// Puts a shader together: `#version 450 core`, the defines, then `main_file` with every `#include "..."` replaced by
+/// what it names, once each. Every piece keeps its own line numbers.
+/// Throws Error with file and line of the include: kFilter inside a piece, kInput in a file of ours; for a name that no
+/// root has or that leaves the roots, a circle of includes, a malformed include, a comment left open, a `#version` or a
+/// `#line` in the text, a NUL byte, or a text of kLinesPerFile lines.
+ShaderSource build_source(const SourceOptions& options);
+
+/// Returns one of this folder's own shaders (shaders.glsl), which are compiled into the program: unlike those in
+/// `shaders/` they belong to the GL layer, and it works without any folder at hand.
+/// Throws std::logic_error for a name that is not there.
+ShaderSource embedded_source(const std::string& name);
+
+/// One line of a compiler's log.
+struct Complaint {
+  std::string file = {};  ///< of ShaderSource::files; empty where the driver named none
+  int line = 0;
+  std::string text = {};  ///< without the word error
+  bool is_error = false;
+
+  /// "file:line"
+  std::string where() const;
+};
+
+/// A compiler's complaints in terms of the user's own files.
+struct ShaderLog {
+  std::string where;    ///< "file:line" of the first error, or empty where the driver named none
+  std::string message;  ///< the first error without its place, then the other lines as "file:line: error: ..."
+  std::vector<Complaint> complaints;  ///< all lines, in their order
+};
+
+/// Translates a driver's info log: "2:14(5): error: x" (Mesa), "2(14) : error C1: x" (NVIDIA) and
+/// "ERROR: 2:14: x" (AMD, Intel, glslang), where 2 indexes `files` unless the line itself
+/// does (kLinesPerFile in shader_source.h). Lines in no such form are kept as they are.
+ShaderLog translate_log(std::string_view log, const std::vector<std::string>& files);
 
 /// GLSL that does not compile or link; the message is the compiler's log.
 class CompileError : public Error {
@@ -68,6 +128,34 @@ class Program {
   Handle<GL_PROGRAM> handle_;
   std::vector<ShaderSource> sources_;
   std::map<std::string, GLint, std::less<>> locations_;
+};
+
+/// Draws one triangle that covers the viewport.
+class FullscreenTriangle {
+ public:
+  FullscreenTriangle();
+
+  /// Draws with the program and framebuffer in use, having turned off depth, stencil and scissor test, blending,
+  /// culling and polygon offset, opened the colour mask, and set polygon mode to fill.
+  void draw() const;
+
+  /// The same where the framebuffer's depth is 0, adding what the program writes to what is there.
+  void draw_added() const;
+
+  /// The same without adding.
+  void draw_masked() const;
+
+  /// The same for a program that writes gl_FragDepth into a framebuffer's depth, whatever is there.
+  void draw_depth() const;
+
+  /// Returns the vertex shader that goes with it. Its output `vec2 v_uv` is (0,0) at the lower left of the viewport.
+  static ShaderSource vertex_source();
+
+ private:
+  VertexArray empty_;
+
+  void set_state() const;
+  void set_masked() const;
 };
 
 }  // namespace shadowbench::gl

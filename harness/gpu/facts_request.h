@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/gl/shader_source.h"
+#include "harness/gl/program.h"
 #include "report/records/records.h"
 
 namespace shadowbench::gpu {

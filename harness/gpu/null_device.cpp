@@ -10,8 +10,7 @@
 #include <vulkan/vulkan_raii.hpp>
 
 #include "base/error.h"
-#include "harness/gl/fullscreen.h"
-#include "harness/gl/shader_source.h"
+#include "harness/gl/program.h"
 #include "harness/gpu/machine_code.h"
 #include "harness/spirv/spirv.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "harness/gl/shader_source.h"
+#include "harness/gl/program.h"
 #include "report/records/records.h"
 
 namespace shadowbench::gpu {

@@ -12,7 +12,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "harness/gl/pixel_format.h"
+#include "harness/gl/objects.h"
 #include "harness/spirv/webgl.h"
 #include "report/images/value_file.h"
 

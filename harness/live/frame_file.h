@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "harness/gl/recorder/recorder.h"
+#include "harness/gl/recorder.h"
 #include "report/images/image.h"
 
 namespace shadowbench::live {

@@ -7,7 +7,7 @@
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/render/filter_passes.h"
-#include "harness/render/image_target.h"
+#include "harness/render/geometry.h"
 
 namespace shadowbench::measure {
 

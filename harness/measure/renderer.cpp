@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/gl/survey/survey.h"
+#include "harness/gl/survey.h"
 
 namespace shadowbench::measure {
 

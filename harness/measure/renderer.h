@@ -7,8 +7,8 @@
 
 #include "filters/scalar.h"
 #include "harness/gl/context/context.h"
-#include "harness/gl/recorder/recorder.h"
-#include "harness/gl/timer/timer.h"
+#include "harness/gl/recorder.h"
+#include "harness/gl/survey.h"
 #include "harness/options/options.h"
 #include "harness/render/shader_library.h"
 

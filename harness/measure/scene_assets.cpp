@@ -9,8 +9,8 @@
 #include "base/error.h"
 #include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
-#include "harness/render/shade_pass.h"
 #include "harness/scene/lights/light_fit.h"
+#include "harness/render/picture_passes.h"
 #include "harness/scene/scene.h"
 #include "report/images/picture_io.h"
 

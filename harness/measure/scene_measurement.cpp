@@ -18,7 +18,7 @@
 #include "harness/measure/suspects.h"
 #include "harness/measure/timing/timing.h"
 #include "harness/render/gbuffer.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 

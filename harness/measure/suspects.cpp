@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/gl/survey/survey.h"
+#include "harness/gl/survey.h"
 #include "report/records/format.h"
 
 namespace shadowbench::measure {

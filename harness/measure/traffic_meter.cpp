@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/gl/pixel_format.h"
+#include "harness/gl/objects.h"
 #include "harness/measure/filter_setup.h"
 #include "report/records/gpu_frame.h"
 

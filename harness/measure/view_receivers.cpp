@@ -5,7 +5,7 @@
 #include "base/bytes.h"
 #include "filters/receiver.h"
 #include "harness/measure/receiver_pixels.h"
-#include "harness/render/image_target.h"
+#include "harness/render/geometry.h"
 
 namespace shadowbench::measure {
 

@@ -11,9 +11,9 @@
 #include "harness/gl/context/context.h"
 #include "harness/gpu/gpu.h"
 #include "harness/options/round_limits.h"
-#include "harness/render/bias/bias_rule.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/lights/light_kinds.h"
+#include "harness/render/bias.h"
 
 namespace shadowbench::options {
 

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "filters/kernel.h"
-#include "harness/gl/pixel_format.h"
+#include "harness/gl/objects.h"
 
 namespace shadowbench::options {
 namespace {

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "filters/glsl_words.h"
 #include "filters/random.h"
-#include "harness/render/filter_glsl.h"
+#include "harness/render/prefilter.h"
 
 namespace shadowbench::render {
 namespace {

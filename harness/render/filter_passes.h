@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "harness/render/gbuffer.h"
-#include "harness/render/own_passes.h"
 #include "harness/render/prefilter.h"
 
 namespace shadowbench::render {

@@ -6,11 +6,10 @@
 #include <cassert>
 
 #include "base/error.h"
-#include "harness/gl/fullscreen.h"
-#include "harness/gl/pixel_format.h"
+#include "harness/gl/objects.h"
+#include "harness/gl/program.h"
 #include "harness/render/gbuffer.h"
-#include "harness/render/image_target.h"
-#include "harness/render/light_setup.h"
+#include "harness/render/geometry.h"
 
 namespace shadowbench::render {
 namespace {

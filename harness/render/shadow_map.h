@@ -8,7 +8,7 @@
 
 #include "filters/depth_map.h"
 #include "harness/gl/objects.h"
-#include "harness/render/bias/bias_rule.h"
+#include "harness/render/bias.h"
 #include "harness/render/geometry.h"
 #include "harness/scene/lights/light_fit.h"
 #include "report/images/image.h"

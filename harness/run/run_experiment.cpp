@@ -13,7 +13,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "harness/gl/texture.h"
+#include "harness/gl/objects.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"

@@ -17,7 +17,7 @@
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
 #include "harness/measure/traffic_meter.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/run/float_images.h"
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"

@@ -6,7 +6,7 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include "base/error.h"
-#include "harness/gl/shader_log.h"
+#include "harness/gl/program.h"
 
 namespace shadowbench::spirv {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "harness/gl/shader_source.h"
+#include "harness/gl/program.h"
 
 namespace shadowbench::spirv {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "harness/gl/shader_source.h"
+#include "harness/gl/program.h"
 #include "harness/spirv/spirv.h"
 
 namespace shadowbench::spirv {

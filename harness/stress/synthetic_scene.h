@@ -8,7 +8,7 @@
 
 #include "filters/model.h"
 #include "harness/render/filter_passes.h"
-#include "harness/render/image_target.h"
+#include "harness/render/geometry.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/stress/axis.h"
 

@@ -13,7 +13,7 @@
 #include "harness/measure/map_limits.h"
 #include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::tune {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "filters/map_reader.h"
-#include "harness/gl/pixel_format.h"
+#include "harness/gl/objects.h"
 #include "harness/render/gbuffer.h"
 
 namespace shadowbench::view {

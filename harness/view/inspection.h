@@ -10,7 +10,7 @@
 
 #include "filters/model.h"
 #include "filters/receiver.h"
-#include "harness/render/display_pass.h"
+#include "harness/render/picture_passes.h"
 #include "harness/view/layers.h"
 #include "harness/view/settings_panel.h"
 #include "harness/view/view_state.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-#include "harness/gl/timer/timer.h"
+#include "harness/gl/survey.h"
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
 #include "reference/metrics/error_stats.h"

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "filters/kernel.h"
-#include "harness/gl/timer/timer.h"
+#include "harness/gl/survey.h"
 #include "harness/view/gui.h"
 
 namespace shadowbench::view {

@@ -11,11 +11,10 @@
 #include <utility>
 
 #include "base/error.h"
-#include "harness/gl/pixel_format.h"
-#include "harness/render/bias/bias_theory.h"
-#include "harness/render/display_pass.h"
 #include "harness/scene/load.h"
 #include "harness/tune/param_scale.h"
+#include "harness/gl/objects.h"
+#include "harness/render/bias.h"
 #include "harness/view/layers.h"
 #include "harness/view/picture_input.h"
 

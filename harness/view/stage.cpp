@@ -8,7 +8,7 @@
 #include "harness/measure/layer_truth.h"
 #include "harness/measure/map_coverage.h"
 #include "harness/measure/phases.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 
 namespace shadowbench::view {
 namespace {

@@ -7,7 +7,7 @@
 #include "harness/measure/timing/statistics.h"
 #include "harness/measure/timing/timing.h"
 #include "harness/options/options.h"
-#include "harness/render/bias/bias_rule.h"
+#include "harness/render/bias.h"
 #include "harness/scene/load.h"
 
 namespace shadowbench::bench {

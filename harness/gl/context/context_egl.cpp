@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "harness/gl/context/context_backends.h"
+#include "harness/gl/context/context.h"
 
 // Without this EGL's headers bring in Xlib's macros.
 #define EGL_NO_X11

@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "base/error.h"
-#include "harness/gl/context/context_backends.h"
 #include "harness/gl/gl_api.h"
 
 // After the loader, see gl_api.h.

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "base/error.h"
-#include "harness/gl/context/context_backends.h"
+#include "harness/gl/context/context.h"
 #include "harness/gl/gl_api.h"
 
 // After the loader, see gl_api.h. The header of Mesa 25 takes these words from <GL/gl.h>, whose place the loader has.

@@ -6,7 +6,7 @@
 
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_measurement.h"
-#include "harness/render/resolve_pass.h"
+#include "harness/render/picture_passes.h"
 
 namespace shadowbench::measure {
 

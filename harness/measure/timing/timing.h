@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/gl/timer/timer.h"
+#include "harness/gl/survey.h"
 #include "harness/options/round_limits.h"
 #include "harness/render/filter_passes.h"
 #include "report/records/records.h"

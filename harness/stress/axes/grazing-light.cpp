@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "filters/model.h"
-#include "harness/render/bias/bias_theory.h"
+#include "harness/render/bias.h"
 #include "harness/stress/axis.h"
 #include "harness/stress/drawn_maps.h"
 #include "harness/stress/exhibits.h"

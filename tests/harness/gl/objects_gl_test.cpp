@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "harness/gl/fullscreen.h"
 #include "harness/gl/objects.h"
-#include "harness/gl/survey/survey.h"
+#include "harness/gl/program.h"
+#include "harness/gl/survey.h"
 #include "tests/harness/gl/expect_error.h"
 #include "tests/harness/gl/gl_fixture.h"
 

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <stdexcept>
 
-#include "harness/gl/fullscreen.h"
 #include "harness/gl/objects.h"
 #include "harness/gl/program.h"
 #include "tests/harness/gl/expect_error.h"

@@ -5,10 +5,9 @@
 
 #include <array>
 
-#include "harness/gl/fullscreen.h"
 #include "harness/gl/objects.h"
 #include "harness/gl/program.h"
-#include "harness/gl/recorder/recorder.h"
+#include "harness/gl/recorder.h"
 #include "tests/harness/gl/gl_fixture.h"
 
 namespace shadowbench::gl {

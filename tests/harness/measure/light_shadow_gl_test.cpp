@@ -9,7 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "harness/measure/view_receivers.h"
-#include "harness/render/bias/bias_theory.h"
+#include "harness/render/bias.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"

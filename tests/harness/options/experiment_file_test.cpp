@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "harness/render/bias/bias_rule.h"
+#include "harness/render/bias.h"
 
 namespace shadowbench::options {
 namespace {

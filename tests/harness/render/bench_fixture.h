@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "filters/catalogue.h"
+#include "filters/model.h"
 #include "harness/gl/context/context.h"
-#include "harness/gl/survey/survey.h"
+#include "harness/gl/survey.h"
 #include "harness/options/options.h"
-#include "harness/render/bias/bias_rule.h"
+#include "harness/render/bias.h"
 #include "harness/render/filter_passes.h"
 #include "harness/render/gbuffer.h"
 #include "harness/scene/load.h"
@@ -192,6 +194,24 @@ inline std::vector<std::string> filter_ids() {
   std::vector<std::string> ids;
   for (const auto& spec : catalogue().filters()) ids.push_back(spec.id);
   return ids;
+}
+
+/// What a parameter's text may call its test.
+inline std::string make_test_name(std::string text) {
+  for (char& c : text) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return text;
+}
+
+/// How precisely this GL computes.
+inline filters::GlAccuracy measured_accuracy() {
+  static const gl::GlSurvey measured = gl::survey_gl(shared_context());
+  return {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
+}
+
+/// Gives what a hardware 2x2 comparison may be off by: the step of its weights, as measured on this GL.
+inline double measured_weight_step() {
+  static const int bits = gl::measure_pcf_weights(shared_context(), GL_DEPTH_COMPONENT32F).bits;
+  return bits >= 22 ? 1e-4 : 1.0 / 128.0;
 }
 
 /// Whether a filter rounds what it averaged to whole numbers. Rounding in single precision may decide about a step of

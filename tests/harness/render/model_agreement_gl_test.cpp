@@ -26,22 +26,12 @@ struct Agreement {
   double shadowed = 0.0;      ///< share of receivers under 0.5: a test on lit pixels alone proves nothing
 };
 
-filters::GlAccuracy measured_accuracy() {
-  static const gl::GlSurvey measured = gl::survey_gl(shared_context());
-  return {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
-}
-
 /// Whether it looks up something else than the depth map.
 bool stores(const filters::FilterSpec& spec) { return spec.has_encode || !spec.passes.empty(); }
 
 /// The largest share of receivers that may be excused.
 double most_excused(const filters::FilterSpec& spec, double otherwise) {
   return rounds_to_steps(spec) ? 0.08 : otherwise;
-}
-
-double pcf_tolerance() {
-  static const int bits = gl::measure_pcf_weights(shared_context(), GL_DEPTH_COMPONENT32F).bits;
-  return bits >= 22 ? 1e-4 : 1.0 / 128.0;
 }
 
 /// What the model makes of a pixel, in single and double precision, all layers of the map together.
@@ -150,8 +140,8 @@ TEST_P(ModelAgreement, GlImageEqualsModel) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
     if (a.is_even) EXPECT_LE(a.median_bound, in_half_floats() ? 0.03 : 0.01) << "a bound this wide says nothing";
   } else {
-    EXPECT_LE(a.worst_float, pcf_tolerance());
-    EXPECT_LE(a.worst_double, pcf_tolerance());
+    EXPECT_LE(a.worst_float, measured_weight_step());
+    EXPECT_LE(a.worst_double, measured_weight_step());
   }
 }
 
@@ -178,8 +168,8 @@ TEST_P(ModelFormats, GlImageEqualsModel) {
       // A depth that is read back one ULP off falls on another step of a summed-area table, alike all over a plane.
       EXPECT_LE(a.worst_float, request.spec.passes.empty() ? 2e-3 : 1e-2) << id;
     } else {
-      EXPECT_LE(a.worst_float, pcf_tolerance()) << id;
-      EXPECT_LE(a.worst_double, pcf_tolerance()) << id;
+      EXPECT_LE(a.worst_float, measured_weight_step()) << id;
+      EXPECT_LE(a.worst_double, measured_weight_step()) << id;
     }
   }
 }
@@ -233,7 +223,7 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
     EXPECT_LE(a.worst_float, half ? 1.0 : 2e-3);
   } else {
-    EXPECT_LE(a.worst_float, pcf_tolerance());
+    EXPECT_LE(a.worst_float, measured_weight_step());
   }
 }
 
@@ -260,11 +250,7 @@ INSTANTIATE_TEST_SUITE_P(
         "smrt:rotation=interleaved-gradient,rays=4,steps=4", "smrt:max_radius=4,thickness=8",
         "msm_packed64:lookup=bilinear", "msm_packed64:radius=1", "msm_packed32:lookup=bilinear",
         "msm_packed32:radius=1", "msm_soft:max_radius=0", "msm_soft:max_radius=4,moment_bias=0.001"),
-    [](const auto& each) {
-      std::string name = each.param;
-      for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-      return name;
-    });
+    [](const auto& each) { return make_test_name(each.param); });
 
 /// Every frame turns the taps of every filter that turns them, in the GL as in its model.
 TEST(ModelFrames, GlImageEqualsModel_AndDiffersFromTheFirstFrames) {
@@ -279,7 +265,7 @@ TEST(ModelFrames, GlImageEqualsModel_AndDiffersFromTheFirstFrames) {
       const std::vector<float> first = bench.draw(request);
       bench.set_frame(5);
       EXPECT_EQ(bench.draw(request) == first, rotation == std::string("none"));
-      EXPECT_LE(compare(bench, request).worst_float, pcf_tolerance());
+      EXPECT_LE(compare(bench, request).worst_float, measured_weight_step());
     }
   }
 }
@@ -295,7 +281,7 @@ TEST_P(ReceiverPlaneModel, GlImageEqualsModel) {
   EXPECT_GT(a.compared, 5000u);
   EXPECT_GT(a.shadowed, 0.01);
   EXPECT_LT(static_cast<double>(a.excused), 0.005 * static_cast<double>(a.compared));
-  EXPECT_LE(a.worst_float, pcf_tolerance());
+  EXPECT_LE(a.worst_float, measured_weight_step());
 }
 
 INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,
@@ -332,8 +318,8 @@ TEST_P(BorderAgreement, GlImageEqualsModel) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
     EXPECT_LE(a.worst_float, 2e-3);
   } else {
-    EXPECT_LE(a.worst_float, pcf_tolerance());
-    EXPECT_LE(a.worst_double, pcf_tolerance());
+    EXPECT_LE(a.worst_float, measured_weight_step());
+    EXPECT_LE(a.worst_double, measured_weight_step());
   }
 }
 

@@ -350,5 +350,4 @@ TEST(EngineBias, OfALamp_IsLeftOut) {
 }
 
 }  // namespace
-
 }  // namespace shadowbench::pages

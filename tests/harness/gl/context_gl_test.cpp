@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "harness/gl/context/context.h"
+#include "harness/gl/objects.h"
+#include "harness/gl/survey.h"
+#include "tests/harness/gl/expect_error.h"
+#include "tests/harness/gl/gl_fixture.h"
+
+#ifdef __SANITIZE_ADDRESS__
+/// Mesa unloads its driver with the last GLX context, and no leak could be traced to the driver, nor suppressed, after
+/// that.
+extern "C" int dlclose(void* /*library*/) { return 0; }
+#endif
+
+namespace shadowbench::gl {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+// Draws and reads back: what a context is for.
+void expect_it_draws(Context& context) {
+  Texture texture("clear", GL_R32F, 8, 8);
+  Framebuffer framebuffer("clear");
+  framebuffer.attach_color(0, texture);
+  framebuffer.bind();
+  framebuffer.clear_color(0, {0.25f, 0.0f, 0.0f, 0.0f});
+  EXPECT_THAT(texture.read_floats(1), ::testing::Each(0.25f));
+  SurveyShader probe("survey_load.frag", {4, 4});
+  probe.program().set("u_iterations", 0);
+  EXPECT_FLOAT_EQ(probe.run()[1], 1.5f * 0.001f + 0.5f * 0.0001f);
+  EXPECT_NO_THROW(context.require_no_gl_errors());
+}
+
+void expect_core_45(const GlInfo& info) {
+  GLint profile = 0;
+  glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  EXPECT_EQ(profile, GL_CONTEXT_CORE_PROFILE_BIT);
+  GLint major = 0;
+  GLint minor = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  EXPECT_GE(10 * major + minor, 45) << info.version;
+}
+
+TEST_F(GlTest, Info_SaysWhatItRunsOn) {
+  const GlInfo& info = context().info();
+  EXPECT_EQ(info.backend, has_backend(Backend::kOsmesa) ? "osmesa" : "egl");
+  EXPECT_TRUE(info.software);
+  EXPECT_THAT(info.renderer, Not(IsEmpty()));
+  EXPECT_THAT(info.version, HasSubstr("4.5"));
+  EXPECT_GE(info.max_texture_size, 16384);
+  EXPECT_GT(info.creation_ms, 0.0);
+}
+
+TEST_F(GlTest, ClipControl_IsLowerLeftZeroToOne) {
+  GLint origin = 0;
+  GLint depth = 0;
+  glGetIntegerv(GL_CLIP_ORIGIN, &origin);
+  glGetIntegerv(GL_CLIP_DEPTH_MODE, &depth);
+  EXPECT_EQ(origin, GL_LOWER_LEFT);
+  EXPECT_EQ(depth, GL_ZERO_TO_ONE);
+}
+
+TEST_F(GlTest, GlError_IsRecordedOnceWithItsCall) {
+  glEnable(0x1234);
+  EXPECT_THAT(context().take_gl_errors(), ::testing::ElementsAre(HasSubstr("glEnable")));
+  EXPECT_THAT(context().take_gl_errors(), IsEmpty());
+}
+
+TEST_F(GlTest, GlError_ThrowsWhereNoneIsAllowed) {
+  glEnable(0x1234);
+  EXPECT_THROW(context().require_no_gl_errors(), std::logic_error);
+}
+
+TEST_F(GlTest, GlErrorWithoutAMessage_IsRecordedByItsCode) {
+  glDisable(GL_DEBUG_OUTPUT);
+  glEnable(0x1234);
+  EXPECT_THAT(context().take_gl_errors(), ::testing::ElementsAre("GL_INVALID_ENUM"));
+}
+
+TEST(Context, ThreeInTurn_EachDraws) {
+  for (int i = 0; i < 3; ++i) expect_it_draws(*create_context(Backend::kSoftware).context);
+}
+
+TEST(Context, TwoAlive_TakeTurns) {
+  const auto first = create_context(Backend::kSoftware);
+  const auto second = create_context(Backend::kSoftware);
+  for (Context* context : {first.context.get(), second.context.get(), first.context.get()}) {
+    context->make_current();
+    expect_it_draws(*context);
+  }
+}
+
+TEST(Context, ABackendThatTheBuildLeavesOut_IsRefusedByName) {
+  for (const Backend backend : {Backend::kOsmesa, Backend::kEgl, Backend::kGlfw}) {
+    if (has_backend(backend)) continue;
+    const Error error = catch_error([&] { create_context(backend); });
+    EXPECT_EQ(error.kind(), ErrorKind::kContext);
+    EXPECT_THAT(error.message(), HasSubstr(fmt::format("this build has no --gl {}", backend_name(backend))));
+  }
+  EXPECT_TRUE(has_backend(Backend::kAuto));
+}
+
+TEST(Context, AutoOnAnyMachine_GivesOneThatDraws_AndSaysWhyNotTheOthers) {
+  const auto choice = create_context(Backend::kAuto);
+  expect_core_45(choice.context->info());
+  expect_it_draws(*choice.context);
+  if (choice.context->info().software) {
+    ASSERT_THAT(choice.refused, Not(IsEmpty()));
+    EXPECT_THAT(choice.refused.front(), ::testing::StartsWith("egl on a GPU: "));
+  }
+}
+
+class BackendTest : public ::testing::TestWithParam<Backend> {
+ protected:
+  /// A context of that back end, or why this machine gives none. OSMesa needs nothing of it.
+  ContextChoice create() {
+    try {
+      return create_context(GetParam());
+    } catch (const Error& error) {
+      if (GetParam() == Backend::kOsmesa && has_backend(Backend::kOsmesa)) throw;
+      EXPECT_EQ(error.kind(), ErrorKind::kContext);
+      return {nullptr, {error.what()}};
+    }
+  }
+};
+
+TEST_P(BackendTest, Context_IsCore45_AndDraws) {
+  const ContextChoice choice = create();
+  if (!choice.context) GTEST_SKIP() << choice.refused.front();
+  EXPECT_EQ(choice.context->info().backend, backend_name(GetParam()));
+  EXPECT_THAT(choice.refused, IsEmpty());
+  expect_core_45(choice.context->info());
+  expect_it_draws(*choice.context);
+}
+
+TEST_P(BackendTest, MadeTwiceWithASoftwareOneBetween_StillDraws) {
+  for (int i = 0; i < 2; ++i) {
+    if (const ContextChoice choice = create(); choice.context)
+      expect_it_draws(*choice.context);
+    else
+      GTEST_SKIP() << choice.refused.front();
+    expect_it_draws(*create_context(Backend::kSoftware).context);
+  }
+}
+
+TEST_P(BackendTest, AliveBesideASoftwareOne_TakesTurns) {
+  const ContextChoice other = create();
+  if (!other.context) GTEST_SKIP() << other.refused.front();
+  const auto software = create_context(Backend::kSoftware);
+  for (Context* context : {software.context.get(), other.context.get(), software.context.get()}) {
+    context->make_current();
+    expect_it_draws(*context);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BackendTest, ::testing::Values(Backend::kOsmesa, Backend::kEgl, Backend::kGlfw),
+                         [](const auto& test) { return std::string(backend_name(test.param)); });
+
+TEST(Context, GlfwWithoutADisplay_IsRefusedWithTheReason) {
+  const char* display = std::getenv("DISPLAY");
+  const std::string kept = display ? display : "";
+  unsetenv("DISPLAY");
+  const Error error = catch_error([] { create_context(Backend::kGlfw); });
+  EXPECT_EQ(error.kind(), ErrorKind::kContext);
+  EXPECT_THAT(error.message(), HasSubstr("glfw: "));
+  if (display) setenv("DISPLAY", kept.c_str(), 1);
+}
+
+/// Mesa would end this process.
+TEST(Context, DriverThatMesaLacks_IsRefusedByName) {
+  setenv("GALLIUM_DRIVER", "nosuch", 1);
+  const Error error = catch_error([] { create_context(Backend::kSoftware); });
+  unsetenv("GALLIUM_DRIVER");
+  EXPECT_EQ(error.kind(), ErrorKind::kContext);
+  EXPECT_THAT(error.message(), HasSubstr("GALLIUM_DRIVER=nosuch"));
+}
+
+}  // namespace
+}  // namespace shadowbench::gl

@@ -1,0 +1,290 @@
+#include "harness/gl/program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tests/harness/gl/expect_error.h"
+
+namespace shadowbench::gl {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Holds shader files in a folder of its own.
+class ShaderSourceTest : public ::testing::Test {
+ protected:
+  ShaderSourceTest() {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(::testing::TempDir()) / (std::string("shader_source_") + info->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_ / "lib");
+    options_.roots = {folder_};
+    options_.main_file = "main.frag";
+  }
+  ~ShaderSourceTest() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).generic_string(); }
+
+  std::filesystem::path folder_;
+  SourceOptions options_;
+};
+
+/// Says where each line of the text comes from, as a compiler that obeys `#line` would: "file:line text".
+std::vector<std::string> locate_lines(const ShaderSource& source) {
+  std::vector<std::string> located;
+  std::istringstream stream(source.text);
+  std::size_t file = 0;
+  int number = 1;
+  for (std::string line; std::getline(stream, line); ++number) {
+    int next = 0;
+    if (std::sscanf(line.c_str(), "#line %d %zu", &next, &file) == 2) {
+      EXPECT_EQ(static_cast<std::size_t>(next / kLinesPerFile), file);
+      number = next % kLinesPerFile - 1;
+      continue;
+    }
+    const auto name = std::filesystem::path(source.files.at(file)).filename().string();
+    located.push_back(name + ":" + std::to_string(number) + " " + line);
+  }
+  return located;
+}
+
+TEST_F(ShaderSourceTest, Version_ComesFirst_ThenTheDefines) {
+  write("main.frag", "void main() {}\n");
+  options_.defines = {{"TAPS", "8"}, {"LOG", "1"}};
+  const auto source = build_source(options_);
+  EXPECT_THAT(source.text, ::testing::StartsWith("#version 450 core\n#define TAPS 8\n#define LOG 1\n"));
+}
+
+TEST_F(ShaderSourceTest, EveryLine_KeepsItsOwnFileAndNumber) {
+  write("main.frag", "m1\n#include \"lib/a.glsl\"\nm3\n  #  include \"filter\" // the user's\nm5");
+  write("lib/a.glsl", "a1\n#include \"lib/b.glsl\"\na3\n");
+  write("lib/b.glsl", "b1\r\nb2\r\n");
+  options_.pieces = {{"filter", "u18\n#include \"lib/b.glsl\"\nu20\n", "user.glsl", 18}};
+  EXPECT_THAT(locate_lines(build_source(options_)),
+              ElementsAre("(set by the program):1 #version 450 core", "main.frag:1 m1", "a.glsl:1 a1", "b.glsl:1 b1",
+                          "b.glsl:2 b2", "a.glsl:3 a3", "main.frag:3 m3", "user.glsl:18 u18", "user.glsl:20 u20",
+                          "main.frag:5 m5"));
+}
+
+TEST_F(ShaderSourceTest, SameFileByTwoNames_IsInsertedOnce) {
+  write("main.frag", "#include \"lib/a.glsl\"\n#include \"lib/../lib/a.glsl\"\n#include \"./lib/a.glsl\"\n");
+  write("lib/a.glsl", "only\n");
+  const auto lines = locate_lines(build_source(options_));
+  EXPECT_THAT(lines, ElementsAre(::testing::_, "a.glsl:1 only"));
+}
+
+TEST_F(ShaderSourceTest, FirstRootThatHasTheFile_Wins) {
+  std::filesystem::create_directories(folder_ / "second");
+  write("second/main.frag", "second\n");
+  write("second/other.glsl", "other\n");
+  write("main.frag", "first\n#include \"other.glsl\"\n");
+  options_.roots = {folder_, folder_ / "second"};
+  EXPECT_THAT(locate_lines(build_source(options_)),
+              ElementsAre(::testing::_, "main.frag:1 first", "other.glsl:1 other"));
+}
+
+TEST_F(ShaderSourceTest, Piece_StandsInForAFileOfItsName) {
+  write("main.frag", "file\n");
+  options_.pieces = {{"main.frag", "piece\n", "user.glsl", 1}};
+  EXPECT_THAT(locate_lines(build_source(options_)), ElementsAre(::testing::_, "user.glsl:1 piece"));
+}
+
+TEST_F(ShaderSourceTest, IncludeInAComment_IsLeftAlone) {
+  write("main.frag",
+        "/* one\n#include \"missing\"\n*/\n// #include \"missing\"\n// not open: /*\n#include \"lib/a.glsl\"\n");
+  write("lib/a.glsl", "a1\n");
+  const auto source = build_source(options_);
+  EXPECT_THAT(source.text, HasSubstr("a1\n"));
+  EXPECT_THAT(source.text, HasSubstr("#include \"missing\""));
+}
+
+TEST_F(ShaderSourceTest, ByteOrderMark_IsDropped) {
+  write("main.frag", "\xEF\xBB\xBFm1\n");
+  EXPECT_THAT(build_source(options_).text, Not(HasSubstr("\xEF\xBB\xBF")));
+}
+
+TEST_F(ShaderSourceTest, Circle_IsRefusedWhereItCloses) {
+  write("main.frag", "#include \"lib/a.glsl\"\n");
+  write("lib/a.glsl", "\n#include \"lib/b.glsl\"\n");
+  write("lib/b.glsl", "\n\n#include \"lib/a.glsl\"\n");
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  EXPECT_EQ(error.where(), path("lib/b.glsl") + ":3");
+  EXPECT_THAT(error.message(), HasSubstr("includes itself"));
+}
+
+TEST_F(ShaderSourceTest, MissingInclude_NamesTheUsersLineAndTheFolders) {
+  write("main.frag", "#include \"filter\"\n");
+  options_.pieces = {{"filter", "x\n#include \"lib/nosuch.glsl\"\n", "user.glsl", 20}};
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "user.glsl:21");
+  EXPECT_THAT(error.message(), HasSubstr("lib/nosuch.glsl"));
+  EXPECT_THAT(error.message(), HasSubstr(folder_.string()));
+}
+
+TEST_F(ShaderSourceTest, IncludeOutsideTheFolders_IsRefused) {
+  write("secret.txt", "SECRET\n");
+  options_.roots = {folder_ / "lib"};
+  write("lib/main.frag", "#include \"filter\"\n");
+  for (const std::string& name : {path("secret.txt"), std::string("../secret.txt"), std::string("x/../../secret.txt"),
+                                  std::string("/etc/passwd")}) {
+    options_.pieces = {{"filter", "x\n#include \"" + name + "\"\n", "user.glsl", 20}};
+    const Error error = catch_error([&] { build_source(options_); });
+    EXPECT_EQ(error.kind(), ErrorKind::kFilter) << name;
+    EXPECT_EQ(error.where(), "user.glsl:21") << name;
+    EXPECT_THAT(error.message(), AllOf(HasSubstr("'" + name + "'"), HasSubstr("outside"))) << name;
+  }
+}
+
+TEST_F(ShaderSourceTest, LineDirectiveInTheText_IsRefused) {
+  write("main.frag", "#include \"filter\"\n");
+  for (const std::string line : {"#line 7 1", " # line 7", "#line"}) {
+    options_.pieces = {{"filter", "x\n" + line + "\n", "user.glsl", 5}};
+    const Error error = catch_error([&] { build_source(options_); });
+    EXPECT_EQ(error.where(), "user.glsl:6") << line;
+    EXPECT_THAT(error.message(), HasSubstr("#line")) << line;
+  }
+}
+
+TEST_F(ShaderSourceTest, NulByteInTheText_IsRefusedOnItsLine) {
+  write("main.frag", "#include \"filter\"\n");
+  options_.pieces = {{"filter", std::string("x\n\0y\n", 5), "user.glsl", 5}};
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "user.glsl:6");
+  EXPECT_THAT(error.message(), HasSubstr("NUL"));
+}
+
+TEST_F(ShaderSourceTest, MissingMainFile_IsAnInputError) {
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  EXPECT_THAT(error.message(), HasSubstr("main.frag"));
+}
+
+TEST_F(ShaderSourceTest, Folder_IsNoFile) {
+  options_.main_file = "lib";
+  EXPECT_THAT(catch_error([&] { build_source(options_); }).message(), HasSubstr("not found"));
+}
+
+TEST_F(ShaderSourceTest, MalformedInclude_NamesItsLine) {
+  for (const std::string bad : {"#include <lib/a.glsl>", "#include", "#include \"", "#include \"\" // x",
+                                "#include \"\"", "#include \"a\" b"}) {
+    write("main.frag", "\n" + bad + "\n");
+    const Error error = catch_error([&] { build_source(options_); });
+    EXPECT_EQ(error.where(), path("main.frag") + ":2") << bad;
+    EXPECT_THAT(error.message(), HasSubstr("malformed")) << bad;
+  }
+}
+
+TEST_F(ShaderSourceTest, VersionInTheText_IsRefused) {
+  write("main.frag", "#include \"filter\"\n");
+  options_.pieces = {{"filter", "#version 330\n", "user.glsl", 5}};
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "user.glsl:5");
+}
+
+TEST_F(ShaderSourceTest, TextWithTooManyLines_IsRefused) {
+  write("main.frag", std::string(kLinesPerFile - 2, '\n'));
+  EXPECT_NO_THROW(build_source(options_));
+  write("main.frag", std::string(kLinesPerFile, '\n'));
+  EXPECT_EQ(catch_error([&] { build_source(options_); }).where(), path("main.frag"));
+}
+
+TEST_F(ShaderSourceTest, OpenComment_IsRefusedInItsOwnFile) {
+  write("main.frag", "#include \"filter\"\nvoid main() {}\n");
+  options_.pieces = {{"filter", "x\n/* never closed\n", "user.glsl", 5}};
+  const Error error = catch_error([&] { build_source(options_); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_EQ(error.where(), "user.glsl:6");
+}
+
+const std::vector<std::string> kFiles = {"(set by the program)", "lookup.frag", "my filter.glsl"};
+
+TEST(ShaderLog, MesaError_BecomesTheUsersFileAndLine) {
+  const auto log = translate_log("2:14(5): error: `x' undeclared\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:14");
+  EXPECT_EQ(log.message, "`x' undeclared");
+}
+
+TEST(ShaderLog, NvidiaError_BecomesTheUsersFileAndLine) {
+  const auto log = translate_log("2(14) : error C1503: undefined variable \"x\"\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:14");
+  EXPECT_EQ(log.message, "error C1503: undefined variable \"x\"");
+}
+
+TEST(ShaderLog, OtherDriversError_BecomesTheUsersFileAndLine) {
+  const auto log = translate_log("ERROR: 2:14: 'x' : undeclared identifier\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:14");
+  EXPECT_EQ(log.message, "'x' : undeclared identifier");
+}
+
+TEST(ShaderLog, FirstError_GivesThePlace_AndOthersFollow) {
+  const auto log =
+      translate_log("1:3(1): warning: `a' used uninitialized\n2:14(5): error: one\r\n\n2:15(5): error: two\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:14");
+  EXPECT_EQ(log.message, "one\nlookup.frag:3: warning: `a' used uninitialized\nmy filter.glsl:15: error: two");
+}
+
+TEST(ShaderLog, NvidiaWarningBeforeTheError_IsNotTheFirstError) {
+  const auto log =
+      translate_log("1(3) : warning C7050: \"v\" might be used\n2(9) : error C0000: syntax error\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:9");
+  EXPECT_EQ(log.message, "error C0000: syntax error\nlookup.frag:3: warning C7050: \"v\" might be used");
+}
+
+TEST(ShaderLog, OtherDriversWarning_IsNotTheFirstError) {
+  const auto log = translate_log("WARNING: 1:3: extension\nERROR: 2:14: syntax\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:14");
+  EXPECT_EQ(log.message, "syntax\nlookup.frag:3: extension");
+}
+
+TEST(ShaderLog, LineThatSaysTheFile_OverrulesMesasIndexOfZero) {
+  const auto log = translate_log("0:200014(5): error: one\n1:100007(5): error: two\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:14");
+  EXPECT_EQ(log.message, "one\nlookup.frag:7: error: two");
+}
+
+TEST(ShaderLog, NvidiaLineThatSaysTheFile_IsSplit) {
+  EXPECT_EQ(translate_log("2(200014) : error C1503: x\n", kFiles).where, "my filter.glsl:14");
+}
+
+TEST(ShaderLog, IndexWithoutAFile_IsLeftAsItIs) {
+  const auto log = translate_log("7:14(5): error: x\n", kFiles);
+  EXPECT_EQ(log.where, "");
+  EXPECT_EQ(log.message, "7:14(5): error: x");
+}
+
+TEST(ShaderLog, IndexTooLargeForAnyNumber_IsLeftAsItIs) {
+  const auto log = translate_log("99999999999999999999999:14(5): error: x\n", kFiles);
+  EXPECT_EQ(log.message, "99999999999999999999999:14(5): error: x");
+}
+
+TEST(ShaderLog, LinkErrorWithoutAPlace_IsKept) {
+  const auto log = translate_log("error: unresolved reference to function `visibility'\n", kFiles);
+  EXPECT_EQ(log.where, "");
+  EXPECT_EQ(log.message, "error: unresolved reference to function `visibility'");
+}
+
+TEST(ShaderLog, TextInNoKnownForm_IsKept) {
+  const auto log = translate_log("Fragment info\n-------------\n2(4) : error C1: x\n", kFiles);
+  EXPECT_EQ(log.where, "my filter.glsl:4");
+  EXPECT_EQ(log.message, "error C1: x\nFragment info\n-------------");
+}
+
+TEST(ShaderLog, EmptyLog_IsEmpty) { EXPECT_EQ(translate_log("", kFiles).message, ""); }
+
+}  // namespace
+}  // namespace shadowbench::gl

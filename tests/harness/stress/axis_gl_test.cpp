@@ -1,0 +1,256 @@
+// The axes that draw their own scenes, on the GL: planes, formats, stacked occluders, radii and taps.
+
+// What the axes of extreme maps measure, and that they see what is wrong.
+
+// The lookup draws what it is told, and the axes' GL cases break where theory says.
+
+// Mistakes of published comparisons, replayed.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "base/error.h"
+#include "harness/stress/axis.h"
+#include "harness/stress/drawn_maps.h"
+#include "harness/stress/synthetic_scene.h"
+#include "tests/harness/stress/stress_fixture.h"
+
+namespace shadowbench::stress {
+namespace {
+
+TEST(GeometryAxes, GlCases_MeetTheirTheories) {
+  const AxisInputs inputs = make_gl_inputs("none,box4x4,poisson,vsm:bleed_reduction=0,slope_variance=0,esm");
+  for (const char* id : {"grazing-light", "depth-formats", "light-bleeding", "kernel-radius", "taps"})
+    expect_theories_met(choose_axes(id)[0], inputs, Level::kGl, false);
+}
+
+TiltedPlane make_plane(const std::string& filter, const PlaneTilt& tilt) {
+  const AxisInputs inputs = make_gl_inputs(filter);
+  TiltedPlane plane(inputs, inputs.filters[0]);
+  plane.tilt(tilt);
+  return plane;
+}
+
+/// The bias that a filter needs on a plane, in texels.
+double find_bias(const std::string& filter, const PlaneTilt& tilt) {
+  return make_plane(filter, tilt).find_needed_bias(find_gain_m(tilt, 4.0)).value() / kPlaneTexel_m;
+}
+
+/// NUMBERS: s (r + 1) tan(angle), by sqrt 2 on the diagonal; the nearest texel's centre is half a texel away at most.
+TEST(TiltedPlane, Needs_WhatThePlaneGainsOverTheKernel) {
+  for (const auto& [filter, reach] :
+       {std::pair("none", 0.5), std::pair("pcf2x2", 1.0), std::pair("tent3x3", 1.5), std::pair("box4x4", 2.0)}) {
+    for (const double angle : {10.0, 45.0, 80.0, 89.9}) {
+      const double gain = reach * std::tan(angle * std::numbers::pi / 180.0);
+      EXPECT_NEAR(find_bias(filter, {angle, false}) / gain, 1.0, 0.03) << filter << " " << angle;
+      EXPECT_NEAR(find_bias(filter, {angle, true}) / (gain * std::numbers::sqrt2), 1.0, 0.06) << filter << " " << angle;
+    }
+  }
+}
+
+TEST(TiltedPlane, FacingTheLight_NeedsNoBias) { EXPECT_EQ(find_bias("tent3x3", {0.0, false}), 0.0); }
+
+TEST(TiltedPlane, TwiceTheTheory_IsTheMostThatIsTried) {
+  const PlaneTilt tilt{60.0, false};
+  EXPECT_FALSE(make_plane("box4x4", tilt).find_needed_bias(find_gain_m(tilt, 0.5)));
+}
+
+TEST(TiltedPlane, AcneGrowsAsTheBiasShrinks) {
+  const PlaneTilt tilt{70.0, false};
+  TiltedPlane plane = make_plane("tent3x3", tilt);
+  const double theory = find_gain_m(tilt, 1.5);
+  const Acne none = plane.find_acne(0.0), half = plane.find_acne(0.5 * theory), enough = plane.find_acne(1.01 * theory);
+  EXPECT_NEAR(none.mean_shadow, 0.5, 0.02);
+  EXPECT_GT(none.share, half.share);
+  EXPECT_GT(half.share, half.mean_shadow);
+  EXPECT_EQ(enough.mean_shadow, 0.0);
+  EXPECT_EQ(enough.share, 0.0);
+}
+
+/// Half a quantum: of 2^-16 and 2^-24, and of a float, which is finest near 0.
+TEST(StoredDepths, LinearDepth_IsOffByHalfAQuantum) {
+  for (const auto& [format, quantum] : {std::pair(GLenum{GL_DEPTH_COMPONENT16}, 1.0 / 65535.0),
+                                        std::pair(GLenum{GL_DEPTH_COMPONENT24}, 1.0 / 16777215.0)}) {
+    StoredDepths depths(shared_renderer().shaders, format);
+    EXPECT_NEAR(depths.find_error_around({1000.0, false, false}, 2.0) / (0.5 * quantum * 999.0), 1.0, 0.02);
+  }
+  StoredDepths floats(shared_renderer().shaders, GL_DEPTH_COMPONENT32F);
+  const double far = floats.find_error_around({1000.0, false, false}, 900.0),
+               near = floats.find_error_around({1000.0, false, false}, 2.0);
+  EXPECT_NEAR(far / (0x1p-25 * 999.0), 1.0, 0.02);
+  EXPECT_LT(near, 0.01 * far);
+}
+
+/// d^2 (f - n) / (n f) times half a quantum: ten times the distance, a hundred times the error.
+TEST(StoredDepths, PerspectiveDepth_IsOffByTheSquareOfTheDistance) {
+  StoredDepths depths(shared_renderer().shaders, GL_DEPTH_COMPONENT16);
+  const DepthPlan plan{1000.0, true, false};
+  const double near = depths.find_error_around(plan, 4.0), far = depths.find_error_around(plan, 40.0);
+  EXPECT_NEAR(near / (16.0 * 0.999 * 0.5 / 65535.0), 1.0, 0.03);
+  EXPECT_NEAR(far / near, 100.0, 4.0);
+}
+
+TEST(StoredDepths, ReversedFloats_KeepWhatOthersLose) {
+  StoredDepths floats(shared_renderer().shaders, GL_DEPTH_COMPONENT32F);
+  EXPECT_GT(floats.find_largest_error({1e6, true, false}).relative, 0.02);
+  EXPECT_LT(floats.find_largest_error({1e6, true, true}).relative, 1e-6);
+  EXPECT_NEAR(floats.find_largest_error({1e6, true, false}).distance / 1e6, 1.0, 0.1);
+}
+
+TEST(StoredDepths, DistanceAndDepth_AreInverse) {
+  for (const DepthPlan& plan :
+       {DepthPlan{100.0, false, false}, DepthPlan{100.0, true, false}, DepthPlan{100.0, true, true}}) {
+    for (const double distance : {1.0, 3.0, 100.0})
+      EXPECT_NEAR(distance_of(plan, depth_of(plan, distance)), distance, 1e-9);
+    EXPECT_NEAR(depth_of(plan, 1.0), plan.reversed ? 1.0 : 0.0, 1e-12);
+  }
+}
+
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+Case find_case(const AxisInputs& inputs, const std::string& axis, const std::string& filter, const std::string& part) {
+  for (Case& item : choose_axes(axis)[0].make_cases(inputs))
+    if (item.filter == filter && item.level == Level::kGl && item.variant.find(part) != std::string::npos)
+      return std::move(item);
+  ADD_FAILURE() << "no case " << part;
+  return {};
+}
+
+/// Every case of these axes that runs on this GL keeps to its theory.
+TEST(ExtremeAxes, GlCases_MeetTheirTheories) {
+  for (const char* id : {"map-edge", "map-size", "poisoned-input"}) {
+    Axis axis = choose_axes(id)[0];
+    if (axis.whole) axis.range.high = std::min(axis.range.high, 512.0);  // larger maps cost seconds
+    expect_theories_met(axis, make_gl_inputs("none,box3x3,poisson,esm,vsm,msm_packed32,msm_packed64"), Level::kGl,
+                        false);
+  }
+}
+
+TEST(MapSize, OneTexelIsAMap) {
+  for (const char* id : {"none", "pcf2x2", "poisson", "vsm", "esm", "vsm_sat", "csm_conv"}) {
+    const Observation seen = find_case(make_gl_inputs(id), "map-size", id, "half").observe(1.0);
+    EXPECT_EQ(seen.verdict, Verdict::kOk) << id << ": " << seen.why;
+    EXPECT_TRUE(seen.measured);
+  }
+}
+
+/// A texel of 32 bits has 64 shares: by its own design, in a map of any size.
+TEST(MapSize, WhatAFilterPacks_IsNoFaultOfTheMap_ButIsSaid) {
+  const AxisInputs inputs = make_gl_inputs("msm_packed32,msm_packed64");
+  for (const char* id : {"msm_packed32", "msm_packed64"}) {
+    const Case item = find_case(inputs, "map-size", id, "half");
+    EXPECT_LT(item.observe(6.0).measured.value(), 1e-5) << id;
+    EXPECT_EQ(item.remark({}).size(), id == std::string("msm_packed32") ? 1u : 0u) << id;
+  }
+}
+
+/// Four terms of a Fourier series leave light behind an occluder, in a large map as in a small one.
+TEST(MapSize, WhatAFormulaLeavesOfTwoDepths_IsExpectedOfMapsOfEverySize) {
+  const AxisInputs inputs = make_gl_inputs("csm_conv");
+  const Case item = find_case(inputs, "map-size", "csm_conv", "half");
+  for (const double size : {256.0, 257.0, 512.0}) EXPECT_LT(item.observe(size).measured.value(), 1e-3) << size;
+}
+
+TEST(MapSize, AboveTheLimit_IsRefusedBeforeAnythingIsAllocated) {
+  const AxisInputs inputs = make_gl_inputs("none");
+  const std::vector<Exhibit> exhibits = choose_axes("map-size")[0].make_exhibits(inputs);
+  ASSERT_EQ(exhibits.size(), 1u);
+  const auto& rows = exhibits[0].table->rows;
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_THAT(rows[0][2],
+              AnyOf(HasSubstr("ok: dark behind an occluder, lit beside it"), HasSubstr("not available: it needs")));
+  for (std::size_t i = 1; i < 3; ++i)
+    EXPECT_THAT(rows[i][2], AllOf(HasSubstr("refused"), HasSubstr(fmt::format("at most {}", rows[0][0]))));
+}
+
+SyntheticScene make_scene() {
+  SyntheticScene scene;
+  scene.size = 8;
+  scene.depths.assign(64, 0.5f);
+  scene.depths[3 * 8 + 2] = 0.25f;
+  scene.receivers = {{scene.uv(2), scene.uv(3), 0.4f},
+                     {scene.uv(3), scene.uv(2), 0.4f},
+                     {scene.uv(2), scene.uv(3), 0.2f},
+                     {scene.uv(0), scene.uv(0), 0.6f}};
+  return scene;
+}
+
+TEST(GlLookup, ReceiversSeeTheTexelsTheyStandIn) {
+  const AxisInputs inputs = make_gl_inputs("none");
+  const LookupResult result = make_gl_lookup(inputs, inputs.filters[0])(make_scene(), inputs.filters[0].values);
+  EXPECT_THAT(result.visibility, ::testing::ElementsAre(0.0, 1.0, 1.0, 0.0));
+  EXPECT_EQ(result.broken_texels, 0);
+}
+
+TEST(GlLookup, EqualsTheModel_ForEveryFilterThatHasOne) {
+  const AxisInputs inputs = make_gl_inputs("");
+  for (const filters::FilterRequest& request : inputs.filters) {
+    const EdgeScene edge = make_edge_scene(4, {{0.3f, 0.6f}});
+    const LookupResult gl = make_gl_lookup(inputs, request)(edge.scene, request.values);
+    const LookupResult model = make_model_lookup(inputs, request)(edge.scene, request.values);
+    for (std::size_t i = 0; i < gl.visibility.size(); ++i)
+      EXPECT_NEAR(gl.visibility[i], model.visibility[i], 2e-3) << request.spec.id << " " << i;  // csm_conv: half floats
+  }
+}
+
+TEST(GlLookup, TakesAnotherSceneAndOtherValues) {
+  const AxisInputs inputs = make_gl_inputs("esm:radius=0");
+  filters::ParamValues values = inputs.filters[0].values;
+  const auto lookup = make_gl_lookup(inputs, inputs.filters[0]);
+  EXPECT_EQ(lookup(make_scene(), values).visibility.size(), 4u);
+  EXPECT_EQ(lookup(make_edge_scene(0, {{0.3f, 0.6f}}).scene, values).broken_texels, 0);
+  values["c"] = 500.0;
+  EXPECT_GT(lookup(make_scene(), values).broken_texels, 0);
+}
+
+TEST(GlLookup, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
+  const AxisInputs inputs = make_gl_inputs("none");
+  SyntheticScene scene = make_scene();
+  scene.size = inputs.renderer->context->info().max_texture_size * 2;
+  Case item;
+  item.observe = [lookup = make_gl_lookup(inputs, inputs.filters[0]), scene,
+                  values = inputs.filters[0].values](double) {
+    lookup(scene, values);
+    return Observation{};
+  };
+  Axis axis;
+  axis.range = {1.0, 2.0};
+  EXPECT_NE(find_onsets(item, axis).not_available, "");
+}
+
+/// Every case of the first axes that runs on this GL keeps to its theory, or says why not.
+TEST(Axes, GlCases_MeetTheirTheories) {
+  for (const char* id : {"esm-exponent", "vsm-cancellation"})
+    expect_theories_met(choose_axes(id)[0], make_gl_inputs("vsm,esm,vsm_sat,vssm"), Level::kGl, true);
+}
+
+using ::testing::StartsWith;
+
+TEST(Replay, OfA16BitExponentialVarianceMap_ShowsBothRankings) {
+  AxisInputs inputs = make_gl_inputs("vsm");
+  inputs.out = std::filesystem::path(::testing::TempDir()) / fmt::format("replay{}", getpid());
+  std::filesystem::create_directories(inputs.out);
+  const std::vector<Exhibit> exhibits = choose_axes("warp-exponent")[0].make_exhibits(inputs);
+  ASSERT_EQ(exhibits.size(), 1u);
+  const auto& rows = exhibits[0].table->rows;
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_THAT(rows[0][0], HasSubstr("(c=10, radius=1, store=rg16f"));
+  EXPECT_THAT(rows[0][1], Not(StartsWith("0 of")));
+  EXPECT_EQ(rows[0][3], "3 of 3");
+  EXPECT_THAT(rows[1][0], HasSubstr("(c=5.54, radius=1, store=rg16f"));
+  EXPECT_THAT(rows[1][1], StartsWith("0 of"));
+  EXPECT_EQ(rows[1][4], "1 of 3");
+  EXPECT_TRUE(std::filesystem::exists(inputs.out / exhibits[0].pictures.front().file));
+  std::filesystem::remove_all(inputs.out);
+}
+
+}  // namespace
+}  // namespace shadowbench::stress
