@@ -133,8 +133,7 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
   if (std::string gap = find_missing_cell(configuration, advice.places); !gap.empty())
     return Unjudged{configuration, std::move(gap), {}};
   Candidate candidate{configuration, {}, {}, combine_rmse(configuration.cells)};
-  for (const records::CellRecord* cell : configuration.cells)
-    candidate.seam = std::max(candidate.seam, cell->artefact.seam.value_or(0.0));
+  candidate.seam = find_seam(configuration.cells);
   for (const Demand& demand : request.demands) {
     Verdict verdict = demand.spec ? judge_limit(configuration, demand, request.light, advice.places)
                                   : judge_claim(configuration, demand.claim);
@@ -300,6 +299,12 @@ Verdict judge_limit(const Configuration& configuration, const Demand& demand, Li
     if (verdict.kept && spec.field == kRmseField && demand.most - value_of(cell) < find_rmse_reach(*cell))
       verdict.uncertain = cell;
   return verdict;
+}
+
+double find_seam(const std::vector<const records::CellRecord*>& cells) {
+  double seam = 0.0;
+  for (const records::CellRecord* cell : cells) seam = std::max(seam, cell->artefact.seam.value_or(0.0));
+  return seam;
 }
 
 std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, const CostKind& kind,

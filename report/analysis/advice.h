@@ -52,6 +52,9 @@ struct Cost {
   std::optional<records::Interval> ci95;  ///< of times alone; empty where a place has none
 };
 
+/// The worst seam between cascades; 0 where there is none.
+double find_seam(const std::vector<const records::CellRecord*>& cells);
+
 /// Measures what a configuration costs over `cells`, which are one or more; nothing where a cell has no value.
 std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& cells, const CostKind& kind,
                                  LightMotion light);

@@ -161,6 +161,22 @@ std::string describe_left_out(const LeftOutPlace& left_out, const Advice& advice
   return fmt::format("{} {}", describe_place(left_out.place, all), describe_state(left_out.state));
 }
 
+// What holds whatever the limits are: who is left out, what times are, which settings compete.
+std::vector<std::string> list_run_notes(const Advice& advice, const records::GlRecord& gl) {
+  std::vector<std::string> notes;
+  if (!advice.teaching.empty()) {
+    notes.push_back(
+        fmt::format("Left out, for they show a mistake and are for teaching: {}.", fmt::join(advice.teaching, ", ")));
+  }
+  const bool is_said = !describe_judged_lights(advice).empty();  // of what was not tested
+  for (const LeftOutPlace& each : advice.left_out)
+    if (each.is_tested() || !is_said) notes.push_back(describe_left_out(each, advice) + ".");
+  const std::vector<const records::CellRecord*> cells = list_judged_cells(advice);
+  if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
+  add_setting_notes(notes, cells);
+  return notes;
+}
+
 }  // namespace
 
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl) {
@@ -255,21 +271,6 @@ std::string describe_failure(const Advice& advice) {
   return fmt::format("none of {} configurations keeps the limits; {}", total,
                      obstacles.empty() ? "no single one is in the way: " + describe_closest(advice)
                                        : fmt::format("in the way: {}", fmt::join(obstacles, ", ")));
-}
-
-std::vector<std::string> list_run_notes(const Advice& advice, const records::GlRecord& gl) {
-  std::vector<std::string> notes;
-  if (!advice.teaching.empty()) {
-    notes.push_back(
-        fmt::format("Left out, for they show a mistake and are for teaching: {}.", fmt::join(advice.teaching, ", ")));
-  }
-  const bool is_said = !describe_judged_lights(advice).empty();  // of what was not tested
-  for (const LeftOutPlace& each : advice.left_out)
-    if (each.is_tested() || !is_said) notes.push_back(describe_left_out(each, advice) + ".");
-  const std::vector<const records::CellRecord*> cells = list_judged_cells(advice);
-  if (uses_time(advice.request)) add_time_notes(notes, cells, gl);
-  add_setting_notes(notes, cells);
-  return notes;
 }
 
 std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl) {

@@ -50,10 +50,6 @@ std::string describe_judged_lights(const Advice& advice);
 /// Says on one line which demands are in the way. Requires that nothing keeps them all.
 std::string describe_failure(const Advice& advice);
 
-/// Whole sentences about the run that hold whatever the limits are: who is left out, what its times are, which settings
-/// compete.
-std::vector<std::string> list_run_notes(const Advice& advice, const records::GlRecord& gl);
-
 /// Says in one sentence each what weakens the advice.
 std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl);
 

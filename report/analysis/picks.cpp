@@ -12,8 +12,6 @@
 namespace shadowbench::analysis {
 namespace {
 
-// What is tied with the least RMSE and larger than this many times that is no best one: too few phases were measured.
-constexpr double kMostOfTie = 1.1;
 constexpr const char* kNoBest = "; no best one is named, as RMSEs are too uncertain: take more --phases";
 
 bool are_costs_told_apart(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
@@ -75,16 +73,22 @@ std::string explain_fast(const Advice& advice) {
 }
 
 std::string explain_balanced(const Candidate& fast, const Candidate& knee, const Candidate& best) {
-  return fmt::format(
-      "{} of the quality gain for {} of the extra cost",
-      records::format_share((fast.rmse->value - knee.rmse->value) / (fast.rmse->value - best.rmse->value)),
-      records::format_share((knee.cost.mean - fast.cost.mean) / (best.cost.mean - fast.cost.mean)));
+  const double gain = (fast.rmse->value - knee.rmse->value) / (fast.rmse->value - best.rmse->value);
+  const double extra = (knee.cost.mean - fast.cost.mean) / (best.cost.mean - fast.cost.mean);
+  return fmt::format(fmt::runtime(answer_words().at("balanced")), fmt::arg("gain", records::format_share(gain)),
+                     fmt::arg("extra", records::format_share(extra)));
+}
+
+/// How many times the cost of the fast one; nothing where that cannot be said.
+std::optional<double> compare_with_fast(const Candidate& fast, const Candidate& best, const CostKind& kind) {
+  if (!are_costs_told_apart(fast, best, kind) || fast.cost.mean <= 0.0) return std::nullopt;
+  return best.cost.mean / fast.cost.mean;
 }
 
 std::string explain_best(const Candidate& fast, const Candidate& best, const CostKind& kind) {
-  if (!are_costs_told_apart(fast, best, kind) || fast.cost.mean <= 0.0) return "the least RMSE";
-  return fmt::format("the least RMSE, at {} times the cost of the fast one",
-                     records::format_number(best.cost.mean / fast.cost.mean));
+  const auto times = compare_with_fast(fast, best, kind);
+  return "the least RMSE" +
+         (times ? fmt::format(", at {} times the cost of the fast one", records::format_number(*times)) : "");
 }
 
 [[maybe_unused]] bool is_beaten(const Candidate& candidate, const Advice& advice) {
@@ -129,6 +133,29 @@ std::vector<Pick> list_picks(const Advice& advice) {
       pick.why += fmt::format("; its cascades show a seam of {}", records::format_number(candidate.seam));
   }
   return picks;
+}
+
+const std::map<std::string, std::string>& answer_words() {
+  static const std::map<std::string, std::string> words = {
+      {"fast", "Use {fast}."},
+      {"both", "Use {fast}: the cheapest, with the least error."},
+      {"best", "Use {fast}. Where shadows must look right, use {best}."},
+      {"dearer", "Use {fast}. Where shadows must look right, pay {times} times as much for {best}."},
+      {"less", ", {share} below no filter"},
+      {"balanced", "{gain} of the quality gain for {extra} of the extra cost"},
+      {"fails", "Nothing keeps these limits."},
+      {"unjudged", "Nothing can be judged: a value, a time or a scene is missing for every filter."}};
+  return words;
+}
+
+std::string describe_choice(const Advice& advice) {
+  const std::vector<Pick> picks = choose_picks(advice);
+  const Candidate &fast = advice.keeping.front(), &best = advice.keeping[picks.back().index];
+  const bool has_best = picks.back().names.back() == kBest;
+  const auto times = compare_with_fast(fast, best, advice.request.cheapest);
+  const char* kind = !has_best ? "fast" : picks.size() == 1 ? "both" : times ? "dearer" : "best";
+  return fmt::format(fmt::runtime(answer_words().at(kind)), fmt::arg("fast", fast.configuration.name),
+                     fmt::arg("best", best.configuration.name), fmt::arg("times", records::format_number(times)));
 }
 
 std::string describe_larger_map(const Candidate& candidate, const std::vector<Candidate>& others) {

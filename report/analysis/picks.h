@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,10 @@ namespace shadowbench::analysis {
 
 /// A seam from here on is seen: a step of brightness of 2 %, about Weber's fraction of the eye.
 inline constexpr double kVisibleSeam = 0.02;
+
+/// An RMSE that is tied with the least is no best one where it is larger than this many times that: too few phases
+/// tell.
+inline constexpr double kMostOfTie = 1.1;
 
 /// What an answer may be called, the cheapest first.
 inline constexpr const char *kFast = "fast", *kBalanced = "balanced", *kBest = "best";
@@ -30,6 +35,13 @@ struct Pick {
 /// cost and RMSE of another cannot be told from a pick's, that with the smaller seam between cascades is picked; a seam
 /// that is seen is said. Requires one that keeps the demands.
 std::vector<Pick> list_picks(const Advice& advice);
+
+/// The sentences of an answer, by name, with names and numbers in braces; a page's script fills the same.
+const std::map<std::string, std::string>& answer_words();
+
+/// Says in a sentence which filter to use, and which where shadows must look right. Requires one that keeps the
+/// demands.
+std::string describe_choice(const Advice& advice);
 
 /// Says which filters on smaller maps a candidate beats: "its larger map beats pcss, map 1024"; empty where it is none.
 std::string describe_larger_map(const Candidate& candidate, const std::vector<Candidate>& others);

@@ -1,11 +1,41 @@
+// The costs that the answer's select has: those of the page, and where this GPU could be timed and was not yet, that.
+const kMeasure = "measure";
+const fillCosts = (select) => {
+  const costs = run.costs.map(({ id, title }) => new Option(title, id));
+  const canMeasure = run.cells.some(({ frames }) => frames) && !timesHere();
+  if (canMeasure) costs.push(new Option("this GPU (measure)", kMeasure));
+  select.replaceChildren(...costs);
+  select.value = shadowbench.cost;
+};
+// Fills a select of costs; `begin` times this GPU, says in a line below the select how far that is, and gives the cost that was found to `choose`.
+const makeMeasurer = (select, choose) => {
+  fillCosts(select);
+  const line = element(select.form, "p", { className: "note", hidden: true });
+  const said = element(line, "span", { role: "status" });
+  line.append(" ");
+  const stop = addButton(line, "Stop", () => shadowbench.stopTiming());
+  let isAtWork = false;
+  const say = (text) => {
+    said.textContent = text;
+    stop.hidden = !isAtWork;
+    line.hidden = text === "";
+  };
+  const begin = async () => {
+    isAtWork = true;
+    const sayStep = (step) => say(`This GPU is being timed. ${step}`);
+    sayStep("");
+    const { value: id, message } = await attempt(shadowbench.timeHere(sayStep));
+    isAtWork = false;
+    say(message ?? "");
+    if (id) choose(id);
+    else select.value = shadowbench.cost;
+  };
+  return { begin, end: () => isAtWork && shadowbench.stopTiming() };
+};
 // The answer on top of a run's page: which filters are fast, balanced and best within the limits that the reader moves.
-// What advise() found is in the page's data; here worst values are compared with limits, and no more. `shadowbench
-// advise` says the same, as the command below the answer.
+// `shadowbench advise` gives the same, as the command below the answer.
 const startAnswer = (holder) => {
   const kSteps = 60;
-  const kTime = "time_ms";
-  const kSeen = 0.001;
-  const kVisibleSeam = 0.02;
   const kClaim = "contact-hardening";
   const places = run.places.map(({ title }) => title);
   const state = { wide: "", soft: false, limits: {} };
@@ -15,155 +45,26 @@ const startAnswer = (holder) => {
       : { ...measure, field: measure.id };
   const limits = run.measures.filter(({ option }) => option).map(nameLimit);
   const limitOf = (field) => limits.find((limit) => limit.field === field);
-  const titleOf = (field) => limitOf(field)?.title ?? field;
-  const fieldOf = (field) => (field === kTime ? costChoice().field : field);
-  const [all] = run.scopes;
-
-  // The worst value of a configuration in a scope, or a text that says why there is none.
-  const worstOf = (index, field, scope = all) => scope.rows[index].worst[fieldOf(field)];
-  const seamOf = (index, scope) => worstOf(index, "artefact.seam", scope)?.value ?? 0;
-  const costOf = (index, scope = all) => scope.rows[index][costChoice().field];
-  // Whether the cost of one cannot be told from that of another, which ranks behind it.
-  const areTied = ({ tied }, { rank }) => tied.some(([from, end]) => from <= rank && rank < end);
-  const limitsWhatIsSeen = () => Object.keys(state.limits).some((field) => limitOf(field).group !== "cost");
-  // Of what keeps the limits, cheapest first, what nothing beats; and where nothing that is seen is limited, what is
-  // clearly better than the cheapest without a filter.
-  const takeFront = (kept, scope) => {
-    const rmseOf = ({ index }) => scope.rows[index].rmse;
-    const seam = ({ index }) => seamOf(index, scope);
-    const isBeaten = (each, i) =>
-      kept.slice(0, i).some((other) => rmseOf(other)?.value <= rmseOf(each)?.value && seam(other) <= seam(each));
-    const [front, beaten] = [kept.filter((...each) => !isBeaten(...each)), kept.filter(isBeaten)];
-    const any = scope.advice[shadowbench.cost][""]?.order ?? [];
-    const unfiltered = any.find(({ index }) => run.configurations[index].filter === "none");
-    const isGain = (each) => unfiltered && rmseOf(each) && isErrorLess(rmseOf(each), rmseOf(unfiltered));
-    const gains = limitsWhatIsSeen() ? [] : front.filter(isGain);
-    const noGain = gains.length > 0 ? front.filter((each) => !gains.includes(each)) : [];
-    return { keeping: gains.length > 0 ? gains : front, beaten, noGain, unfiltered, gained: gains.length > 0 };
-  };
-  const judge = (scope = all) => {
-    const { order, unjudged } = scope.advice[shadowbench.cost][state.wide] ?? { order: [], unjudged: [] };
-    const judged = { keeping: [], failing: [], unjudged: [...unjudged] };
-    const fields = Object.keys(state.limits);
-    for (const [rank, { index, tied }] of order.entries()) {
-      const gap = fields.map((field) => worstOf(index, field, scope)).find((worst) => typeof worst === "string");
-      const broken = fields.filter((field) => worstOf(index, field, scope).value > state.limits[field]);
-      if (state.soft && !run.configurations[index].hardens) broken.push(kClaim);
-      if (gap) judged.unjudged.push({ index, gap });
-      else (broken.length > 0 ? judged.failing : judged.keeping).push({ index, rank, tied, broken });
-    }
-    return Object.assign(judged, takeFront(judged.keeping, scope));
-  };
-
-  const labelOf = (index) => run.configurations[index].label;
   const unitOf = (field) => (field === kTime ? costChoice().unit : limitOf(field).unit);
-  const say = (value, field) => format(value, unitOf(field));
-  const sayWorst = (index, field) =>
-    `${say(worstOf(index, field).value, field)} on ${places[worstOf(index, field).place]}`;
-  const costText = (index, scope) => `${format(costOf(index, scope))} ${costChoice().unit}`;
-  const list = (texts) => (texts.length > 1 ? `${texts.slice(0, -1).join(", ")} and ${texts.at(-1)}` : texts.join());
+  const [all] = run.scopes;
+  const worstOf = (index, field) => all.rows[index].worst[field === kTime ? costChoice().field : field];
+  const judge = (scope = all) => judgeScope(scope, costChoice(), state);
+  const labelOf = (index) => run.configurations[index].label;
 
-  // Which filters on smaller maps a choice beats.
-  const describeLargerMap = ({ index, rank }, beaten, scope) => {
-    const [own, rmseOf] = [run.configurations[index], (each) => scope.rows[each.index].rmse?.value];
-    const isBeaten = (each) => {
-      const other = run.configurations[each.index];
-      return (
-        each.rank > rank && other.map < own.map && other.filter !== own.filter && rmseOf(each) >= rmseOf({ index })
-      );
-    };
-    const found = beaten.filter(isBeaten);
-    if (found.length === 0) return "";
-    const least = found.reduce((a, b) => (rmseOf(b) < rmseOf(a) ? b : a));
-    return `; its larger map beats ${labelOf(least.index)}`;
-  };
-  const pick = ({ keeping, beaten, noGain, unfiltered, gained }, scope) => {
-    const limited = Object.keys(state.limits).length > 0 || state.soft;
-    const picks = pickThree(keeping, {
-      hasOthers: keeping.length + beaten.length + noGain.length > 1,
-      rmseOf: ({ index }) => scope.rows[index].rmse,
-      costOf: ({ index }) => costOf(index, scope),
-      areTied,
-      seamOf: ({ index }) => seamOf(index, scope),
-      why: gained
-        ? `cheapest clearly better than ${labelOf(unfiltered.index)}`
-        : limited
-          ? "cheapest within the limits"
-          : "cheapest",
-    });
-    const describeSeam = ({ index }) =>
-      seamOf(index, scope) >= kVisibleSeam ? `; its cascades show a seam of ${format(seamOf(index, scope))}` : "";
-    const describe = (each) => each.why + describeLargerMap(each, beaten, scope) + describeSeam(each);
-    return picks.map((each) => ({ ...each, why: describe(each) }));
-  };
-
-  // How the worst of what can be limited differs between the choice and the runner-up.
-  const compareWorst = (best, second) => {
-    const found = { lower: [], higher: [] };
-    for (const { field, group, title } of limits) {
-      const [a, b] = [best, second].map((index) => worstOf(index, field));
-      if (group === "cost" || a.value === undefined || b.value === undefined) continue;
-      const seen = group === "artefact" ? kSeen : 0.02 * Math.max(a.value, b.value);
-      const isTied =
-        field === "error.rmse"
-          ? areErrorsTied(cellAt(best, a.place).rmse, cellAt(second, b.place).rmse)
-          : Math.abs(b.value - a.value) <= seen;
-      if (isTied) continue;
-      const text = `${title} ${say(b.value, field)} instead of ${say(a.value, field)}`;
-      found[b.value < a.value ? "lower" : "higher"].push(text);
-    }
-    const parts = Object.entries(found).filter(([, texts]) => texts.length > 0);
-    if (parts.length === 0) return "at worst nothing that can be limited differs clearly";
-    return `at worst it has ${parts.map(([word, texts]) => `${word} ${list(texts)}`).join("; and ")}`;
-  };
-  // Where the choice is most wrong, and its faults: those that are seen, that are not, and that nobody could see.
-  const describeFaults = (best) => {
-    const { value, place } = worstOf(best, "error.rmse");
-    if (value === undefined) return [];
-    const { cause } = cellAt(best, place);
-    const said = [`${places[place]}, with RMSE ${format(value)}${cause && `, most of it ${cause}`}`];
-    const free = [];
-    const unknown = [];
-    for (const { field, title } of limits.filter(({ group }) => group === "artefact")) {
-      const worst = worstOf(best, field);
-      if (worst.value >= kSeen) said.push(`${title} ${sayWorst(best, field)}`);
-      else (worst.value === undefined ? unknown : free).push(title);
-    }
-    if (free.length > 0) said.push(`no ${free.join(" or ")} is seen`);
-    if (unknown.length > 0) said.push(`${unknown.join(" and ")} could not be measured`);
-    return said;
-  };
-  // How the choice stands to the limits, and where a limit had nothing to be judged on.
-  const describeBounds = (best) => {
-    const fields = Object.keys(state.limits);
-    const bounds = fields.map((field) => {
-      const { value, place } = worstOf(best, field);
-      const limit = say(state.limits[field], field);
-      return `${titleOf(field)} ${say(value, field)} at worst, on ${places[place]} (limit ${limit})`;
-    });
-    const blind = fields.filter((field) => worstOf(best, field).unseen.length > 0);
-    const unseen = (field) => list(worstOf(best, field).unseen.map((place) => places[place]));
-    return [...bounds, ...blind.map((field) => `${titleOf(field)} had nothing to show on ${unseen(field)}`)];
-  };
-
+  // Of what is there without the script the notes stay, which are of the choice that the page opens with.
+  const notes = holder.querySelector(":scope > ul");
+  [...holder.children].filter((child) => !child.matches("figure.split")).forEach((child) => child.remove());
   const headline = element(holder, "p", { className: "choice", "aria-live": "polite" });
+  element(holder, "p", { className: "note" }, run.setting);
   const controls = element(holder, "form", { className: "limits", "aria-label": "Limits", onsubmit: () => false });
-  const stated = element(holder, "p", { className: "note" }); // what the chosen cost is of, and leaves out
   const table = element(element(holder, "div", { className: "scroll picks" }), "table");
   const picture = startPicture(holder);
   const folded = element(holder, "details", { className: "reasons" });
   element(folded, "summary", {}, "Why, limits and commands");
   const sliders = element(folded, "div", { className: "limits sliders" });
-  const reasons = element(folded, "ul");
+  const stated = element(folded, "p", { className: "note" }); // what the chosen cost is of, and leaves out
+  if (notes) folded.append(notes);
   const codes = ["In a terminal: ", "In a window: "].map((lead) => addCommand(folded, lead));
-  // An item of the reasons, in which a number stands for a configuration's name.
-  const explain = (lead, ...parts) => {
-    const item = element(reasons, "li");
-    element(item, "b", {}, lead + " ");
-    for (const part of parts)
-      if (typeof part === "number") element(item, "bdi", {}, labelOf(part));
-      else item.append(part);
-  };
 
   const writeAdvise = () => {
     const asked = limits.filter(({ field }) => field in state.limits);
@@ -175,69 +76,18 @@ const startAnswer = (holder) => {
       ...(costChoice().option ? [costChoice().option] : []),
     ].join(" ");
   };
-  const explainSecond = (best, second) => {
-    if (!second) return explain("Runner-up:", "no other on the front keeps the limits.");
-    const times = `at ${format(costOf(second.index) / costOf(best.index))} times the cost`;
-    const stands = areTied(best, second) ? "whose cost cannot be told from it" : times;
-    explain("Runner-up:", second.index, `, ${stands}; ${compareWorst(best.index, second.index)}.`);
-  };
-  const explainChoice = ({ keeping, failing, noGain, beaten, unfiltered, gained }) => {
-    const [best, second] = keeping;
-    const tied = keeping.filter((other) => areTied(best, other));
-    const configuration = run.configurations[best.index];
-    const lead = tied.length > 0 ? "it has the lowest mean cost" : "it is the cheapest";
-    const bounds = describeBounds(best.index);
-    const limited = Object.keys(state.limits).length > 0 || state.soft;
-    const judged = limited ? "that keep the limits" : gained ? "on the Pareto front" : "that can be judged";
-    explain(
-      "Fast:",
-      best.index,
-      `; ${lead} of ${keeping.length} ${judged}${bounds.length > 0 ? ": " : ""}${bounds.join("; ")}.`,
-    );
-    if (tied.length > 0) {
-      const others = tied.length > 3 ? `${tied.length} others` : list(tied.map(({ index }) => labelOf(index)));
-      explain("Tied:", `the costs of ${others} cannot be told from it.`);
-    }
-    const kernel = configuration.sigma === null ? "of no one width that is known" : configuration.kernel;
-    explain("Kernel:", `${kernel}${configuration.params && `; ${configuration.params}`}.`);
-    explainSecond(best, second);
-    const isCheaper = (other) => costOf(other.index) < costOf(best.index);
-    const cheaper = failing.find(
-      (other) => other.broken.length === 1 && limitOf(other.broken[0]) && isCheaper(other) && !areTied(other, best),
-    );
-    if (cheaper) {
-      const [field] = cheaper.broken;
-      const limit = say(worstOf(cheaper.index, field).limit, field);
-      explain("Cheaper:", cheaper.index, `, ${costText(cheaper.index)}, were ${titleOf(field)} of ${limit} allowed.`);
-    }
-    const names = (each) => list(each.map(({ index }) => labelOf(index)));
-    if (noGain.length > 0) explain("No better than", unfiltered.index, `: ${names(noGain)}.`);
-    if (beaten.length > 0) explain("Beaten in cost and error:", `${names(beaten)}.`);
-    const faults = describeFaults(best.index);
-    if (faults.length > 0) explain("Fails at:", `${faults.join("; ")}.`);
-  };
-  // How many times a limit the worst value is, at most; beyond a limit of 0, and without a claim, infinitely.
-  const measureExcess = ({ index, broken }) =>
-    Math.max(
-      ...broken.map((field) =>
-        state.limits[field] > 0 ? worstOf(index, field).value / state.limits[field] : Infinity,
-      ),
-    );
-  const explainNothing = (failing) => {
-    const none = "Nothing can be judged: a value, a time or a scene is missing for every filter.";
-    headline.textContent = failing.length > 0 ? "Nothing keeps these limits." : all.judged || none;
-    const [nearest] = failing
-      .map((each) => ({ ...each, excess: measureExcess(each) }))
-      .sort((a, b) => a.broken.length - b.broken.length || (a.excess === b.excess ? 0 : a.excess - b.excess));
-    if (!nearest) return;
-    const { index, broken } = nearest;
-    const breaks = broken.map(
-      (field) => titleOf(field) + (field in state.limits ? `, with ${sayWorst(index, field)}` : ""),
-    );
-    explain("Closest:", index, ` breaks ${list(breaks)}.`);
+  // The program's words, with names and numbers in their places.
+  const fill = (name, values) => run.words[name].replaceAll(/\{(\w+)\}/g, (_, key) => values[key]);
+  const percent = (share) => `${Math.round(100 * share)}\u00a0%`;
+  const sayChoice = ({ picks, failing }) => {
+    const [fast, best] = [0, 2].map((column) => picks.find(({ columns }) => columns.includes(column)));
+    if (!fast) return failing.length > 0 ? fill("fails") : fill("unjudged");
+    const [name, other] = [fast, best ?? fast].map(({ index }) => quote(labelOf(index)));
+    const kind = !best ? "fast" : best === fast ? "both" : best.times ? "dearer" : "best";
+    return fill(kind, { fast: name, best: other, times: format(best?.times ?? 1) });
   };
 
-  // The table: all scenes, and each; a click shows the picture.
+  // The table: all scenes, and those whose answer is another; a click shows the picture.
   const findWorstPlace = (index, scope) => {
     const own = run.cells.filter(
       ({ configuration, place }) =>
@@ -256,25 +106,33 @@ const startAnswer = (holder) => {
     codes[1].textContent = writeView(index, place);
     codes[1].parentNode.hidden = !codes[1].textContent;
   };
-  const addPick = (row, { index, why }, scope) => {
+  // A number with its bar, which is as long as its share of `most`.
+  const addNumber = (cell, className, text, words, share) => {
+    const line = element(cell, "span");
+    element(line, "b", { className }, text);
+    line.append(` ${words}`);
+    if (share !== null) element(cell, "i", { className: `bar ${className}`, style: `--share: ${share}` });
+  };
+  const addPick = (row, pick, scope, { picks, none }) => {
+    const { index, cost, rmse, gain, extra } = pick;
     const place = findWorstPlace(index, scope);
     const cell = element(row, "td");
     const choose = () => {
       showPick(index, place);
       writeLink("shown", [labelOf(index), places[place]]);
     };
-    const button = addButton(cell, "", choose, `${run.configurations[index].full}\n${why}`);
+    const button = addButton(cell, "", choose, run.configurations[index].full);
     Object.assign(button.dataset, { index, place });
     element(button, "bdi", {}, labelOf(index));
-    const rmse = scope.rows[index].rmse;
-    const error = rmse ? `RMSE ${format(rmse.value)}` : "";
-    if (scope !== all) return element(button, "span", {}, rmse ? format(rmse.value) : costText(index, scope));
-    const line = element(cell, "span");
-    for (const text of [costText(index, scope), error].filter(Boolean)) {
-      line.append(line.firstChild ? " · " : "");
-      element(line, "span", { className: "whole" }, text);
-    }
-    element(cell, "span", {}, why.replaceAll(" %", "\u00a0%"));
+    const costText = `${format(cost)} ${costChoice().unit}`;
+    if (scope !== all) return element(button, "span", {}, rmse ? format(rmse.value) : costText);
+    const share = (value, most) => (most > 0 ? Math.min(1, Math.max(0, value / most)) : null);
+    const less = rmse && none?.value > rmse.value ? fill("less", { share: percent(1 - rmse.value / none.value) }) : "";
+    if (rmse) addNumber(cell, "error", format(rmse.value), `RMSE${less}`, share(rmse.value, none?.value ?? 0));
+    const dearest = Math.max(...picks.map((each) => each.cost));
+    addNumber(cell, "cost", costText, "a frame", share(cost, dearest));
+    if (gain) element(cell, "span", {}, fill("balanced", { gain: percent(gain), extra: percent(extra) }));
+    if (scope.rows[index].wrong) element(cell, "span", {}, scope.rows[index].wrong);
   };
   const addRow = (scope, judged) => {
     const row = element(table.tBodies[0] ?? element(table, "tbody"), "tr");
@@ -282,39 +140,47 @@ const startAnswer = (holder) => {
     const head = element(row, "th", { scope: "row", dir: "auto" });
     for (const part of title.split(/(?<=[._-])/)) head.append(part, document.createElement("wbr"));
     if (scope.left_out) return element(row, "td", { colSpan: 3 }, scope.left_out);
-    if (judged.keeping.length === 0) return element(row, "td", { colSpan: 3 }, "nothing keeps the limits");
-    const picks = pick(judged, scope);
+    if (judged.keeping.length === 0) return element(row, "td", { colSpan: 3 }, fill("fails"));
     for (const column of [0, 1, 2]) {
-      const own = picks.find(({ columns }) => columns.includes(column));
-      if (own) addPick(row, own, scope);
+      const own = judged.picks.find(({ columns }) => columns.includes(column));
+      if (own) addPick(row, own, scope, judged);
       else element(row, "td", {}, "–");
     }
   };
+  // What a sweep of the bias recommends for picks, where one was made.
+  const addBiasRow = (picks) => {
+    const biasOf = (column) => run.configurations[picks.find(({ columns }) => columns.includes(column))?.index]?.bias;
+    const biases = [0, 1, 2].map(biasOf);
+    if (!biases.some(Boolean)) return;
+    const row = element(table.tBodies[0], "tr");
+    element(row, "th", { scope: "row" }, "bias to ship");
+    for (const bias of biases) element(row, "td", {}, bias || "–");
+  };
+  const listNames = ({ picks }) => picks.map(({ index, columns }) => [index, ...columns].join()).join(" ");
   const showTable = (judged) => {
     table.replaceChildren();
     if (judged.keeping.length === 0) return;
     const head = element(element(table, "thead"), "tr");
     element(head, "td");
     for (const title of ["Fast", "Balanced", "Best"]) element(head, "th", { scope: "col" }, title);
-    run.scopes.forEach((scope) => addRow(scope, scope === all ? judged : judge(scope)));
-    addBiasRow(table.tBodies[0], pick(judged, all));
+    addRow(all, judged);
+    for (const scope of run.scopes.slice(1)) {
+      const own = judge(scope);
+      if (scope.left_out || listNames(own) !== listNames(judged)) addRow(scope, own);
+    }
+    addBiasRow(judged.picks);
   };
+  const isAsked = () => state.wide || state.soft || Object.keys(state.limits).length > 0;
   const show = () => {
-    headline.textContent = all.judged;
     stated.textContent = `Cost: ${costChoice().text}.`;
-    reasons.replaceChildren();
     const judged = judge();
+    headline.textContent = [sayChoice(judged), all.judged].filter(Boolean).join(" ");
     showTable(judged);
-    if (judged.keeping.length > 0) explainChoice(judged);
-    else explainNothing(judged.failing);
     const first = table.querySelector("button");
     picture.figure.hidden = !first;
     if (first) showPick(Number(first.dataset.index), Number(first.dataset.place));
-    const gaps = new Map(judged.unjudged.map(({ gap }) => [gap, []]));
-    for (const { index, gap } of judged.unjudged) gaps.get(gap).push(index);
-    for (const [gap, [index, ...others]] of gaps)
-      explain("Not judged:", index, others.length > 0 ? ` and ${others.length} more` : "", `: ${gap}.`);
     codes[0].textContent = writeAdvise();
+    if (notes) notes.hidden = isAsked() || shadowbench.cost !== run.cost;
   };
 
   // A slider's steps are the worst values of the run: each step lets one more configuration through.
@@ -407,15 +273,9 @@ const startAnswer = (holder) => {
     openShown();
   };
 
-  // Of what stood there without the script, the notes stay, folded.
-  const own = [headline, controls, stated, table.parentNode, picture.figure, folded];
-  const before = [...holder.children].filter((child) => !own.includes(child));
-  const notes = before.find(({ localName }) => localName === "ul");
-  before.forEach((child) => child.remove());
-  if (notes) folded.append(notes);
   window.addEventListener("hashchange", openLink);
   showSliders();
   show();
   openLink();
-  shadowbench.answer = { judge, state, picks: (scope = all) => pick(judge(scope), scope), writeView };
+  shadowbench.answer = { judge, state, picks: (scope = all) => judge(scope).picks, writeView };
 };

@@ -1,49 +1,71 @@
-// Fast, balanced and best of the configurations that keep the limits, as name_picks() of the program has them: each with
-// the columns of the answer where it stands. `keeping` has the cheapest first.
-const pickThree = (keeping, { hasOthers, rmseOf, costOf, areTied, seamOf, why }) => {
-  const share = (part) => `${Math.round(100 * part)} %`;
+// Fast, balanced and best of what keeps the limits that the reader moves, as advise() and list_picks() of the program
+// find them: the page's data has what they judged, the order by cost with its ties, worst values, and errors.
+const kTime = "time_ms";
+const isErrorLess = (a, b) => {
+  const gaps = b.replicates.map((value, i) => value - a.replicates[i]);
+  const count = gaps.length;
+  if (count < 2 || count !== a.replicates.length) return b.value - a.value > Math.max(a.reach, b.reach);
+  const mean = gaps.reduce((sum, each) => sum + each) / count;
+  const squares = gaps.reduce((sum, each) => sum + (each - mean) ** 2, 0);
+  return b.value - a.value > a.t * Math.sqrt(squares / (count - 1) / count);
+};
+const areErrorsTied = (a, b) => !isErrorLess(a, b) && !isErrorLess(b, a);
+const areCostsTied = (a, b) => {
+  const [cheaper, dearer] = a.rank < b.rank ? [a, b] : [b, a];
+  return cheaper.tied.some(([from, end]) => from <= dearer.rank && dearer.rank < end);
+};
+const pickThree = (keeping, hasOthers) => {
   const [fast] = keeping;
-  const known = hasOthers && keeping.every((each) => rmseOf(each));
-  const least = known && keeping.reduce((a, b) => (rmseOf(b).value < rmseOf(a).value ? b : a));
-  const cheapest = known && keeping.find((each) => !isErrorLess(rmseOf(least), rmseOf(each)));
-  const isVague = cheapest && rmseOf(cheapest).value > 1.1 * rmseOf(least).value;
-  const vague = isVague ? "; no best one is named, as RMSEs are too uncertain: take more --phases" : "";
-  if (!cheapest || isVague) return [{ columns: [0], ...fast, why: why + vague }];
-  const areAlike = (a, b) =>
-    a === b ||
-    (!isErrorLess(rmseOf(a), rmseOf(b)) &&
-      !isErrorLess(rmseOf(b), rmseOf(a)) &&
-      (a.rank < b.rank ? areTied(a, b) : areTied(b, a)));
-  // Of those whose cost and RMSE cannot be told from a pick's, the one with the smallest seam.
-  const avoidSeam = (own) =>
-    keeping.filter((each) => areAlike(own, each)).reduce((a, b) => (seamOf(b) < seamOf(a) ? b : a), own);
+  const isKnown = hasOthers && keeping.every(({ rmse }) => rmse);
+  const least = isKnown && keeping.reduce((a, b) => (b.rmse.value < a.rmse.value ? b : a));
+  const cheapest = isKnown && keeping.find(({ rmse }) => !isErrorLess(least.rmse, rmse));
+  if (!cheapest || cheapest.rmse.value > run.most_of_tie * least.rmse.value) return [{ columns: [0], ...fast }];
+  const areAlike = (a, b) => a === b || (areErrorsTied(a.rmse, b.rmse) && areCostsTied(a, b));
+  const avoidSeam = (own) => keeping.reduce((a, b) => (b.seam < a.seam && areAlike(own, b) ? b : a), own);
   const best = avoidSeam(cheapest);
-  if (best === fast) return [{ columns: [0, 2], ...fast, why }];
-  const isDearer = !areTied(fast, cheapest);
-  const times =
-    !areTied(fast, best) && costOf(fast) > 0 ? `, ${format(costOf(best) / costOf(fast))} × fast's cost` : "";
-  const ofCost = (each) => (costOf(each) - costOf(fast)) / (costOf(cheapest) - costOf(fast));
-  const ofGain = (each) => (rmseOf(fast).value - rmseOf(each).value) / (rmseOf(fast).value - rmseOf(cheapest).value);
+  if (best === fast) return [{ columns: [0, 2], ...fast }];
+  const ofCost = ({ cost }) => (cost - fast.cost) / (cheapest.cost - fast.cost);
+  const ofGain = ({ rmse }) => (fast.rmse.value - rmse.value) / (fast.rmse.value - cheapest.rmse.value);
   const below = (each) => ofGain(each) - ofCost(each); // the straight line from fast to best
-  const between = keeping
-    .slice(1, Math.max(1, keeping.indexOf(cheapest)))
-    .filter((each) => !areTied(each, cheapest) && isErrorLess(rmseOf(each), rmseOf(fast)));
-  const found = isDearer && between.reduce((a, b) => (below(b) > (a ? below(a) : 0) ? b : a), null);
-  const knee = found && avoidSeam(found);
-  const gain = knee && `${share(ofGain(knee))} of the quality gain for ${share(ofCost(knee))} of the extra cost`;
+  const isKnee = (each) => !areCostsTied(each, cheapest) && isErrorLess(each.rmse, fast.rmse) && below(each) > 0;
+  const knees = areCostsTied(fast, cheapest) ? [] : keeping.slice(1, keeping.indexOf(cheapest)).filter(isKnee);
+  const knee = knees.length > 0 && avoidSeam(knees.reduce((a, b) => (below(b) > below(a) ? b : a)));
+  const times = fast.cost > 0 && !areCostsTied(fast, best) ? best.cost / fast.cost : null;
   return [
-    { columns: [0], ...fast, why },
-    ...(knee && knee !== best ? [{ columns: [1], ...knee, why: gain }] : []),
-    { columns: [2], ...best, why: `least RMSE${times}` },
+    { columns: [0], ...fast },
+    ...(knee && knee !== best ? [{ columns: [1], ...knee, gain: ofGain(knee), extra: ofCost(knee) }] : []),
+    { columns: [2], ...best, times },
   ];
 };
-
-// What a sweep of the bias recommends for picks, as a row of their table; none where none was swept.
-const addBiasRow = (body, picks) => {
-  const biasOf = (column) => run.configurations[picks.find(({ columns }) => columns.includes(column))?.index]?.bias;
-  const biases = [0, 1, 2].map(biasOf);
-  if (!biases.some(Boolean)) return;
-  const row = element(body, "tr");
-  element(row, "th", { scope: "row" }, "bias to ship");
-  for (const bias of biases) element(row, "td", {}, bias || "–");
+// What keeps the limits in a scope, cheapest first: what nothing beats, and, where nothing that is seen is limited, what
+// is clearly better than the cheapest without a filter.
+const judgeScope = (scope, { id, field }, { wide, soft, limits }) => {
+  const { order, unjudged } = scope.advice[id][wide] ?? { order: [], unjudged: [] };
+  const asked = Object.entries(limits).map(([name, most]) => [name === kTime ? field : name, most]);
+  const all = order.map(({ index, tied }, rank) => {
+    const { worst, rmse, seam, [field]: cost } = scope.rows[index];
+    const gap = asked.map(([name]) => worst[name]).find((each) => typeof each === "string");
+    const isKept = asked.every(([name, most]) => worst[name].value <= most);
+    return { index, rank, tied, cost, rmse, seam, gap, keeps: isKept && (!soft || run.configurations[index].hardens) };
+  });
+  const judged = all.filter(({ gap }) => !gap);
+  const kept = judged.filter(({ keeps }) => keeps);
+  const beats = (a, b) => a.rmse?.value <= b.rmse?.value && a.seam <= b.seam;
+  const isBeaten = (each, i) => kept.slice(0, i).some((other) => beats(other, each));
+  const front = kept.filter((...each) => !isBeaten(...each));
+  const unfiltered = scope.advice[id][""]?.order.find(({ index }) => run.configurations[index].filter === "none");
+  const none = unfiltered && scope.rows[unfiltered.index].rmse;
+  const isSeen = ([name]) => run.measures.some((each) => each.id === name && each.group !== "cost");
+  const isGain = ({ rmse }) => none && rmse && isErrorLess(rmse, none);
+  const gains = asked.some(isSeen) ? [] : front.filter(isGain);
+  const keeping = gains.length > 0 ? gains : front;
+  return {
+    keeping,
+    none,
+    beaten: kept.filter(isBeaten),
+    noGain: front.filter((each) => !keeping.includes(each)),
+    failing: judged.filter(({ keeps }) => !keeps),
+    unjudged: [...unjudged, ...all.filter(({ gap }) => gap)],
+    picks: keeping.length > 0 ? pickThree(keeping, kept.length > 1) : [],
+  };
 };

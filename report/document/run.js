@@ -13,23 +13,6 @@ const showCost = () => {
 
 const cells = new Map(run.cells.map((cell) => [`${cell.configuration} ${cell.place}`, cell]));
 const cellAt = (who, place) => cells.get(`${who} ${place}`);
-// By how much one error is above another's, and how far that may be off, as subtract() of the program has it.
-const compareErrors = (a, b) => {
-  const gaps = a.replicates.map((value, i) => value - b.replicates[i]);
-  const count = gaps.length;
-  if (count < 2 || count !== b.replicates.length) return { gap: a.value - b.value, reach: Math.max(a.reach, b.reach) };
-  const gap = gaps.reduce((sum, each) => sum + each) / count;
-  const squares = gaps.reduce((sum, each) => sum + (each - gap) ** 2, 0);
-  return { gap, reach: a.t * Math.sqrt(squares / (count - 1) / count) };
-};
-const isErrorLess = (a, b) => {
-  const { gap, reach } = compareErrors(b, a);
-  return gap - reach > 0;
-};
-const areErrorsTied = (a, b) => {
-  const { gap, reach } = compareErrors(a, b);
-  return Math.abs(gap) <= reach;
-};
 const findEntry = (who, place) => {
   const entry = who === kTruth ? run.truths[place] : cellAt(who, place);
   return entry && (entry.picture || entry.values) ? entry : null;

@@ -11,6 +11,7 @@
 #include "reference/metrics/metric_table.h"
 #include "report/analysis/cell_group.h"
 #include "report/analysis/claims.h"
+#include "report/analysis/picks.h"
 #include "report/analysis/place_state.h"
 #include "report/analysis/trade.h"
 #include "report/analysis/trade_measures.h"
@@ -19,7 +20,6 @@
 #include "report/pages/answer/answer_data.h"
 #include "report/pages/external_section.h"
 #include "report/records/cell_key.h"
-#include "report/records/error_parts.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
 
@@ -89,16 +89,6 @@ json list_intervals(const records::CellRecord& cell, const std::vector<CostChoic
   return intervals;
 }
 
-/// What most of a cell's error comes from, in words; empty where that cannot be said.
-std::string find_cause(const records::CellRecord& cell) {
-  const auto shares = records::list_shares(cell);
-  if (!shares || analysis::is_lost_in_truth(cell)) return {};
-  const auto part = analysis::find_dominating_part(*shares);
-  if (!part) return {};
-  const records::ErrorPart& own = records::list_error_parts()[*part];
-  return std::string(own.id) + ": " + own.meaning;
-}
-
 json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place,
                const std::vector<CostChoice>& costs) {
   return {{"key", cell.key},
@@ -108,7 +98,6 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
           {"values_of", list_values(cell, costs)},
           {"rmse", describe_error(cell.error.rmse ? std::optional(analysis::estimate_rmse(cell)) : std::nullopt)},
           {"intervals", list_intervals(cell, costs)},
-          {"cause", find_cause(cell)},
           {"picture", path_of(cell.images.picture)},
           {"smooth", cell.images.samples ? json{{"samples", *cell.images.samples},
                                                 {"picture", path_of(cell.images.supersampled)},
@@ -179,6 +168,9 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
             {"measures", list_measures(choices)},
             {"costs", json::array()},
             {"cost", choices.front().measure.id},
+            {"words", analysis::answer_words()},
+            {"most_of_tie", analysis::kMostOfTie},
+            {"setting", describe_setting(cells)},
             {"classes", json::array()},
             {"places", json::array()},
             {"truths", json::array()},

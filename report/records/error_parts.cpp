@@ -21,7 +21,7 @@ const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts() {
       ErrorPart{"numeric", "numeric", "arithmetic precision", {0.20f, 0.20f, 0.20f}, &AttributionRecord::numeric},
       ErrorPart{"estimator",
                 "estimator",
-                "what the filter makes of the depths it reads, such as light bleeding of a bound or noise of few taps",
+                "light bleeding of a bound, or noise of few taps",
                 {0.94f, 0.75f, 0.19f},
                 &AttributionRecord::estimator},
       ErrorPart{"discretisation",

@@ -27,7 +27,6 @@ const runAdvice = (command, ...more) => {
 const readCommand = (page, i = 0) => page.locator(".reasons code").nth(i).textContent();
 const compare = async (page, run) => {
   const command = await readCommand(page), { status, advice } = runAdvice(command), headline = await page.locator(".choice").textContent();
-  const reasons = (await page.locator(".reasons li").allTextContents()).join("\n");
   assert.equal(advice.fits, status === 0);
   const judged = await page.evaluate(() => {
     const { keeping, beaten, failing, unjudged, noGain } = shadowbench.answer.judge();
@@ -36,11 +35,8 @@ const compare = async (page, run) => {
   const data = await readData(page), indexOf = ({ settings }) => findConfiguration(run, data, settings), labelOf = (each) => data.configurations[indexOf(each)].label;
   const counts = { keeping: advice.keep, beaten: advice.beaten.length, failing: advice.fail, unjudged: advice.not_judged.length, noGain: advice.no_better_than_none.length };
   assert.deepEqual(judged, counts, command);
-  assert.equal(/Not judged: /.test(reasons), judged.unjudged > 0, `${command}: ${reasons}`);
-  assert.equal(/No better than/.test(reasons), judged.noGain > 0, `${command}: ${reasons}`);
   if (status === 1) {
     assert.match(headline, advice.fail > 0 ? /^Nothing keeps these limits/ : /^Nothing can be judged/, command);
-    if (advice.closest) assert.ok(reasons.includes(`Closest: ${labelOf(advice.closest)} breaks `), `${command}: ${advice.closest.label}: ${reasons}`);
     return status;
   }
   const rows = await page.locator(".picks tbody tr").all(), cells = await rows[0].locator("td").allTextContents();
@@ -55,21 +51,19 @@ const compare = async (page, run) => {
     }
   }
   assert.deepEqual(filled, wanted, `${command}: ${cells}`);
-  if (advice.runner_up) assert.ok(reasons.includes(`Runner-up: ${labelOf(advice.runner_up)},`), `${command}: ${reasons}`);
-  const { tied = false, basis } = advice.runner_up?.lost_by ?? {}, apart = basis === "none";
-  assert.equal(reasons.includes("whose cost cannot be told from it"), tied && !apart, `${command}: ${reasons}`);
-  assert.equal(reasons.includes("whose ratio is to another 'none'"), apart, `${command}: ${reasons}`);
-  if (!advice.runner_up) assert.ok(reasons.includes("no other on the front keeps the limits"), command);
+  // The same sentence, but for what --class leaves out of names.
+  if (!/--class/.test(command)) assert.ok(headline.replaceAll(/[\u2068\u2069]/g, "").startsWith(advice.choice), `${command}: ${headline}, not ${advice.choice}`);
   return status;
 };
 // Each scene's row is what the command says with --scene.
 const compareScenes = async (page, run) => {
   const command = await readCommand(page), data = await readData(page);
   for (const { scene, left_out: leftOut } of data.scopes.slice(1)) {
-    const row = page.locator(".picks tbody tr").filter({ has: page.locator("th", { hasText: scene }) });
+    const rows = page.locator(".picks tbody tr"), own = rows.filter({ has: page.locator("th", { hasText: scene }) });
     if (leftOut) continue;
+    const row = (await own.count()) > 0 ? own : rows.first();  // what is answered as all scenes are has no row
     const { status, advice } = runAdvice(command, "--scene", scene), text = (await row.locator("td").allTextContents()).join(" ");
-    if (status === 1) assert.match(text, /nothing keeps the limits/);
+    if (status === 1) assert.match(text, /Nothing keeps these limits/);
     for (const each of advice.picks ?? []) assert.ok(text.includes(data.configurations[findConfiguration(run, data, each.settings)].label), `${command}, ${scene}: ${each.name} ${each.label}: ${text}`);
     if (status === 0) assert.equal(await row.locator("button").count(), advice.picks.reduce((sum, { name }) => sum + (name === "fast and best" ? 2 : 1), 0), text);
   }

@@ -187,9 +187,9 @@ test("ACostChosenOnTop_IsThatOfAnswerTableAndChart_AndSaysWhatItIsOf", async () 
     await page.locator('.limits select[name="cost"]').selectOption(id);
     assert.equal(await readChosen(), id);
     assert.match(text, /^ms of a (1920x1080|240x135) frame with one map, .*left out: /);
-    assert.ok((await page.locator(".answer > .note").allTextContents()).includes(`Cost: ${text}.`));
+    assert.ok((await page.locator(".reasons .note").allTextContents()).includes(`Cost: ${text}.`));
     assert.equal((await readHead(page))[2].replace(/ [▲▼]$/, ""), `${title}, ${unit}`);
-    const [label, cost] = await page.locator(".picks tbody td").first().evaluate((cell) => [cell.querySelector("bdi").textContent, cell.querySelector(".whole").textContent]);
+    const [label, cost] = await page.locator(".picks tbody td").first().evaluate((cell) => [cell.querySelector("bdi").textContent, cell.querySelector("b.cost").textContent]);
     const row = (await readRows(page)).find(([name]) => name.text === label);
     assert.equal(`${row[2].text} ${unit}`, cost, "the number of the answer is that of the table");
   }

@@ -254,6 +254,8 @@ Json make_advice_json(const records::RunRecord& run, const analysis::Advice& adv
                {"software", run.gl.software},
                {"renderer", run.gl.renderer},
                {"asked", request_json(advice)}};
+  json["choice"] = analysis::answer_words().at("fails");
+  if (!advice.keeping.empty()) json["choice"] = analysis::describe_choice(advice);
   json["picks"] = picks_json(advice);
   set_answer(json, advice, run.gl);
   json["relaxed"] = relaxed_json(advice);

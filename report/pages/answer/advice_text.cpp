@@ -228,8 +228,13 @@ std::string make_advice_text(const records::RunRecord& run, const analysis::Advi
   if (advice.keeping.empty()) {
     sections = {"Nothing fits.\n", list_obstacles(advice), describe_nearest(advice)};
   } else {
-    sections = {list_picks(run, advice), describe_answer(run, advice), list_limits(run, advice),
-                list_cells(run, advice), describe_second(run, advice), list_relaxations(run, advice)};
+    sections = {wrap(analysis::describe_choice(advice)),
+                list_picks(run, advice),
+                describe_answer(run, advice),
+                list_limits(run, advice),
+                list_cells(run, advice),
+                describe_second(run, advice),
+                list_relaxations(run, advice)};
   }
   sections.push_back(list_remarks(run, advice));
   if (const std::string judged = analysis::describe_judged_lights(advice); !judged.empty())

@@ -141,13 +141,15 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
     mount.blocks.emplace_back(
         document::Paragraph{fmt::format("Nothing fits: {}.", analysis::describe_failure(advice))});
   } else {
+    mount.blocks.emplace_back(document::Paragraph{analysis::describe_choice(advice)});
     if (const std::string judged = analysis::describe_judged_lights(advice); !judged.empty())
       mount.blocks.emplace_back(document::Paragraph{judged + "."});
+    mount.blocks.emplace_back(document::Paragraph{describe_setting(cells), true});
     mount.blocks.emplace_back(make_table(run, cells, advice, biases));
     if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
   }
   mount.blocks.emplace_back(document::Paragraph{analysis::describe_cost(advice), true});
-  mount.blocks.emplace_back(document::Sentences{{}, analysis::list_run_notes(advice, run.gl)});
+  mount.blocks.emplace_back(document::Sentences{{}, analysis::list_advice_notes(advice, run.gl)});
   section.blocks.emplace_back(std::move(mount));
   return section;
 }

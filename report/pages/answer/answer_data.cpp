@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
+#include "report/analysis/cell_group.h"
 #include "report/analysis/place_state.h"
 #include "report/pages/bias_page.h"
 #include "report/pages/trade_charts.h"
+#include "report/records/error_parts.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -84,6 +87,34 @@ Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Co
   return scope;
 }
 
+/// Where a configuration is most wrong, why, and the worst fault that is seen; empty where nothing is known.
+std::string describe_wrong(const analysis::Configuration& configuration, const std::vector<analysis::Place>& places) {
+  constexpr double kSeenRate = 0.01;
+  const auto rmse_of = [](const records::CellRecord* cell) { return cell->error.rmse.value_or(0.0); };
+  const records::CellRecord& worst = **std::ranges::max_element(configuration.cells, {}, rmse_of);
+  if (rmse_of(&worst) <= 0.0) return {};
+  const auto shares = analysis::is_lost_in_truth(worst) ? std::nullopt : records::list_shares(worst);
+  const auto part = shares ? analysis::find_dominating_part(*shares) : std::nullopt;
+  std::string text = "most wrong on " + analysis::describe_place(analysis::place_of(worst), places);
+  if (part) text += fmt::format(": {}", records::list_error_parts()[*part].meaning);
+  const records::CellRecord* where = nullptr;
+  const metrics::Metric* fault = nullptr;
+  double most = kSeenRate;
+  for (const metrics::Metric& metric : metrics::metric_table()) {
+    if (metric.limit.empty() || metric.group() != "artefact" || metric.unit != "share") continue;
+    for (const records::CellRecord* cell : configuration.cells) {
+      if (metric.read(*cell).value_or(0.0) < most) continue;
+      most = *metric.read(*cell);
+      where = cell;
+      fault = &metric;
+    }
+  }
+  if (fault)
+    text += fmt::format("; {} {} on {}", fault->title, records::format_rate(most),
+                        analysis::describe_place(analysis::place_of(*where), places));
+  return text;
+}
+
 /// What a scope has of each configuration; null of those without a cell there.
 json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, const std::vector<CostChoice>& choices) {
   json rows = json::array();
@@ -93,7 +124,9 @@ json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, c
       continue;
     }
     json row = {{"worst", list_worst(each, places, choices)},
-                {"rmse", describe_error(analysis::combine_rmse(each.cells))}};
+                {"rmse", describe_error(analysis::combine_rmse(each.cells))},
+                {"seam", analysis::find_seam(each.cells)}};
+    if (scope.scenes.empty()) row["wrong"] = describe_wrong(each, places);
     for (const CostChoice& choice : choices) row[choice.field] = describe_cost(each.cells, choice);
     rows.push_back(std::move(row));
   }
@@ -167,6 +200,21 @@ json describe_error(const std::optional<analysis::Estimate>& error) {
           {"reach", error->high - error->value},
           {"replicates", error->replicates},
           {"t", count > 1 ? json(metrics::find_student_t(count)) : json()}};
+}
+
+std::string describe_setting(const std::vector<records::CellRecord>& cells) {
+  std::set<std::string> scenes, filters, maps, sizes;
+  for (const records::CellRecord& cell : cells) {
+    scenes.insert(cell.scene);
+    filters.insert(cell.filter);
+    maps.insert(fmt::format("{}²", cell.map_size));
+    sizes.insert(fmt::format("{} × {}", cell.width, cell.height));
+  }
+  const auto count = [](const std::set<std::string>& all, const char* kind) {
+    return all.size() == 1 ? *all.begin() : fmt::format("{} {}", all.size(), kind);
+  };
+  return fmt::format("{} · map {} · {} · {} filter{}", count(scenes, "scenes"), fmt::join(maps, ", "),
+                     count(sizes, "sizes"), filters.size(), filters.size() == 1 ? "" : "s");
 }
 
 std::array<double, 4> choose_part(const records::CellRecord& cell) {

@@ -36,6 +36,9 @@ std::optional<analysis::Cost> measure_cost(const std::vector<const records::Cell
                                            const CostChoice& choice);
 nlohmann::json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice);
 
+/// What was compared, in a line: "5 scenes · map 1024² · 960 × 540 · 8 filters."
+std::string describe_setting(const std::vector<records::CellRecord>& cells);
+
 /// What a sweep of the bias recommends for a configuration, for each of its scenes that was swept; empty where none
 /// was.
 std::string describe_biases(const analysis::Configuration& configuration,
