@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "harness/measure/filter_setup.h"
-#include "harness/render/shade_pass.h"
+#include "harness/render/picture_passes.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/summary.h"
 #include "report/analysis/trade_measures.h"
