@@ -310,7 +310,7 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   content.add_values(std::span<const float>(cell.visibility.texels));
   cell.record.content = content.name();
   const files::FolderLock lock(options_.out);
-  run::write_cell_pictures(planned.options, task.task, cell);
+  run::write_cell_pictures(planned.options, task.task, cell, truth.mask);
   cell.record.images.exr =
       fmt::format("{}.{}.exr", run::task_stem(planned.options, task.task), files::make_file_stem(request.name));
   cell.record.images.parts = cell.label;

@@ -14,6 +14,7 @@
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/lights/light_kinds.h"
 #include "harness/render/bias.h"
+#include "report/images/figure.h"
 
 namespace shadowbench::options {
 
@@ -104,8 +105,9 @@ struct RunOptions {
   bool stability = false;    ///< find where numbers break, per texel and per pixel
   bool uncertainty = false;  ///< keep how far rounding and other seeds can move each pixel
   bool all_parts = false;    ///< keep pictures, parts of errors, receivers and the map as floats, too
-  bool grids = true;     ///< compare all filters of a view in one picture and keep their float images; else each cell's
-                         ///< pictures alone
+  bool grids = true;  ///< compare all filters of a view in one picture and keep their float images; else each cell's
+                      ///< pictures alone
+  images::SheetWidth grid_width;
   bool pictures = true;  ///< draw what people look at beside the float images, which the window asks for alone
   Part part;
   std::string title;             ///< of the experiment

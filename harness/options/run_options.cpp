@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <type_traits>
 
 #include "base/error.h"
@@ -115,6 +116,23 @@ void take(const char* name, const std::string& text, RoundLimits& rounds) {
   rounds.fewest = rounds.most = parse_count(text, name);
   if (rounds.most > kMostRounds)
     fail(fmt::format("{}: {} is out of range: choose 1 .. {}, or auto", name, rounds.most, kMostRounds));
+}
+
+std::string tell(const images::SheetWidth& width) {
+  return fmt::format("{}{}", width.value, width.in_inches ? "in" : "");
+}
+void take(const char* name, std::string text, images::SheetWidth& width) {
+  width.in_inches = text.ends_with("in");
+  const std::string told = text;
+  if (width.in_inches) text.resize(text.size() - 2);
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, width.value);
+  if (read.ec != std::errc() || read.ptr != end)
+    fail(fmt::format("{}: '{}' must be pixels, such as 1920, or inches, such as 3.3in", name, told));
+  if (width.in_inches)
+    require_in_range(name, width.value, 2.0, 20.0, " inches");
+  else
+    require_in_range(name, width.value, 480.0, 7680.0, " pixels");
 }
 
 std::string tell(const Part&) { return {}; }  // a shard is no part of an experiment
@@ -374,6 +392,11 @@ std::vector<RunOption> list_run_options() {
   t.add_row("--lights", "", std::string())
       .gone("each copy of a light costs the same; list several lights in the scene's file, and add up their times");
   t.decides = Decides::kWay;
+  t.add("--grid-width", "width of SCENE.grid.png; in inches, SCENE.grid.svg with 8 pt text for papers",
+        &RunOptions::grid_width)
+      .takes("PX|3.3in")
+      .in(output)
+      .rarely();
   t.add("--shard", "measure every N-th cell from the I-th; 'merge' joins the folders", &RunOptions::part)
       .never_empty("I/N")
       .takes("I/N")

@@ -152,7 +152,8 @@ class Experiment {
     pages::write_early_report(options_.out, run_, records::read_cells(options_.out, keys),
                               fmt::format("The run goes on: {} of {} scenes, {} of {} cells are measured. Open this "
                                           "page again when it has ended.",
-                                          whole, run_.scenes.size(), keys.size(), plan.own_cells));
+                                          whole, run_.scenes.size(), keys.size(), plan.own_cells),
+                              options_.grid_width);
   }
 
   void finish(const RunPlan& plan) {
@@ -161,7 +162,7 @@ class Experiment {
     if (!options_.part.is_worker()) {
       std::vector<records::CellRecord> cells = records::read_cells(options_.out, keep_rows(plan));
       if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, plan, cache_, cells);
-      pages::write_report(options_.out, run_, cells);
+      pages::write_report(options_.out, run_, cells, options_.grid_width);
     }
     cache_.prune(truth::kMaxCacheBytes);
   }

@@ -19,6 +19,7 @@
 #include "report/images/map_figures.h"
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"
+#include "report/pages/grid_sheets.h"
 #include "report/records/cell_names.h"
 #include "report/records/format.h"
 
@@ -73,6 +74,7 @@ images::Grid make_grid(const options::RunOptions& options, const measure::SceneT
                                               : "no attribution: " + records::explain_no_attribution(cell.record);
   }
   grid.error_scale = choose_error_scale(grid.tiles, measured.cells);
+  if (truth.absent.empty()) grid.mask = images::make_image(truth.area.width, truth.area.height, truth.mask);
   grid.columns = truth.absent.empty() ? 4 : 3;
   grid.crop = choose_crop(measured.cells, images::choose_crop_size({options.width, options.height}));
   return grid;
@@ -118,12 +120,19 @@ void note_cell_pictures(const std::string& stem, measure::MeasuredCell& cell) {
   cell.record.images.values = base + ".values.js";
 }
 
-/// Writes what is noted of a cell.
-void write_noted_pictures(const std::filesystem::path& out, const measure::MeasuredCell& cell) {
+/// Writes what is noted of a cell; visibility is hatched where `mask`, if there is one, has no receiver.
+void write_noted_pictures(const std::filesystem::path& out, const measure::MeasuredCell& cell,
+                          const std::vector<std::uint8_t>& mask) {
   const records::ImagesRecord& images = cell.record.images;
   if (!images.picture) return;
   images::write_picture_png(out / *images.picture, cell.picture);
-  images::write_grey_png(out / *images.visibility, cell.visibility);
+  if (mask.empty()) {
+    images::write_grey_png(out / *images.visibility, cell.visibility);
+  } else {
+    images::Image shown = images::color_values(cell.visibility, images::map_grey);
+    images::hatch_image(shown, images::make_image(shown.width, shown.height, mask));
+    images::write_display_png(out / *images.visibility, shown);
+  }
   images::write_value_file(out / *images.values, *images.values, list_planes(cell));
 }
 
@@ -185,9 +194,9 @@ std::string task_stem(const options::RunOptions& options, const measure::SceneTa
 }
 
 void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                         measure::MeasuredCell& cell) {
+                         measure::MeasuredCell& cell, const std::vector<std::uint8_t>& mask) {
   note_cell_pictures(task_stem(options, task), cell);
-  write_noted_pictures(options.out, cell);
+  write_noted_pictures(options.out, cell, mask);
 }
 
 std::vector<FileJob> plan_pictures(const options::RunOptions& options, const measure::SceneTask& task,
@@ -196,7 +205,7 @@ std::vector<FileJob> plan_pictures(const options::RunOptions& options, const mea
   std::vector<FileJob> jobs;
   for (measure::MeasuredCell& cell : measured.cells) {
     note_cell_pictures(stem, cell);
-    jobs.emplace_back([&out = options.out, &cell] { write_noted_pictures(out, cell); });
+    jobs.emplace_back([&out = options.out, &cell, &mask = truth.mask] { write_noted_pictures(out, cell, mask); });
   }
   if (truth.absent.empty()) jobs.push_back(plan_truth_pictures(options.out, stem, measured, truth));
   return jobs;
@@ -204,9 +213,9 @@ std::vector<FileJob> plan_pictures(const options::RunOptions& options, const mea
 
 FileJob plan_grid(const options::RunOptions& options, const measure::SceneTask& task,
                   measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl) {
-  const std::string grid_name = task_stem(options, task) + ".grid.png";
+  const std::string grid_name = task_stem(options, task) + (options.grid_width.in_inches ? ".grid.svg" : ".grid.png");
   for (measure::MeasuredCell& cell : measured.cells) cell.record.images.grid = grid_name;
-  return [file = options.out / grid_name, grid = make_grid(options, task, measured, truth, gl)] {
+  return [file = options.out / pages::name_details(grid_name), grid = make_grid(options, task, measured, truth, gl)] {
     images::write_grid(file, grid);
   };
 }

@@ -26,9 +26,9 @@ std::string caption_cell(const records::CellRecord& cell, const analysis::CostKi
 /// The part of the picture, of this size, in which the filters disagree most about a shadow's edge.
 images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images::Size size);
 
-/// Writes a cell's picture, visibility and values, and notes their paths.
+/// Writes a cell's picture, visibility and values, and notes their paths. `mask`: 1 where a pixel is a receiver.
 void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                         measure::MeasuredCell& cell);
+                         measure::MeasuredCell& cell, const std::vector<std::uint8_t>& mask);
 
 /// Writes files when it is called, on any thread and beside others. Throws Error(kOutput).
 using FileJob = std::function<void()>;
@@ -38,7 +38,7 @@ using FileJob = std::function<void()>;
 std::vector<FileJob> plan_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth);
 
-/// Notes the path of a task's grid, and returns what writes it, from copies.
+/// Notes the path of a task's grid, which the report draws, and returns what writes its details, from copies.
 FileJob plan_grid(const options::RunOptions& options, const measure::SceneTask& task,
                   measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl);
 

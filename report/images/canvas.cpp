@@ -69,10 +69,10 @@ void outline_rect(Image& canvas, const Rect& r, int width, const Rgb& color) {
 }
 
 void paste_image(Image& canvas, const Image& picture, int x, int y) {
-  assert(picture.channels == canvas.channels && x >= 0 && y >= 0 && x + picture.width <= canvas.width &&
-         y + picture.height <= canvas.height);
-  for (int row = 0; row < picture.height; ++row)
-    std::copy_n(picture.at(0, row), picture.channels * picture.width, canvas.at(x, y + row));
+  assert(picture.channels == canvas.channels);
+  const int left = std::max(0, -x), right = std::min(picture.width, canvas.width - x);
+  for (int row = std::max(0, -y); left < right && row < std::min(picture.height, canvas.height - y); ++row)
+    std::copy_n(picture.at(left, row), picture.channels * (right - left), canvas.at(x + left, y + row));
 }
 
 Image frame_image(const Image& picture, int width, const Rgb& color) {
@@ -99,10 +99,11 @@ Size fit_size(Size size, Size box) {
           std::clamp(static_cast<int>(size.height * scale + 0.5), 1, box.height)};
 }
 
-Image fit_image(const Image& image, Size box) {
-  const Size size = fit_size({image.width, image.height}, box);
+Image scale_image(const Image& image, Size size) {
   return size.width >= image.width ? magnify_image(image, size) : reduce_image(image, size);
 }
+
+Image fit_image(const Image& image, Size box) { return scale_image(image, fit_size({image.width, image.height}, box)); }
 
 Image fit_worst(const Image& image, Size box, const Badness& badness) {
   const Size size = fit_size({image.width, image.height}, box);

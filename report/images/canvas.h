@@ -16,7 +16,7 @@ void fill_rect(Image& canvas, const Rect& rect, const Rgb& color);
 /// Draws a line of `width` pixels around a rectangle, outside it; what of it lies on the canvas.
 void outline_rect(Image& canvas, const Rect& rect, int width, const Rgb& color);
 
-/// Copies a picture of as many channels, its left top corner at (x, y). Requires room for it.
+/// Copies what lies on the canvas of a picture of as many channels, its left top corner at (x, y).
 void paste_image(Image& canvas, const Image& picture, int x, int y);
 
 /// Puts a border of `width` pixels around a picture of 3 channels.
@@ -29,7 +29,10 @@ Image cut_image(const Image& image, const Rect& rect);
 /// where it is magnified.
 Size fit_size(Size size, Size box);
 
-/// Scales an image to the size of fit_size(), reduced in its own space by means; an empty one stays empty.
+/// Scales an image, reduced in its own space by means, or magnified by copies of its texels.
+Image scale_image(const Image& image, Size size);
+
+/// Scales an image to the size of fit_size(); an empty one stays empty.
 Image fit_image(const Image& image, Size box);
 
 /// Rates how bad a value is. Of those that fall on one pixel, the worst is shown.

@@ -1,6 +1,7 @@
 #include "report/images/color_values.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "report/images/image_library.h"
@@ -12,6 +13,7 @@ namespace {
 constexpr Rgb kBelow{0.09f, 0.31f, 0.66f};
 constexpr Rgb kZero{0.95f, 0.95f, 0.94f};
 constexpr Rgb kAbove{0.74f, 0.09f, 0.13f};
+constexpr std::array kHatch{0.56f, 0.70f};
 constexpr int kMapSteps = 4 * 255 + 1;  // each of 256 even steps is one of them
 constexpr int kBarHeight = 18;
 constexpr double kSmallestScale = 0.01;
@@ -46,6 +48,12 @@ Image color_values(const Image& values, const Colors& color_of) {
   for (std::size_t i = 0; i < values.texels.size(); ++i)
     std::ranges::copy(color_of(values.texels[i]), colors.texels.begin() + static_cast<std::ptrdiff_t>(3 * i));
   return colors;
+}
+
+void hatch_image(Image& colors, const Image& mask) {
+  for (int y = 0; y < colors.height; ++y)
+    for (int x = 0; x < colors.width; ++x)
+      if (*mask.at(x, y) < 0.5f) std::fill_n(colors.at(x, y), 3, kHatch[static_cast<std::size_t>((x + y) / 4 % 2)]);
 }
 
 Image make_ramp(int width, int height) {

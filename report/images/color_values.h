@@ -28,6 +28,9 @@ Rgb map_grey(float value);
 /// Colours an image of one channel pixel by pixel; display values, 3 channels.
 Image color_values(const Image& values, const Colors& color_of);
 
+/// Hatches an image of 3 channels where `mask`, of its size and 1 channel, is 0: what has no value there.
+void hatch_image(Image& colors, const Image& mask);
+
 /// Makes an image of one channel that goes from 0 at the left to 1 at the right: what a colour bar is drawn from.
 Image make_ramp(int width, int height);
 

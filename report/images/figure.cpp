@@ -12,8 +12,7 @@ constexpr int kMargin = 28, kColumnGap = 20, kRowGap = 10, kBlockGap = 24;
 constexpr int kLeastWidth = 640, kLeastColumn = 320;  // words need room
 constexpr int kTickLength = 6;
 constexpr Font kTitle{32, true}, kHead{24, true}, kText{20, false};
-constexpr Rgb kInk{0.11f, 0.12f, 0.14f}, kSecondInk{0.33f, 0.35f, 0.39f}, kWarningInk{0.70f, 0.15f, 0.05f};
-constexpr Rgb kFrame{0.68f, 0.70f, 0.73f};
+constexpr int kBand = 256;  // rows
 
 int measure_height(const std::string& text, Font font, int width) {
   return static_cast<int>(wrap_text(text, font, width).size()) * line_height(font);
@@ -108,7 +107,7 @@ class Builder {
     for (const Tick& tick : cell.beside) {
       const int y = box.y + static_cast<int>(std::lround((1.0 - tick.place) * (box.height - 1)));
       const int top = y - line_height(kText) / 2;
-      layout_.marks.push_back({box.x - 1 - kTickLength, y, kTickLength, 1});
+      layout_.marks.push_back({{box.x - 1 - kTickLength, y, kTickLength, 1}, kSecondInk});
       if (top + line_height(kText) > end) continue;
       const int width = measure_text(tick.label, kText);
       layout_.texts.push_back(
@@ -124,7 +123,7 @@ class Builder {
       const int x = box.x + static_cast<int>(std::lround(tick.place * (box.width - 1)));
       const int width = measure_text(tick.label, kText);
       const int left = std::clamp(x - width / 2, column.x, std::max(column.x, column.x + column.width - width));
-      layout_.marks.push_back({x, under, 1, kTickLength});
+      layout_.marks.push_back({{x, under, 1, kTickLength}, kSecondInk});
       if (left < end) continue;
       layout_.texts.push_back({{left, top, width, line_height(kText)}, tick.label, kText, kSecondInk});
       end = left + width + kTickLength;
@@ -143,21 +142,38 @@ class Builder {
 
 Layout layout_figure(const Figure& figure) { return Builder(figure).build(); }
 
-Image draw_figure(const Figure& figure) {
-  const Layout layout = layout_figure(figure);
-  Image canvas(layout.canvas.width, layout.canvas.height, 3);
+Image draw_rows(const Layout& layout, int top, int rows) {
+  Image canvas(layout.canvas.width, rows, 3);
   std::ranges::fill(canvas.texels, 1.0f);
+  const auto lift = [&](Rect box) { return Rect{box.x, box.y - top, box.width, box.height}; };
   for (const PlacedPicture& placed : layout.pictures) {
-    outline_rect(canvas, placed.box, 1, kFrame);
-    paste_image(canvas, *placed.picture, placed.box.x, placed.box.y);
+    const Rect box = lift(placed.box);
+    outline_rect(canvas, box, placed.frame_width, placed.frame);
+    if (box.y >= rows || box.y + box.height <= 0) continue;
+    const bool is_scaled = placed.picture->width != box.width || placed.picture->height != box.height;
+    paste_image(canvas, is_scaled ? scale_image(*placed.picture, {box.width, box.height}) : *placed.picture, box.x,
+                box.y);
   }
-  for (const Rect& mark : layout.marks) fill_rect(canvas, mark, kSecondInk);
-  for (const PlacedText& text : layout.texts) draw_text(canvas, text.box.x, text.box.y, text.text, text.font, text.ink);
+  for (const PlacedRect& mark : layout.marks) fill_rect(canvas, lift(mark.box), mark.ink);
+  for (const PlacedText& text : layout.texts)
+    if (const Rect box = lift(text.box); box.y < rows && box.y + 2 * box.height > 0)  // letters may reach below it
+      draw_text(canvas, box.x, box.y, text.text, text.font, text.ink);
   return canvas;
 }
 
+void write_layout(const std::filesystem::path& path, const Layout& layout) {
+  write_display_rows(
+      path, layout.canvas,
+      [&](int top) { return draw_rows(layout, top, std::min(kBand, layout.canvas.height - top)); });
+}
+
+Image draw_figure(const Figure& figure) {
+  const Layout layout = layout_figure(figure);
+  return draw_rows(layout, 0, layout.canvas.height);
+}
+
 void write_figure(const std::filesystem::path& path, const Figure& figure) {
-  write_display_png(path, draw_figure(figure));
+  write_layout(path, layout_figure(figure));
 }
 
 }  // namespace shadowbench::images

@@ -12,6 +12,9 @@ namespace shadowbench::images {
 /// How wide a picture is in a figure of 1500 pixels and three columns.
 inline constexpr int kColumnWidth = 468;
 
+inline constexpr Rgb kInk{0.11f, 0.12f, 0.14f}, kSecondInk{0.33f, 0.35f, 0.39f}, kWarningInk{0.70f, 0.15f, 0.05f};
+inline constexpr Rgb kFrame{0.68f, 0.70f, 0.73f};
+
 /// A place on a picture's edge, and what stands beside it.
 struct Tick {
   double place = 0.0;  ///< from the picture's left or lower end, 0, to the other, 1
@@ -40,6 +43,14 @@ struct Figure {
   Stack legend = {};               ///< below all of them, over the whole width
 };
 
+/// The width of sheets: PNG files for screens, or SVG files with text of 8 points for papers.
+struct SheetWidth {
+  double value = 1920.0;
+  bool in_inches = false;  ///< else pixels
+
+  bool operator==(const SheetWidth&) const = default;
+};
+
 /// Where one line of text stands.
 struct PlacedText {
   Rect box;
@@ -48,23 +59,38 @@ struct PlacedText {
   Rgb ink;
 };
 
-/// Where a cell's picture stands.
+/// Where an image is shown, scaled to its box.
 struct PlacedPicture {
   Rect box;
-  const Image* picture = nullptr;  ///< the figure's
+  const Image* picture = nullptr;  ///< display values, 3 channels
+  Rgb frame = kFrame;
+  int frame_width = 1;  ///< around the box
 };
 
-/// The place of everything in a figure; no two boxes overlap, and all lie in the canvas.
+/// A filled rectangle.
+struct PlacedRect {
+  Rect box;
+  Rgb ink;
+};
+
+/// The place of everything on a canvas, which lies in it: drawn in the order of pictures, marks, texts.
 struct Layout {
   Size canvas;
   std::vector<PlacedText> texts;
-  std::vector<PlacedPicture> pictures;  ///< each with a frame of one pixel around it
-  std::vector<Rect> marks;              ///< the ticks
+  std::vector<PlacedPicture> pictures;
+  std::vector<PlacedRect> marks;
 };
 
-/// Places everything in a figure, which the result points into. Words are wrapped to their column; a tick whose label
-/// has no room beside the one before has none. Throws Error(kOutput) where the font is not installed.
+/// Places everything in a figure, which the result points into; no two boxes overlap. Words are wrapped to their
+/// column; a tick whose label has no room beside the one before has none. Throws Error(kOutput) where the font is not
+/// installed.
 Layout layout_figure(const Figure& figure);
+
+/// Draws rows of a canvas: display values, 3 channels. Throws Error(kOutput) where the font is not installed.
+Image draw_rows(const Layout& layout, int top, int rows);
+
+/// Draws a canvas into an 8-bit PNG file, a band of it at a time. Throws Error(kOutput).
+void write_layout(const std::filesystem::path& path, const Layout& layout);
 
 /// Draws a figure: display values, 3 channels. Throws as layout_figure().
 Image draw_figure(const Figure& figure);

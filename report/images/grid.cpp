@@ -47,9 +47,13 @@ Rect clip_crop(const Rect& crop, const Image& image) {
   return {left, top, right - left, bottom - top};
 }
 
-/// Turns visibility or a linear picture into display values.
-Image display(Image image, double exposure) {
-  if (image.channels == 1) return color_values(image, map_grey);
+/// Turns visibility, hatched where `mask` says so, or a linear picture into display values.
+Image display(Image image, const Image& mask, double exposure) {
+  if (image.channels == 1) {
+    Image grey = color_values(image, map_grey);
+    if (!mask.empty()) hatch_image(grey, mask);
+    return grey;
+  }
   for (float* texel = image.texels.data(); texel != image.texels.data() + image.texels.size(); texel += 3)
     if (std::all_of(texel, texel + 3, [](float value) { return std::isfinite(value); }))
       std::transform(texel, texel + 3, texel, [&](float v) { return encode_srgb(v * static_cast<float>(exposure)); });
@@ -60,7 +64,7 @@ Image display(Image image, double exposure) {
 
 /// Shows the whole of an image with the crop's outline, which does not leave it.
 Image show(const Image& image, const Grid& grid) {
-  Image shown = display(fit_image(image, kPictureBox), grid.exposure);
+  Image shown = display(fit_image(image, kPictureBox), fit_image(grid.mask, kPictureBox), grid.exposure);
   const Rect crop = clip_crop(grid.crop, image);
   if (crop.width == 0 || crop.height == 0) return shown;
   const double sx = static_cast<double>(shown.width) / image.width,
@@ -80,7 +84,8 @@ Image show_crops(const GridTile& tile, const Grid& grid) {
   for (const Image* image : {&tile.picture, &tile.visibility}) {
     const Rect crop = clip_crop(grid.crop, *image);
     if (crop.width == 0 || crop.height == 0) continue;
-    const Image part = display(fit_image(cut_image(*image, crop), kCropBox), grid.exposure);
+    const Image mask = grid.mask.empty() ? Image() : fit_image(cut_image(grid.mask, crop), kCropBox);
+    const Image part = display(fit_image(cut_image(*image, crop), kCropBox), mask, grid.exposure);
     crops.push_back(frame_image(part, kOutlineWidth, kOutline));
     size.width += crops.back().width + kCropGap;
     size.height = std::max(size.height, crops.back().height);
@@ -128,7 +133,8 @@ ColorScale make_parts_scale() {
 }
 
 std::string explain_rows(const Grid& grid, const Shared& shared) {
-  std::string words = "Top: shaded picture. Below it: visibility (white lit, black blocked)";
+  std::string words = "Top: shaded picture. Below it: visibility (white lit, black blocked";
+  words += grid.mask.empty() ? ")" : ", hatched no receiver)";
   words += shared.errors ? ", then its error" : "";
   words += shared.bars ? ", then the parts of the error." : ".";
   if (grid.crop.width == 0) return words;

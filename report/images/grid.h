@@ -31,6 +31,7 @@ struct Grid {
   Rect crop;              ///< pixels of the pictures, outlined there and magnified below; may be empty
   int columns = 3;        ///< tiles side by side
   double exposure = 1.0;  ///< linear factor, the same for all tiles
+  Image mask = {};        ///< 1 channel, 0 where no receiver is: visibility is hatched there; may be empty
   std::optional<double> error_scale = std::nullopt;  ///< the error that gets the full colour; chosen where not given
 };
 

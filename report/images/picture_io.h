@@ -28,6 +28,15 @@ void write_picture_png(const std::filesystem::path& path, const Image& picture);
 /// Requires 3 channels. Throws Error(kOutput).
 void write_display_png(const std::filesystem::path& path, const Image& picture);
 
+/// The bytes of that file.
+std::string encode_display_png(const Image& picture);
+
+/// Draws some rows of a picture, from `top` on.
+using DrawRows = std::function<Image(int top)>;
+
+/// Writes such a picture as it is drawn, so that all of it is never in memory. Throws Error(kOutput).
+void write_display_rows(const std::filesystem::path& path, Size size, const DrawRows& draw);
+
 /// Writes one channel as an 8-bit grey PNG whose codes are linear in the value: visibility .5 becomes code 128 of 255.
 /// Requires 1 channel. Values outside [0,1] are clamped; a texel that is not finite becomes
 /// magenta, and the PNG then has three channels. Throws Error(kOutput).

@@ -77,7 +77,10 @@ std::string pack_words(const Words& plane, int width) {
   return bytes;
 }
 
-/// Source: RFC 4648, section 4.
+std::string pack(const std::string& bytes) { return pack_bytes(std::as_bytes(std::span(bytes))); }
+
+}  // namespace
+
 std::string encode_base64(std::string_view bytes) {
   constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -90,10 +93,6 @@ std::string encode_base64(std::string_view bytes) {
   for (std::size_t rest = bytes.size() % 3; rest == 1 || rest == 2; ++rest) text[text.size() - (3 - rest)] = '=';
   return text;
 }
-
-std::string pack(const std::string& bytes) { return pack_bytes(std::as_bytes(std::span(bytes))); }
-
-}  // namespace
 
 std::string pack_bytes(std::span<const std::byte> bytes) {
   return encode_base64(compress_bytes(bytes, kValueCompression));

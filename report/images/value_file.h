@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,9 @@ using ValuePlanes = std::vector<std::pair<std::string, Image>>;
 /// and NaN is a value that is not finite. Requires planes of one size.
 /// Throws Error(kOutput).
 void write_value_file(const std::filesystem::path& path, const std::string& name, const ValuePlanes& planes);
+
+/// Source: RFC 4648, section 4.
+std::string encode_base64(std::string_view bytes);
 
 /// Packs bytes for a script: base64 of a zlib stream.
 std::string pack_bytes(std::span<const std::byte> bytes);

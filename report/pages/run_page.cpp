@@ -19,6 +19,7 @@
 #include "report/pages/answer/answer.h"
 #include "report/pages/cascade_section.h"
 #include "report/pages/external_section.h"
+#include "report/pages/grid_sheets.h"
 #include "report/pages/run_data.h"
 #include "report/pages/text_tables.h"
 #include "report/pages/trade_charts.h"
@@ -148,9 +149,16 @@ void add_numbers(std::vector<document::Block>& blocks, const records::RunRecord&
 }
 
 void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGroup& group) {
-  if (const auto grid = find_path(group, &records::ImagesRecord::grid))
-    blocks.emplace_back(
-        document::Gallery{{}, {{*grid, "all filters on " + group.scene + ", first phase, full size behind the link"}}});
+  if (const auto grid = find_path(group, &records::ImagesRecord::grid)) {
+    const auto has_place = [](const records::CellRecord& cell) { return cell.images.grid.has_value(); };
+    const auto filters = static_cast<std::size_t>(std::ranges::count_if(group.cells, has_place));
+    document::Gallery gallery;
+    for (const std::string& sheet : list_sheets(*grid, filters))
+      gallery.pictures.push_back({sheet, "filters on " + group.scene + " by their error, first phase"});
+    blocks.emplace_back(std::move(gallery));
+    const std::string details = name_details(*grid);
+    blocks.emplace_back(document::Links{"All images of each filter side by side:", {{details, details}}});
+  }
   for (document::Gallery& gallery :
        std::array{make_lights_gallery(group), make_stability_gallery(group), make_map_gallery(group)})
     if (!gallery.pictures.empty()) blocks.emplace_back(std::move(gallery));

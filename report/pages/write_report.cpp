@@ -7,6 +7,7 @@
 #include "report/analysis/summary.h"
 #include "report/pages/frames_page.h"
 #include "report/pages/fronts_csv.h"
+#include "report/pages/grid_sheets.h"
 #include "report/pages/run_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/bias_record.h"
@@ -37,7 +38,7 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
 }
 
 void write_report(const std::filesystem::path& dir, records::RunRecord run,
-                  const std::vector<records::CellRecord>& cells) {
+                  const std::vector<records::CellRecord>& cells, images::SheetWidth width) {
   const std::vector<records::GpuTimes> machines = records::list_gpu_times(dir, cells, run.warnings);
   const std::vector<records::BiasToShip> biases = records::list_bias_to_ship(dir, run.warnings);
   add_warnings(run, cells);
@@ -57,15 +58,18 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run,
     write_page(dir, "frames", make_frames_page(cells, run));
   else
     remove_page(dir, "frames");  // of another run into this folder
+  write_grids(dir, shown, run.gl, width);
   write_page(dir, "run", make_run_page(run, shown, trade, machines, biases));
   records::write_results(dir, run, cells);
 }
 
 void write_early_report(const std::filesystem::path& dir, records::RunRecord run,
-                        const std::vector<records::CellRecord>& cells, const std::string& so_far) {
+                        const std::vector<records::CellRecord>& cells, const std::string& so_far,
+                        images::SheetWidth width) {
   add_warnings(run, cells);
   const auto withheld = analysis::withhold_mixed_times(cells);
   const std::vector<records::CellRecord>& shown = withheld ? *withheld : cells;
+  write_grids(dir, shown, run.gl, width);
   write_early_page(dir, "run", make_run_page(run, shown, make_trade(shown), {}, {}, so_far));
 }
 

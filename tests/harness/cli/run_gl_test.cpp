@@ -170,6 +170,7 @@ TEST_F(Command, SeveralMapSizes_DoNotShareFiles) {
   ASSERT_EQ(
       run("run --grids --out out --size 64x36 --map-size 64,128 --rounds 1 --scene cubes --filters none").exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.map64.grid.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.map64.details.png"));
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.map128.grid.png"));
   EXPECT_EQ(results(folder())["cells"].size(), 2u);
 }

@@ -73,7 +73,7 @@ TEST_F(Suspects, AreOnNoFront_AndInNoAdvice) {
 TEST_F(Suspects, DoNotSetTheScaleOfPictures) {
   const auto grid_beside = [&](const std::string& filter) {
     measure(filter);
-    return images::read_picture(folder() / "out" / "cubes.grid.png");
+    return images::read_picture(folder() / "out" / "cubes.details.png");
   };
   const images::Image a = grid_beside("out_of_range"), b = grid_beside("far_taps");
   ASSERT_EQ(a.width, b.width);

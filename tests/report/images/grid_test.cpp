@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <span>
 
 #include "report/images/color_values.h"
 #include "report/images/picture_io.h"
+#include "report/images/sheet.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {
@@ -30,7 +33,8 @@ bool contains(const Rect& outer, const Rect& inner) {
 Rect grow(const Rect& r, int by) { return {r.x - by, r.y - by, r.width + 2 * by, r.height + 2 * by}; }
 
 std::vector<Rect> list_boxes(const Layout& layout) {
-  std::vector<Rect> boxes = layout.marks;
+  std::vector<Rect> boxes;
+  for (const PlacedRect& mark : layout.marks) boxes.push_back(mark.box);
   for (const PlacedPicture& placed : layout.pictures) boxes.push_back(grow(placed.box, 1));
   for (const PlacedText& text : layout.texts) boxes.push_back(text.box);
   return boxes;
@@ -423,6 +427,147 @@ TEST(Figure, TicksThatHaveNoRoom_LoseTheirLabelsAndNoneOverlap) {
   EXPECT_EQ(layout.marks.size(), 4u * 82u);
   EXPECT_EQ(std::ranges::count(layout.texts, "a long label 0", &PlacedText::text), 4);
   EXPECT_EQ(std::ranges::count(layout.texts, "0", &PlacedText::text), 4);
+}
+
+SheetTile make_place(const std::string& name, double error) {
+  const Image crop(kSheetCrop.width, kSheetCrop.height, 3);
+  return {name, "0.043", error, "≈ 28.9 µs", "balanced", "", crop, crop};
+}
+
+Sheet make_sheet(std::size_t filters, const std::string& name = "pcf2x2") {
+  Sheet sheet{"fence: which filter is nearest to the truth?",
+              "Sorted by error. Map 1024², image 960 × 540.",
+              {"ray-traced truth", "", {}, "the reference", "", "", Image(kSheetCrop.width, kSheetCrop.height, 3), {}},
+              {},
+              Image(960, 540, 3),
+              {400, 200, kSheetCrop.width, kSheetCrop.height},
+              {"Number: RMSE of visibility; bars have one scale.", "Cost of a frame: estimate for navi21."}};
+  for (std::size_t i = 0; i < filters; ++i)
+    sheet.filters.push_back(make_place(name, static_cast<double>(i + 1) / static_cast<double>(filters)));
+  return sheet;
+}
+
+/// No text leaves the canvas or its box, lies over another, or over an image.
+void expect_legible(const Sheet& sheet, SheetWidth width = {}) {
+  const Layout layout = layout_sheet(sheet, width);
+  const Rect canvas{0, 0, layout.canvas.width, layout.canvas.height};
+  for (std::size_t i = 0; i < layout.texts.size(); ++i) {
+    const PlacedText& text = layout.texts[i];
+    EXPECT_TRUE(contains(canvas, text.box)) << text.text;
+    EXPECT_LE(measure_text(text.text, text.font), text.box.width) << text.text;
+    for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(overlaps(text.box, layout.texts[j].box)) << text.text;
+    for (const PlacedPicture& placed : layout.pictures) EXPECT_FALSE(overlaps(text.box, placed.box)) << text.text;
+    for (const PlacedRect& mark : layout.marks) EXPECT_FALSE(overlaps(text.box, mark.box)) << text.text;
+  }
+  for (const PlacedPicture& placed : layout.pictures) EXPECT_TRUE(contains(canvas, placed.box));
+}
+
+const std::vector<SheetWidth> kSheetWidths = {{480.0}, {960.0}, {1920.0}, {3.3, true}, {7.0, true}};
+
+TEST(Sheet, AnyNumberOfFiltersAndWidth_IsLegible) {
+  for (const SheetWidth width : kSheetWidths)
+    for (std::size_t filters = 0; filters <= kFiltersOfSheet; ++filters) {
+      SCOPED_TRACE(std::to_string(width.value) + ", " + std::to_string(filters));
+      expect_legible(make_sheet(filters), width);
+    }
+}
+
+TEST(Sheet, LongNames_AreShownWholeUpToSixtyLetters) {
+  for (const std::string& name :
+       {std::string(60, 'w'), std::string("a name of words that are short but many, in all 60 of them")}) {
+    Sheet sheet = make_sheet(kFiltersOfSheet, name);
+    for (const SheetWidth width : kSheetWidths) expect_legible(sheet, width);
+    sheet.filters.resize(1);
+    std::string shown;
+    for (const PlacedText& text : layout_sheet(sheet).texts) shown += text.text;
+    std::string wanted = name;
+    std::erase(wanted, ' ');
+    std::erase(shown, ' ');
+    EXPECT_THAT(shown, HasSubstr(wanted));
+  }
+}
+
+TEST(Sheet, WithoutTruthCostViewOrImages_SaysWhatThereIs) {
+  Sheet sheet = make_sheet(2);
+  sheet.truth = {.name = "no truth", .message = "the run was made with --no-truth"};
+  sheet.filters[0] = {.name = "pcss", .message = std::string(400, 'x')};
+  sheet.filters[1].words.clear();
+  sheet.view = Image();
+  expect_legible(sheet);
+  std::string shown;
+  for (const PlacedText& text : layout_sheet(sheet).texts) shown += text.text + "\n";
+  EXPECT_THAT(shown, HasSubstr("--no-truth"));
+  EXPECT_THAT(shown, HasSubstr("…"));
+  EXPECT_THAT(shown, HasSubstr("\nbalanced\n"));
+}
+
+TEST(Sheet, Full_IsAtMostASlide) {
+  for (std::size_t filters = 1; filters <= kFiltersOfSheet; ++filters) {
+    const Size canvas = layout_sheet(make_sheet(filters)).canvas;
+    EXPECT_LE(canvas.width, 1920);
+    EXPECT_LE(canvas.height, 1080);
+    EXPECT_GT(canvas.width, canvas.height);
+  }
+  EXPECT_GT(layout_sheet(make_sheet(kFiltersOfSheet)).canvas.width, 1800);
+}
+
+TEST(Sheet, Bars_HaveOneScale) {
+  const Sheet sheet = make_sheet(4);
+  std::vector<int> lengths;
+  const Layout layout = layout_sheet(sheet);
+  for (std::size_t i = 1; i < layout.marks.size(); ++i)
+    if (layout.marks[i].box.y == layout.marks[i - 1].box.y && layout.marks[i].box.x == layout.marks[i - 1].box.x)
+      lengths.push_back(layout.marks[i].box.width);
+  ASSERT_GE(lengths.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(lengths[i], static_cast<double>(lengths[3]) * static_cast<double>(i + 1) / 4.0, 1.0);
+}
+
+TEST(Sheet, Crops_AreMagnifiedToWholeTexelsOfAScreen) {
+  const Sheet sheet = make_sheet(kFiltersOfSheet);
+  for (const PlacedPicture& placed : layout_sheet(sheet).pictures)
+    if (placed.picture != &sheet.view) EXPECT_EQ(placed.box.width % placed.picture->width, 0);
+  const Layout layout = layout_sheet(sheet);
+  EXPECT_EQ(layout.pictures.front().box.width, 4 * kSheetCrop.width);
+}
+
+TEST(Sheet, InInches_IsAnSvgWithTextOfEightPoints) {
+  const TemporaryFolder folder("sheet_svg");
+  Sheet sheet = make_sheet(3, "a<b&c");
+  write_sheet(folder.path() / "a.svg", sheet, {3.3, true});
+  const std::string svg = read_text(folder.path() / "a.svg");
+  EXPECT_THAT(svg, HasSubstr("a&lt;b&amp;c"));
+  EXPECT_THAT(svg, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
+  double inches = 0.0;
+  ASSERT_EQ(std::sscanf(svg.c_str() + svg.find("width=\""), "width=\"%lfin", &inches), 1);
+  EXPECT_NEAR(inches, 3.3, 0.02);
+  const Layout layout = layout_sheet(sheet, {3.3, true});
+  const auto words = std::ranges::find(layout.texts, "the reference", &PlacedText::text);
+  ASSERT_NE(words, layout.texts.end());
+  EXPECT_NEAR(words->font.size * 72.0 * inches / layout.canvas.width, 8.0, 0.05);
+}
+
+TEST(Figure, DrawnInBands_IsTheSamePicture) {
+  const Figure figure = make_figure(make_hard_attributed_grid());
+  const Layout layout = layout_figure(figure);
+  const Image whole = draw_figure(figure);
+  for (int top = 0; top < layout.canvas.height; top += 100) {
+    const Image band = draw_rows(layout, top, std::min(100, layout.canvas.height - top));
+    ASSERT_TRUE(std::ranges::equal(band.texels, std::span(whole.at(0, top), band.texels.size()))) << top;
+  }
+}
+
+TEST(Grid, VisibilityWithoutReceiver_IsHatchedAndNotBlack) {
+  Grid grid = make_grid(1, 64, 36);
+  grid.crop = {};
+  std::ranges::fill(grid.tiles[0].visibility.texels, 0.0f);
+  grid.mask = Image(64, 36, 1);
+  std::ranges::fill(grid.mask.texels, 1.0f);
+  for (int y = 0; y < 36; ++y) std::fill_n(grid.mask.at(0, y), 32, 0.0f);
+  const Drawn drawn(grid);
+  const Rect box = drawn.find(0, kVisibilityCell);
+  EXPECT_GT(*drawn.canvas.at(box.x + 4, box.y + 4), 0.4f);
+  EXPECT_EQ(*drawn.canvas.at(box.x + box.width - 4, box.y + 4), 0.0f);
 }
 
 }  // namespace

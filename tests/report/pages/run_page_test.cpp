@@ -8,6 +8,7 @@
 #include <set>
 
 #include "report/images/picture_io.h"
+#include "report/pages/grid_sheets.h"
 #include "report/pages/trade_charts.h"
 #include "report/pages/write_page.h"
 #include "report/pages/write_report.h"
@@ -277,6 +278,7 @@ TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
     const records::CellRecord cell = make_illustrated_cell(scene, "vsm");
     for (const auto& path : {cell.images.picture, cell.images.visibility, cell.images.depth_map, cell.images.grid})
       images::write_grey_png(folder.path() / *path, images::Image(2, 2, 1));
+    images::write_grey_png(folder.path() / name_details(*cell.images.grid), images::Image(2, 2, 1));
     images::write_exr(folder.path() / *cell.images.exr, {{"a", {"Y"}, images::Image(2, 2, 1)}}, {});
     records::write_cell(folder.path(), cell);
     keys.push_back(cell.key);
