@@ -62,6 +62,9 @@ records::GpuEstimateRecord estimate(const Gpu& gpu, const FilterWork& work) {
     if (part.us > longest.us) longest = part;
   }
   result.bound_by = longest.resource;
+  result.map_us =
+      std::max(work.map.triangles / gpu.triangles_per_clock.value, work.map.texels / gpu.pixels_per_clock.value) /
+      gpu.clock_mhz.value;
   return result;
 }
 

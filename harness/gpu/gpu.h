@@ -25,10 +25,11 @@ struct Gpu {
   std::vector<std::string> families;  ///< what Mesa's RADV calls its family, the newest name first: "NAVI21"
   Constant simds;                     ///< units that each work on one wave at a time
   Constant clock_mhz;
-  Constant texture_units;      ///< texels of at most 32 bits that are filtered in a clock
-  Constant rate_64, rate_128;  ///< share of that rate for texels of 64 and of 128 bits, 0 .. 1
-  Constant cache_mib;          ///< the last one before memory
-  Constant line_bytes;         ///< of that cache
+  Constant texture_units;                          ///< texels of at most 32 bits that are filtered in a clock
+  Constant rate_64, rate_128;                      ///< share of that rate for texels of 64 and of 128 bits, 0 .. 1
+  Constant triangles_per_clock, pixels_per_clock;  ///< that are rasterised at most, before any shader
+  Constant cache_mib;                              ///< the last one before memory
+  Constant line_bytes;                             ///< of that cache
   Constant memory_gb_s;
 };
 
@@ -40,6 +41,8 @@ void visit_constants(G& gpu, Visitor&& visit) {
   visit("texture_units", gpu.texture_units);
   visit("rate_64", gpu.rate_64);
   visit("rate_128", gpu.rate_128);
+  visit("triangles_per_clock", gpu.triangles_per_clock);
+  visit("pixels_per_clock", gpu.pixels_per_clock);
   visit("cache_mib", gpu.cache_mib);
   visit("line_bytes", gpu.line_bytes);
   visit("memory_gb_s", gpu.memory_gb_s);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -24,6 +25,31 @@
 
 namespace shadowbench::measure {
 namespace {
+
+/// Whether a triangle reaches into a frustum, by its corners in clip space: not all are beyond one of its sides, or
+/// beyond the far one. What is nearer than the near one is drawn at depth 0.
+bool reaches_into(const std::array<glm::vec4, 3>& corners) {
+  const auto all = [&](auto is_out) { return std::ranges::all_of(corners, is_out); };
+  return !(all([](const glm::vec4& p) { return p.x < -p.w; }) || all([](const glm::vec4& p) { return p.x > p.w; }) ||
+           all([](const glm::vec4& p) { return p.y < -p.w; }) || all([](const glm::vec4& p) { return p.y > p.w; }) ||
+           all([](const glm::vec4& p) { return p.z > p.w; }));
+}
+
+/// Counts the triangles that reach into each layer; all of them where its map is curved.
+double count_triangles(const scene::Scene& scene, const std::vector<scene::LightFrustum>& layers) {
+  std::int64_t count = 0;
+  for (const scene::LightFrustum& layer : layers) {
+    for (const scene::Mesh& mesh : scene.meshes) {
+      for (std::size_t i = 0; mesh.casts_shadow && i < mesh.indices.size(); i += 3) {
+        std::array<glm::vec4, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+          corners[k] = layer.clip_from_world * glm::vec4(mesh.vertices[mesh.indices[i + k]].position_ws, 1.0f);
+        count += scene::is_curved(layer.shape) || reaches_into(corners) ? 1 : 0;
+      }
+    }
+  }
+  return static_cast<double>(count);
+}
 
 /// Everything that one task draws with.
 class SceneBench {
@@ -58,6 +84,8 @@ class SceneBench {
         result.cells.back().unbiased = draw_visibility(*filter, light_.map, gbuffer_, target_);
       });
     }
+    const double triangles = count_triangles(*task_.scene, light_.layers);
+    for (MeasuredCell& cell : result.cells) cell.map_triangles = triangles;
     time(result, filters);
     draw_phases(result, filters);
     warn_of_coarse_depth(result);

@@ -25,6 +25,7 @@ struct MeasuredCell {
   render::LightLayers light;  ///< what it was drawn with
   render::FilterCost cost;
   std::vector<render::DrawnPass> passes;  ///< the lookup first; none of a user's filter, whose process has them
+  double map_triangles = 0.0;             ///< that reach into the map, all layers
   std::vector<double> fetched_bytes;      ///< of a receiver's lookup, the mean, by the caches of the run's GPUs; empty
                                           ///< where TrafficMeter leaves it so
   render::DrawnPass empty_lookup;         ///< reads what the lookup does of its receivers, and nothing of the map

@@ -152,6 +152,9 @@ records::GpuRecord GpuCosts::make_record(const gpu::Gpu& gpu, const measure::Mea
       work.prefilter.push_back(
           {answer.facts, static_cast<double>(pass->texels), pass->target.bytes_per_texel, pass->read_bytes});
   }
+  work.map = {cell.map_triangles, cell.record.coverage.map_filled.value_or(0.0) *
+                                      static_cast<double>(cell.light.size()) * cell.record.map_size *
+                                      cell.record.map_size};
   work.reads = find_reads(cell.cost, work.lookup, work.empty);
   const auto place = std::ranges::find(options_.gpus, gpu.name, &gpu::Gpu::name) - options_.gpus.begin();
   if (!cell.fetched_bytes.empty()) work.memory_bytes = cell.fetched_bytes[static_cast<std::size_t>(place)];

@@ -37,9 +37,10 @@ using ImageMember = OptionalPath records::ImagesRecord::*;
 constexpr const char* kGpuNote =
     "Facts are counted by the GPU's own compiler (Mesa's RADV) in the code that is drawn here: own instructions and "
     "reads are the lookup's less those of a lookup that reads nothing of the map. Estimates are made of them and of "
-    "data sheets: the largest of arithmetic, sampling and memory, as if each were alone. Drawing the map, and what "
-    "every "
-    "lookup pays, is in no estimate. They rank filters; they are no measurement.";
+    "data sheets: the largest of arithmetic, sampling and memory, as if each were alone. Of drawing the map they have "
+    "a "
+    "lower bound: its triangles or its filled texels, at the rates of data sheets. What every lookup pays is in no "
+    "estimate. They rank filters; they are no measurement.";
 
 /// Names the scene, and the map and its fit where the run has the scene with several.
 std::string head_group(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
@@ -235,11 +236,12 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
 
 /// One filter's estimate as a bar of what adds up to it; its words have what does not.
 document::Bars::Row make_gpu_row(const analysis::GpuCost& cost) {
-  document::Bars::Row row{fmt::format("{}: {} ms", cost.configuration->name, records::format_number(*cost.estimate_ms)),
-                          {},
-                          *cost.estimate_ms,
-                          fmt::format("lookups {} and prefilter {}", records::format_number(cost.lookup_ms),
-                                      records::format_number(cost.prefilter_ms))};
+  document::Bars::Row row{
+      fmt::format("{}: {} ms", cost.configuration->name, records::format_number(*cost.estimate_ms)),
+      {},
+      *cost.estimate_ms,
+      fmt::format("lookups {}, prefilter {}, map at least {}", records::format_number(cost.lookup_ms),
+                  records::format_number(cost.prefilter_ms), records::format_number(cost.map_ms))};
   double end = 0.0;
   const auto add = [&](double ms, std::size_t color) {
     if (ms > 0.0) row.segments.push_back({end, end + ms, document::style_of(color).color});
@@ -251,6 +253,7 @@ document::Bars::Row make_gpu_row(const analysis::GpuCost& cost) {
     add(cost.slowest_ms[i], i + 1);
   }
   add(cost.prefilter_ms, cost.slowest_ms.size() + 1);
+  add(cost.map_ms, cost.slowest_ms.size() + 2);
   return row;
 }
 
@@ -263,12 +266,14 @@ std::optional<document::Bars> make_gpu_bars(const std::string& gpu, std::vector<
   bars.high = std::max(*costs.back().estimate_ms, 1e-9);
   bars.title = fmt::format(
       "{}: what an estimate is made of. A bar is the time of the lookup's slowest resource, each with its part where "
-      "that differs between scenes, and the prefilter's. The other resources work meanwhile, and are in the words "
+      "that differs between scenes, the prefilter's, and a lower bound of the map's. The other resources work "
+      "meanwhile, and are in the words "
       "alone, as if each were by itself. The full width is {} ms of a {}x{} frame.",
       gpu, records::format_number(bars.high), records::kGpuFrameWidth, records::kGpuFrameHeight);
   for (std::size_t i = 0; i < std::size(analysis::kGpuResources); ++i)
     bars.legend.emplace_back(document::style_of(i + 1).color, analysis::kGpuResources[i]);
   bars.legend.emplace_back(document::style_of(std::size(analysis::kGpuResources) + 1).color, "prefilter");
+  bars.legend.emplace_back(document::style_of(std::size(analysis::kGpuResources) + 2).color, "map, at least");
   for (const analysis::GpuCost& cost : costs) bars.rows.push_back(make_gpu_row(cost));
   return bars;
 }

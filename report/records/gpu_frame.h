@@ -16,9 +16,9 @@ inline constexpr double lookups_ms(double million_us) {
 }
 
 /// What such a frame costs by an estimate, milliseconds: its lookups, and where light or casters move the prefilter of
-/// one map too. Drawing the map, and what every lookup pays, is in no estimate.
+/// one map and a lower bound of drawing it. What every lookup pays is in no estimate.
 inline double frame_ms(const GpuEstimateRecord& estimate, bool is_moving) {
-  return lookups_ms(estimate.lookup_us) + (is_moving ? 1e-3 * estimate.prefilter_us : 0.0);
+  return lookups_ms(estimate.lookup_us) + (is_moving ? 1e-3 * (estimate.prefilter_us + estimate.map_us) : 0.0);
 }
 
 }  // namespace shadowbench::records

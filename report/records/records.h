@@ -196,6 +196,7 @@ struct GpuPassRecord {
 struct GpuEstimateRecord {
   double lookup_us = 0.0;                          ///< of a million receivers, less the empty lookup's arithmetic
   double prefilter_us = 0.0;                       ///< of the map, each of its passes
+  double map_us = 0.0;                             ///< a lower bound of drawing the map, all layers
   double arithmetic_us = 0.0, sampling_us = 0.0;   ///< of the lookup: the largest of these three is its time
   std::optional<double> memory_us = std::nullopt;  ///< nothing where the reads of the filter are not known
   std::string bound_by = {};                       ///< what takes longest: "arithmetic", "sampling" or "memory"

@@ -112,7 +112,8 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
       for (std::size_t i = 0; i < alone.size(); ++i) cost.alone_ms[i] += records::lookups_ms(alone[i]) / count;
       cost.slowest_ms[slowest] += lookup / count;
       cost.lookup_ms += lookup / count;
-      cost.prefilter_ms += (records::frame_ms(estimate, true) - lookup) / count;
+      cost.prefilter_ms += 1e-3 * estimate.prefilter_us / count;
+      cost.map_ms += 1e-3 * estimate.map_us / count;
     }
     costs.push_back(cost);
   }
@@ -164,8 +165,8 @@ std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<
 
 records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
   records::TextTable table;
-  table.header = {"filter",           "estimate, ms", "lookup, ms", "prefilter, ms", "bound by",
-                  "own instructions", "own reads",    "registers",  "waves"};
+  table.header = {"filter",   "estimate, ms",     "lookup, ms", "prefilter, ms", "map, ms at least",
+                  "bound by", "own instructions", "own reads",  "registers",     "waves"};
   const bool is_measured = std::ranges::any_of(costs, [](const GpuCost& cost) { return cost.measured_ms.has_value(); });
   if (is_measured) table.header.insert(table.header.begin() + 2, "measured here, ms");
   std::vector<GpuCost> sorted = costs;
@@ -176,7 +177,7 @@ records::TextTable make_gpu_table(const std::vector<GpuCost>& costs) {
     if (!lookup || !empty || !cost.estimate_ms) continue;
     table.rows.push_back({cost.configuration->name, records::format_number(cost.estimate_ms),
                           records::format_number(cost.lookup_ms), records::format_number(cost.prefilter_ms),
-                          cost.record->estimate->bound_by,
+                          records::format_number(cost.map_ms), cost.record->estimate->bound_by,
                           fmt::format("{}", lookup->instructions - empty->instructions),
                           fmt::format("{}", lookup->reads() - empty->reads()),
                           fmt::format("{}", lookup->vector_registers), fmt::format("{}", lookup->waves_per_simd)});

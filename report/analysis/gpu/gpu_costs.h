@@ -21,8 +21,8 @@ using GpuResources = std::array<double, std::size(kGpuResources)>;
 struct GpuCost {
   const Configuration* configuration = nullptr;
   const records::GpuRecord* record = nullptr;
-  std::optional<double> estimate_ms;           ///< of a frame, moving light; nothing where a cell has none
-  double lookup_ms = 0.0, prefilter_ms = 0.0;  ///< the parts of it
+  std::optional<double> estimate_ms;  ///< of a frame, moving light; nothing where a cell has none
+  double lookup_ms = 0.0, prefilter_ms = 0.0, map_ms = 0.0;  ///< the parts of it
   GpuResources slowest_ms{};  ///< the lookups' part, by the resource that is the slowest in a cell: they add up to it
   GpuResources alone_ms{};    ///< of each resource, were the others for nothing: they do not add up
   /// With a moving light, in the run's clock; nothing where a cell has none, or a software rasteriser drew it: a CPU's

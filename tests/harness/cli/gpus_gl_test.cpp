@@ -160,6 +160,18 @@ TEST_F(Gpus, EstimatesDoNotDependOnThePicturesSize) {
   }
 }
 
+/// By the triangles and texels of every cascade.
+TEST_F(Gpus, MoreCascadesCostMore) {
+  measure("--gpu navi21 --no-attribution --filters none --fit cascades:count=2 --fit cascades:count=4");
+  if (has_no_compiler()) GTEST_SKIP() << messages_;
+  const json cells = json::parse(read_text(folder() / "out" / "results.json"))["cells"];
+  ASSERT_EQ(cells.size(), 2u);
+  const auto map_us = [&](int cell) { return cells[cell]["gpu"]["navi21"]["parts_us"]["map"].get<double>(); };
+  EXPECT_GT(map_us(0), 0.0);
+  EXPECT_GT(map_us(1), 1.5 * map_us(0));
+  EXPECT_GT(cells[1]["gpu"]["navi21"]["frame_ms"]["moving"], cells[0]["gpu"]["navi21"]["frame_ms"]["moving"]);
+}
+
 /// The pixels of a frame of 1080 rows lie about two texels of such a map apart: a lookup that reads one texel brings
 /// nearly every line that one of 25 brings. Pixels twice as far apart would bring seven tenths of them.
 TEST_F(Gpus, OfLargeMaps_NarrowLookupsBringNearlyTheSameLines) {

@@ -19,6 +19,8 @@ Gpu make_gpu() {
   gpu.texture_units.value = 50.0;
   gpu.rate_64.value = 0.5;
   gpu.rate_128.value = 0.25;
+  gpu.triangles_per_clock.value = 2.0;
+  gpu.pixels_per_clock.value = 16.0;
   gpu.memory_gb_s.value = 2.0;
   return gpu;
 }
@@ -74,6 +76,18 @@ TEST(GpuEstimate, WhatBoundsAFrame_IsTheLongestOfItsLookupsAndOfItsMapsPasses) {
   EXPECT_EQ(estimate(make_gpu(), work).bound_by, "sampling");
   work.prefilter[0].texels = 0.5e6;
   EXPECT_EQ(estimate(make_gpu(), work).bound_by, "arithmetic");
+}
+
+/// At 100 MHz 200 triangles, or 1600 texels, take a microsecond.
+TEST(GpuEstimate, TheMapTakesAtLeastItsTrianglesOrItsTexels_InAFrameOfAMovingLight) {
+  FilterWork work = make_work(30, 30, {});
+  work.map = {600.0, 1600.0};
+  EXPECT_DOUBLE_EQ(estimate(make_gpu(), work).map_us, 3.0);
+  work.map.texels = 16'000.0;
+  const records::GpuEstimateRecord made = estimate(make_gpu(), work);
+  EXPECT_DOUBLE_EQ(made.map_us, 10.0);
+  EXPECT_DOUBLE_EQ(records::frame_ms(made, true), 0.01);
+  EXPECT_DOUBLE_EQ(records::frame_ms(made, false), 0.0);
 }
 
 TEST(GpuEstimate, ALookupThatIsCheaperThanTheEmptyOne_CostsItsReads) {

@@ -117,9 +117,11 @@ TEST(GpuCosts, OfSeveralScenes_AreMeans) {
   std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("a", 3, 30)};
   cells[1].scene = "stack";
   cells[1].gpu->at("one").estimate->prefilter_us = 8000.0;
+  cells[0].gpu->at("one").estimate->map_us = 2000.0;
   const Costs costs(cells);
   ASSERT_EQ(costs.costs.size(), 1u);
-  EXPECT_DOUBLE_EQ(*costs.costs[0].estimate_ms, 24.0);
+  EXPECT_DOUBLE_EQ(*costs.costs[0].estimate_ms, 25.0);
+  EXPECT_DOUBLE_EQ(costs.costs[0].map_ms, 1.0);
   EXPECT_DOUBLE_EQ(costs.costs[0].lookup_ms, 20.0);
   EXPECT_DOUBLE_EQ(costs.costs[0].prefilter_ms, 4.0);
   EXPECT_DOUBLE_EQ(*costs.costs[0].measured_ms, 2.0);
@@ -148,8 +150,8 @@ TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
   EXPECT_EQ(table.rows[1][2], "1");
   EXPECT_EQ(table.rows[1][3], "30");
   EXPECT_EQ(table.rows[1][4], "0");
-  EXPECT_EQ(table.rows[1][6], "23");
-  EXPECT_EQ(table.rows[1][7], "5");
+  EXPECT_EQ(table.rows[1][7], "23");
+  EXPECT_EQ(table.rows[1][8], "5");
 }
 
 }  // namespace

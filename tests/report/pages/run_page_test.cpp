@@ -147,8 +147,10 @@ TEST(RunPage, BarsOfAnEstimate_AreWhatAddsUp_TheRestIsInWords) {
                                            .bound_by = "memory"},
                 ""}}};
   const std::string page = make_html(make_run(), {cell});
-  EXPECT_THAT(page,
-              HasSubstr("vsm: 50 ms · lookups 10 and prefilter 40 · alone: arithmetic 4, sampling 10, memory 6\""));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "vsm: 50 ms · lookups 10, prefilter 40, map at least 0 · alone: arithmetic 4, sampling 10, memory 6\""));
   EXPECT_THAT(page, ::testing::ContainsRegex("<rect x=\"0\" y=\"4\" width=\"200\"[^>]*></rect><rect x=\"200\" y=\"4\" "
                                              "width=\"800\"[^>]*></rect><rect class=\"net\""));
 }

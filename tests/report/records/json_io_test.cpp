@@ -116,6 +116,7 @@ CellRecord make_full_cell() {
                {{{"lookup", 1, kFacts}, {"blur", 2, {}}},
                 GpuEstimateRecord{.lookup_us = 6.5,
                                   .prefilter_us = 3.0,
+                                  .map_us = 0.5,
                                   .arithmetic_us = 1.0,
                                   .sampling_us = 6.5,
                                   .memory_us = 2.0,
