@@ -193,7 +193,7 @@ int list_gpus(const ListArguments& arguments) {
                              : ": left out, since no Vulkan driver of this machine compiles for it");
     gpu::visit_constants(gpu, [&](const char* key, const gpu::Constant& constant) {
       each[key] = {{"value", constant.value}, {"source", constant.source}};
-      if (!arguments.json) print("  {:<14} {:<6} {}\n", key, constant.value, constant.source);
+      if (!arguments.json) print("  {:<19} {:<6} {}\n", key, constant.value, constant.source);
     });
   }
   if (arguments.json)

@@ -1,10 +1,13 @@
-// Titles of GPUs, from what browsers say of them.
+// Functions of the pages' scripts that need no page: titles of GPUs from what browsers say of them, and axes of charts.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
 
-const file = new URL("../../report/document/live/gpu_names.js", import.meta.url);
-const titleGpu = new Function(`${readFileSync(file, "utf8")}; return titleGpu;`)();
+const take = (file, name) => {
+  const text = readFileSync(new URL(`../../report/document/${file}`, import.meta.url), "utf8");
+  return new Function("document", `${text}; return ${name};`)({ createElement: () => ({ getContext: () => ({}) }) });
+};
+const titleGpu = take("live/gpu_names.js", "titleGpu"), fitAxis = take("chart_drawing.js", "fitAxis");
 
 const kTitles = {
   // Chromium and Edge under Windows.
@@ -57,4 +60,14 @@ const kTitles = {
 };
 test("AGpuHasAShortTitle", () => {
   for (const [renderer, title] of Object.entries(kTitles)) assert.equal(titleGpu(renderer), title, renderer);
+});
+
+test("HiddenCurves_TakeNoRoom", () => {
+  const axis = { low: 0.01, high: 2, log: true, ticks: [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1].map((value) => [value, `${value}`]) };
+  const curve = (...values) => ({ points: values.map((value) => ({ y: value === null ? [null] : [value, 0.9 * value, 1.1 * value] })) });
+  const fitted = fitAxis(axis, [curve(0.06, null), curve(0.15)]);
+  assert.deepEqual([fitted.low, fitted.high], [0.05, 0.2]);
+  assert.deepEqual(fitted.ticks.map(([value]) => value), [0.05, 0.1, 0.2]);
+  assert.deepEqual(fitAxis(axis, [curve(0.06, 1.5)]).high, 2, "beyond the last tick");
+  assert.deepEqual(fitAxis(axis, []), axis, "nothing is shown");
 });
