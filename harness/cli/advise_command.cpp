@@ -13,7 +13,7 @@
 #include "filters/kernel.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/print.h"
+#include "harness/cli/terminal.h"
 #include "harness/options/options.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"

@@ -9,7 +9,7 @@
 #include "filters/model.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/print.h"
+#include "harness/cli/terminal.h"
 #include "harness/gl/survey.h"
 #include "harness/gpu/gpu.h"
 #include "harness/options/options.h"

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "base/error.h"
-#include "harness/cli/program.h"
+#include "harness/cli/commands.h"
 
 namespace shadowbench::cli {
 namespace {

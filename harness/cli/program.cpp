@@ -1,5 +1,3 @@
-#include "harness/cli/program.h"
-
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -12,7 +10,7 @@
 
 #include "base/error.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/print.h"
+#include "harness/cli/terminal.h"
 
 namespace shadowbench::cli {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -52,5 +53,12 @@ CheckedImages check_images(const ExternalImages& images, const OwnView& own);
 /// 1 for those of `which` all of whose neighbours are on the same smooth surface: where antialiasing and half a pixel
 /// do not show.
 std::vector<std::uint8_t> find_inside(const OwnView& own, const std::vector<std::uint8_t>& which);
+
+/// Compares the light that another renderer's surfaces have without shadows with that of ours: values for a display in
+/// place of linear light, a light from elsewhere, antialiasing, few bits.
+void check_light(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings);
+
+/// The neighbour of a pixel; nothing beyond the picture's edge.
+std::optional<std::size_t> step(std::size_t pixel, int dx, int dy, int width, int height);
 
 }  // namespace shadowbench::engines

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "filters/catalogue.h"
 #include "harness/options/options.h"
 #include "harness/options/progress.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/tune/tuning.h"
 
 namespace shadowbench::tune {
@@ -46,5 +50,14 @@ double choose_tune_padding(double widest_kernel_texels, int map_size);
 /// map per view for each setting of cascades; the truth of each view, once. Memory is that of the training views,
 /// whatever the number of settings.
 std::string tune_filters(const TuneOptions& options, options::Progress& progress);
+
+/// Every request the parameters that a tuned.json holds for its filter, but for those that the request sets
+/// itself. Returns what the user should know: filters that the file does not name, which keep their defaults, and maps
+/// and fits that differ from those it was tuned on. Throws Error(kInput), with file and field, where the file is
+/// malformed or names an unknown filter or parameter, or a value that is not allowed; also for filters that are not
+/// requested.
+std::vector<std::string> apply_tuned(std::vector<filters::FilterRequest>& requests, const filters::Catalogue& catalogue,
+                                     const std::filesystem::path& file, const std::vector<int>& map_sizes,
+                                     const std::vector<scene::FitRule>& fits);
 
 }  // namespace shadowbench::tune

@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "base/error.h"
-#include "harness/scene/load.h"
-#include "harness/tune/param_scale.h"
 #include "harness/gl/objects.h"
 #include "harness/render/bias.h"
+#include "harness/scene/load.h"
+#include "harness/tune/tuning.h"
 #include "harness/view/layers.h"
 #include "harness/view/picture_input.h"
 

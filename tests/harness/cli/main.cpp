@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "harness/cli/program.h"
+#include "harness/cli/commands.h"
 
 /// The tests, or the program itself where its words follow: a run starts itself anew for what may crash. Mesa asks but
 /// once where compiled shaders go, which is not to be the folder of the first test.

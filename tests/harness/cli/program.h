@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/cli/program.h"
+#include "harness/cli/commands.h"
 
 namespace shadowbench::test {
 

@@ -1,6 +1,6 @@
-#include "harness/engines/own_map.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/engines/external_images.h"
 
 namespace shadowbench::engines {
 namespace {

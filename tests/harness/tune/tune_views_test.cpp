@@ -1,5 +1,3 @@
-#include "harness/tune/tune_views.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "harness/options/options.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/load.h"
+#include "harness/tune/tune_scene.h"
 
 namespace shadowbench::tune {
 namespace {

@@ -1,11 +1,10 @@
-#include "harness/tune/tuned_parameters.h"
-
 #include <gmock/gmock.h>
 
 #include <fstream>
 
 #include "base/error.h"
 #include "harness/options/options.h"
+#include "harness/tune/tune_filters.h"
 
 namespace shadowbench::tune {
 namespace {

@@ -3,17 +3,82 @@
 
 #include <memory>
 
+#include "base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/cli/print.h"
-#include "harness/cli/progress_bar.h"
+#include "harness/cli/terminal.h"
 #include "harness/scene/load.h"
+#include "harness/stress/bias_sweep.h"
+#include "harness/stress/run_stress.h"
 #include "harness/tune/tune_filters.h"
 #include "harness/tune/tune_scene.h"
-#include "harness/tune/tune_views.h"
 
 namespace shadowbench::cli {
 namespace {
+
+struct BiasArguments : PictureArguments {
+  std::string scene = "fence";  ///< among the built-in scenes, this one has receivers for acne and for contact gaps
+  bool ground = false;
+  std::vector<std::string> light_names, filter_files;
+};
+
+int sweep_bias(const BiasArguments& arguments) {
+  options::RunOptions options;
+  options.phases = 1;  // no error is averaged
+  take_picture_options(arguments, options);
+  options.scenes = {arguments.scene};
+  options.ground = arguments.ground;
+  options.light_names = arguments.light_names;
+  options.filter_files = arguments.filter_files;
+  filters::Catalogue catalogue(options.resources.filters);
+  catalogue.add_user_files(options.filter_files);
+  options.filters = parse_filters(catalogue, arguments.filters, options.filter_files);
+  filters::refuse_light_widths(options.filters);
+  require_distinct(options.filters);
+  print_presets(options.filters);
+  options.attribution = false;
+  work_with_progress(options.out, [&](options::Progress& progress) { stress::run_bias_sweep(options, progress); });
+  print("report: {}\n", (options.out / "bias.html").string());
+  return 0;
+}
+
+struct StressArguments : DrawingArguments {
+  std::string filters;
+  std::vector<std::string> filter_files;
+  std::string axes;
+  std::vector<std::string> ranges;
+  bool list = false;
+  std::uint32_t seed = 1;
+};
+
+stress::StressOptions make_stress_options(const StressArguments& arguments, const std::vector<std::string>& words) {
+  if (!arguments.filter_files.empty()) {
+    fail(
+        fmt::format("--filter-file: {} has no scalar model to be held against, so only built-in filters are stressed; "
+                    "add it as CONTRIBUTING says",
+                    arguments.filter_files.front()));
+  }
+  stress::StressOptions options;
+  take_drawing_options(arguments, options);
+  options.filters = parse_builtin_filters(arguments.filters, options.resources);
+  options.axes = arguments.axes;
+  options.ranges = arguments.ranges;
+  options.seed = arguments.seed;
+  options.command = words;
+  return options;
+}
+
+int stress_filters(const StressArguments& arguments, const std::vector<std::string>& words) {
+  const stress::StressOptions options = make_stress_options(arguments, words);
+  if (arguments.list) {
+    print("{}", stress::describe_axes(options.filters));
+    return 0;
+  }
+  const stress::StressOutcome outcome = work_with_progress(
+      options.out, [&](options::Progress& progress) { return stress::run_stress(options, progress); });
+  print("{}report: {}\n", outcome.text, (options.out / "stress.html").string());
+  return outcome.disagreements > 0 ? static_cast<int>(ErrorKind::kLimit) : 0;
+}
 
 constexpr int kLargestBudget = 10000;
 
@@ -99,6 +164,45 @@ std::string describe_tuning() {
 }
 
 }  // namespace
+
+Command make_bias_command() {
+  Command command{"bias", "Find the depth bias to ship: sweep every mode over its amount"};
+  command.about =
+      "Draws the scene's first view under each of its lights with each filter and each bias mode of 'run --help-all', "
+      "at 0 to 8 times the theoretical amount. Writes bias.html (the bias to ship, charts of acne and contact gap), "
+      "bias.csv, bias.json and images. In the folder 'bias' of a report it adds the bias to that report's answer.";
+  auto a = std::make_shared<BiasArguments>();
+  a->size = "960x540";
+  a->out = "report/out/bias";
+  add_scene_option(command, a->scene);
+  add_as_run(command, "--ground", &a->ground);
+  add_as_run(command, "--light-name", &a->light_names);
+  add_builtin_filters_option(command, a->filters);
+  add_as_run(command, "--filter-file", &a->filter_files);
+  add_picture_options(command, *a);
+  add_drawing_options(command, *a);
+  command.action = [a](const CommandLine&) { return sweep_bias(*a); };
+  return command;
+}
+
+Command make_stress_command() {
+  Command command{"stress", "Find where filters break numerically, and compare with theory"};
+  command.about =
+      "Along each axis a case is ok, degraded (error over the axis' bound) or broken (NaN, infinity, all lit, all "
+      "dark, or not monotonic). The first value of each is found to 1 % and compared with theory. Writes stress.html, "
+      ".md, .json and .csv. Exit code 1: an unexplained difference from theory.";
+  auto a = std::make_shared<StressArguments>();
+  a->out = "report/out/stress";
+  add_builtin_filters_option(command, a->filters);
+  command.add("--filter-file", &a->filter_files, "").hide();
+  command.add("--axes", &a->axes, "axes, separated by commas (default all; see --list)");
+  command.add("--range", &a->ranges, "AXIS=LOW,HIGH instead of the axis' range; repeatable");
+  command.add("--list", &a->list, "list the axes and end");
+  command.add("--seed", &a->seed, "seed of random rotations and of the truth's rays");
+  add_drawing_options(command, *a);
+  command.action = [a](const CommandLine& line) { return stress_filters(*a, line.words()); };
+  return command;
+}
 
 Command make_tune_command() {
   Command command{"tune", "Find the best parameters of filters, and how much they matter"};
