@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/options/option.h"
+#include "harness/options/run_options.h"
 
 namespace CLI {
 class App;  // its header is slow to compile: command_line.cpp alone includes it

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "harness/options/progress.h"
+#include "harness/options/options.h"
 
 namespace shadowbench::cli {
 

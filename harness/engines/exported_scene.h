@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/measure/scene_assets.h"
-#include "harness/options/progress.h"
+#include "harness/options/options.h"
 #include "harness/run/run_plan.h"
 
 namespace shadowbench::engines {

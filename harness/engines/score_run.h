@@ -11,7 +11,7 @@
 #include "harness/engines/external_images.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/options/experiment_file.h"
-#include "harness/options/progress.h"
+#include "harness/options/options.h"
 #include "harness/run/run_plan.h"
 #include "report/analysis/configuration.h"
 #include "report/records/json_io.h"

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "filters/model.h"
-#include "harness/measure/layer_truth.h"
 #include "harness/measure/model_images.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"
+#include "harness/measure/view_receivers.h"
 #include "reference/metrics/artefacts.h"
 #include "reference/metrics/error_stats.h"
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "harness/measure/layer_truth.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"

@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "filters/percentage_closer.h"
-#include "harness/measure/receiver_pixels.h"
 
 namespace shadowbench::measure {
 

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "base/error.h"
-#include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
-#include "harness/scene/lights/light_fit.h"
+#include "harness/measure/scene_truth.h"
 #include "harness/render/picture_passes.h"
+#include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
 #include "report/images/picture_io.h"
 

@@ -6,7 +6,7 @@
 
 #include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
-#include "harness/options/progress.h"
+#include "harness/options/options.h"
 #include "harness/render/filter_passes.h"
 #include "harness/scene/scene.h"
 #include "reference/metrics/artefacts.h"

@@ -8,7 +8,7 @@
 #include "filters/percentage_closer.h"
 #include "filters/store_format.h"
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/receiver_pixels.h"
+#include "harness/measure/model_images.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"

@@ -1,12 +1,55 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "harness/measure/map_traffic.h"
+#include "filters/catalogue.h"
+#include "harness/measure/model_images.h"
 #include "harness/measure/scene_measurement.h"
 
 namespace shadowbench::measure {
+
+/// A GPU's last-level cache, as far as reads of maps go through it.
+struct CacheShape {
+  std::int64_t bytes = 0;
+  int line_bytes = 0;  ///< a power of two, and no less than a texel has: 16 at most
+};
+
+/// What is known of a lookup without a scalar model: its reads are counted while it is drawn.
+struct PixelReads {
+  int fetches[3] = {};        ///< of texels of up to 32, of 64 and of 128 bits
+  double reach_texels = 0.0;  ///< from the receiver to the centre of the farthest texel, on either axis
+};
+
+/// A layer of a map with the receivers that it serves, and the reads of every pixel of the view, the lower row first.
+struct CountedLayer {
+  filters::DepthMap map;  ///< of which size, border, and the bytes of a narrow texel count
+  std::vector<filters::Receiver> receivers;
+  std::vector<PixelReads> pixels;
+};
+
+/// Counts the bytes that a filter's lookups fetch through each cache: the mean over the receivers.
+///
+/// A line of L bytes holds L / (bytes of a texel) texels of one map, in a block as near to a square as powers of two
+/// allow, the wider side along u. A texel has the bytes of its map's format. Receivers are asked in tiles of 8x8
+/// pixels, row by row of tiles from the top; a tile reads each of its lines once. The cache is empty at first,
+/// associates fully, and drops the line that was not read for the longest time; every line that it does not hold is
+/// fetched. Not counted: reads outside a map, which are none; what the passes before the lookup read and write.
+///
+/// Nothing where the filter has no scalar model, or no layer a receiver.
+/// Cost: the model's prefilter in single precision, and some of its lookups. The receivers of a tile are asked in an
+/// order that spreads them over it, until 8 in a row, with 128 reads, bring no new line: all of them where a filter
+/// reads no more than four texels. The README says how little that misses.
+std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
+                                                     const std::vector<ModelLayer>& layers, const ModelView& view,
+                                                     std::span<const CacheShape> caches);
+
+/// The same of lookups whose reads were counted: they are taken to lie evenly in the square that they reach, each in
+/// the middle of four texels, in maps of the depth map's size, one for each width of texels.
+std::optional<std::vector<double>> count_map_traffic(const std::vector<CountedLayer>& layers, const ModelView& view,
+                                                     std::span<const CacheShape> caches);
 
 /// Counts what the lookups of a task's cells bring from memory into the last caches of the run's GPUs. It draws the
 /// view's receivers anew, those of a frame of 1080 rows, whatever the size of the run's pictures: receivers of a small

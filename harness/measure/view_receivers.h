@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "harness/render/gbuffer.h"
 #include "harness/scene/lights/light.h"
+#include "reference/truth/cached_tracer.h"
 #include "reference/truth/visibility.h"
 #include "report/images/image.h"
 
@@ -40,5 +43,28 @@ ViewReceivers make_view_receivers(const ViewSurfaces& surfaces, const scene::Lig
 
 /// Reads the receivers that a G-buffer holds; those count that face the light.
 ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::Light& light);
+
+/// A layer of a light's map, as rays follow a kernel through it, and pixels fall in it.
+struct TracedLayer {
+  scene::LightFrustum frustum;
+  std::vector<float> shares = {};  ///< of each pixel that this layer serves, rows top to bottom; empty: it serves all
+  std::string content = {};        ///< a name for the shares, by which a cache knows them
+};
+
+/// What traces the receivers through the layer of this index.
+using LayerTrace =
+    std::function<truth::TracedVisibility(const truth::ReceiverImage&, const truth::MapGrid&, std::size_t)>;
+
+/// The layers of a light's map for the receivers of a view; no bias plays a part.
+std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
+                                            const render::LightLayers& light);
+
+/// The layer that serves most of a pixel.
+std::size_t choose_layer(const std::vector<TracedLayer>& layers, std::size_t pixel);
+
+/// Traces receivers through the grid of the layer that serves them; where several share a pixel, their traces are added
+/// by their shares, and agree where all rays of all of them do.
+truth::TracedVisibility trace_layers(const std::vector<TracedLayer>& layers, const truth::ReceiverImage& receivers,
+                                     const LayerTrace& trace);
 
 }  // namespace shadowbench::measure

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,13 +11,40 @@
 #include "filters/depth_map.h"
 #include "harness/gl/context/context.h"
 #include "harness/gpu/gpu.h"
-#include "harness/options/round_limits.h"
+#include "harness/render/bias.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/lights/light_kinds.h"
-#include "harness/render/bias.h"
 #include "report/images/figure.h"
 
 namespace shadowbench::options {
+
+/// When enough rounds are timed.
+struct RoundLimits {
+  int fewest = 9;
+  int most = 200;
+  /// How wide the 95 % interval of a filter's ratio to the reference may be, relative to the ratio.
+  double precision = 0.05;
+  double budget_ms = 400.0;  ///< of timed work for each filter; what a filter does not need is left to the others
+
+  /// Exactly this many rounds, however precise they are.
+  static RoundLimits exactly(int rounds) { return {.fewest = rounds, .most = rounds}; }
+  bool is_fixed() const { return fewest == most; }
+};
+
+/// Receives how far a run is; the command line shows it.
+class Progress {
+ public:
+  virtual ~Progress() = default;
+  /// A run of `cells` cells begins, of which `finished` were finished before.
+  virtual void begin(int cells, int finished) = 0;
+  /// What is named is under way, `done` cells are finished.
+  virtual void show(int done, const std::string& what) = 0;
+  /// The user should know this; it is shown once.
+  virtual void note(const std::string& message) = 0;
+};
+
+/// Hears what is under way.
+using StepListener = std::function<void(const std::string& what)>;
 
 /// The folders that come with the program.
 struct Resources {

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "base/error.h"
-#include "harness/measure/mean_flip.h"
+#include "harness/measure/scene_truth.h"
 #include "report/images/picture_io.h"
 #include "report/images/stored_picture.h"
 

@@ -9,14 +9,14 @@
 #include <map>
 #include <optional>
 
-#include "harness/measure/accumulation/accumulation.h"
+#include "harness/measure/accumulation.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/layer_truth.h"
 #include "harness/measure/map_coverage.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/suspects.h"
 #include "harness/measure/traffic_meter.h"
+#include "harness/measure/view_receivers.h"
 #include "harness/render/picture_passes.h"
 #include "harness/run/float_images.h"
 #include "harness/run/task_images.h"

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "harness/measure/scene_assets.h"
-#include "harness/options/progress.h"
+#include "harness/options/options.h"
 #include "harness/run/gpu_costs.h"
 #include "harness/run/run_plan.h"
 #include "report/records/records.h"

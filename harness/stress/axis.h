@@ -11,7 +11,6 @@
 #include "filters/catalogue.h"
 #include "harness/measure/renderer.h"
 #include "harness/options/options.h"
-#include "harness/options/progress.h"
 #include "report/records/stress_record.h"
 
 namespace shadowbench::stress {

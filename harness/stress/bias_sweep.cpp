@@ -11,7 +11,7 @@
 #include "filters/kernel.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
-#include "harness/measure/receiver_pixels.h"
+#include "harness/measure/model_images.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/render/bias.h"
 #include "harness/render/filter_passes.h"

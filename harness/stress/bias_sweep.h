@@ -1,7 +1,6 @@
 #pragma once
 
 #include "harness/options/options.h"
-#include "harness/options/progress.h"
 
 namespace shadowbench::stress {
 

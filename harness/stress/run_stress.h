@@ -8,7 +8,6 @@
 #include "filters/catalogue.h"
 #include "harness/gl/context/context.h"
 #include "harness/options/options.h"
-#include "harness/options/progress.h"
 #include "harness/stress/axis.h"
 
 namespace shadowbench::stress {

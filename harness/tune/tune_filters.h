@@ -7,7 +7,6 @@
 
 #include "filters/catalogue.h"
 #include "harness/options/options.h"
-#include "harness/options/progress.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/tune/tuning.h"
 

@@ -13,8 +13,8 @@
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/filter_setup.h"
 #include "harness/measure/map_limits.h"
-#include "harness/measure/mean_flip.h"
 #include "harness/measure/phases.h"
+#include "harness/measure/scene_truth.h"
 #include "harness/render/picture_passes.h"
 #include "report/images/picture_io.h"
 

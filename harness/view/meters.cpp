@@ -7,8 +7,7 @@
 #include <string>
 
 #include "harness/gl/survey.h"
-#include "harness/measure/timing/statistics.h"
-#include "harness/measure/timing/timing.h"
+#include "harness/measure/timing.h"
 #include "reference/metrics/error_stats.h"
 #include "report/records/gpu_frame.h"
 

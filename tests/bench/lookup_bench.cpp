@@ -4,8 +4,7 @@
 
 #include <memory>
 
-#include "harness/measure/timing/statistics.h"
-#include "harness/measure/timing/timing.h"
+#include "harness/measure/timing.h"
 #include "harness/options/options.h"
 #include "harness/render/bias.h"
 #include "harness/scene/load.h"

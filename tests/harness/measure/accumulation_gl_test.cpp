@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/measure/accumulation/accumulation.h"
+#include "harness/measure/accumulation.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::measure {

@@ -3,7 +3,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "filters/model.h"
-#include "harness/measure/layer_truth.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/scene/mesh_tools.h"

@@ -1,11 +1,11 @@
-#include "harness/measure/timing/statistics.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
+
+#include "harness/measure/timing.h"
 
 namespace shadowbench::measure {
 namespace {

@@ -1,5 +1,4 @@
-#include "harness/measure/timing/statistics.h"
-#include "harness/measure/timing/timing.h"
+#include "harness/measure/timing.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

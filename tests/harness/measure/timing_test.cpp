@@ -1,13 +1,11 @@
 // When enough rounds are timed, with clocks that say what the test wants.
 
-#include "harness/measure/timing/timing.h"
+#include "harness/measure/timing.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
-
-#include "harness/measure/timing/statistics.h"
 
 namespace shadowbench::measure {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "harness/measure/mean_flip.h"
+#include "harness/measure/scene_truth.h"
 #include "report/images/picture_io.h"
 #include "report/records/record_fields.h"
 #include "tests/report/records/synthetic.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "harness/options/progress.h"
+#include "harness/options/options.h"
 
 namespace shadowbench::test {
 
