@@ -40,15 +40,17 @@ std::string name_light(const scene::Scene& scene) {
   return scene.light.name.empty() ? scene::describe_light(scene.light) : scene.light.name;
 }
 
-/// The record of a light that has no answer.
-records::BiasSweepRecord refuse(const options::RunOptions& options, const scene::Scene& scene, const std::string& why) {
+/// What a light's record says whether it has an answer or not.
+records::BiasSweepRecord start_record(const options::RunOptions& options, const scene::Scene& scene) {
   records::BiasSweepRecord record;
   record.scene = scene.name;
+  record.title = scene.title;
   record.light = name_light(scene);
+  record.view = scene.cameras.front().name;
   record.map_size = options.map_sizes.front();
+  record.fit = scene::describe_fit(options.fit);
   record.width = options.width;
   record.height = options.height;
-  record.refused = why;
   return record;
 }
 
@@ -78,7 +80,8 @@ class BiasSweep {
         renderer_(renderer),
         assets_(renderer_, options_, scene_, cache, measure::largest_padding_texels(options.filters)),
         light_(assets_.light_map(scene_.cameras.front(), options.map_sizes.front())),
-        target_("visibility", GL_R32F, options.width, options.height) {}
+        target_("visibility", GL_R32F, options.width, options.height),
+        record_(start_record(options, scene)) {}
 
   /// Throws Error(kInput) where there is nothing to take a theoretical amount from.
   records::BiasSweepRecord run() {
@@ -145,14 +148,6 @@ class BiasSweep {
   }
 
   void describe() {
-    record_.scene = scene_.name;
-    record_.title = scene_.title;
-    record_.light = name_light(scene_);
-    record_.view = camera().name;
-    record_.map_size = options_.map_sizes.front();
-    record_.fit = scene::describe_fit(options_.fit);
-    record_.width = options_.width;
-    record_.height = options_.height;
     const records::GlRecord gl = run::describe_gl(renderer_);
     record_.renderer = fmt::format("{} ({}), program {}", gl.renderer, gl.backend, run::build_commit());
     for (const auto& request : options_.filters) record_.filters.push_back(request.label());
@@ -341,7 +336,8 @@ void run_bias_sweep(const options::RunOptions& options, options::Progress& progr
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::kInput || lit.size() == 1) throw;
       progress.note("warning: " + std::string(error.what()));
-      sweeps.push_back(refuse(options, scene, error.what()));
+      sweeps.push_back(start_record(options, scene));
+      sweeps.back().refused = error.what();
     }
   }
   if (std::ranges::all_of(sweeps, [](const auto& sweep) { return !sweep.refused.empty(); }))

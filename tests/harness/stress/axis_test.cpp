@@ -26,11 +26,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-const filters::Catalogue& catalogue() {
-  static const filters::Catalogue filters(options::find_resources().filters);
-  return filters;
-}
-
 /// Gives the message of the usage error that a range is refused with.
 std::string refuse(const std::string& range, const std::string& axes = "") {
   std::vector<Axis> chosen = choose_axes(axes);
@@ -75,7 +70,8 @@ TEST(AxisTable, EveryCaseObserves_OrSaysWhyNot) {
 
 /// What a filter declares of its map is what some axis drives.
 TEST(AxisTable, DeclaredParameters_AreDriven) {
-  for (const filters::FilterSpec& spec : catalogue().filters()) {
+  for (const filters::FilterRequest& request : make_inputs("all,teaching").filters) {
+    const filters::FilterSpec& spec = request.spec;
     for (const std::string& declared : {spec.exponent, spec.variance_floor}) {
       const auto drives = [&](const Axis& axis) { return axis.driven_param && axis.driven_param(spec) == declared; };
       EXPECT_TRUE(declared.empty() || std::ranges::any_of(axis_table(), drives)) << spec.id << ":" << declared;
@@ -143,15 +139,6 @@ TEST(Driven, ComesFromTheFrontMatter_AndKeepsTheUsersValues) {
   EXPECT_THAT(list_choices(inputs.filters[1], "store"), ::testing::ElementsAre("r32f", "r16f"));
   EXPECT_THAT(list_choices(make_inputs("esm:store=r16f").filters[0], "store"), ::testing::ElementsAre("r16f"));
   EXPECT_THAT(list_choices(inputs.filters[1], "nothing"), SizeIs(0));
-}
-
-TEST(Driven, FiltersThatWereNotChosen_AreReported) {
-  for (const char* id : {"esm-exponent", "warp-exponent", "vsm-cancellation"}) {
-    const std::vector<Case> cases = choose_axes(id)[0].make_cases(make_inputs("none"));
-    EXPECT_TRUE(std::ranges::any_of(cases, [](const Case& item) {
-      return item.not_available.find("front matter declares '") != std::string::npos;
-    })) << id;
-  }
 }
 
 TEST(Driven, WithoutAGl_GlCasesSayThatThereIsNone) {
@@ -452,15 +439,18 @@ TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
     EXPECT_THAT(found.notes[0], HasSubstr(count));
 }
 
-TEST(GeometryAxes, FiltersThatTheyHaveNothingToAsk_AreReported) {
-  const auto sole = [](const char* axis, const char* filters) {
-    return choose_axes(axis)[0].make_cases(make_inputs(filters)).at(0);
+TEST(Axes, FiltersThatTheyHaveNothingToAsk_AreReported) {
+  const auto expect = [](const char* axis, const char* filters, const char* words) {
+    const std::vector<Case> cases = choose_axes(axis)[0].make_cases(make_inputs(filters));
+    EXPECT_THAT(cases, ::testing::Contains(::testing::Field(&Case::not_available, HasSubstr(words)))) << axis;
   };
-  EXPECT_THAT(sole("grazing-light", "vsm").not_available, HasSubstr("kind comparison"));
-  EXPECT_THAT(sole("light-bleeding", "none").not_available, HasSubstr("encodes"));
-  EXPECT_THAT(sole("kernel-radius", "none").not_available, HasSubstr("radius"));
-  EXPECT_THAT(sole("taps", "none").not_available, HasSubstr("taps"));
-  EXPECT_THAT(sole("depth-formats", "none").not_available, HasSubstr("no GL"));
+  for (const char* axis : {"esm-exponent", "warp-exponent", "vsm-cancellation"})
+    expect(axis, "none", "front matter declares '");
+  expect("grazing-light", "vsm", "kind comparison");
+  expect("light-bleeding", "none", "encodes");
+  expect("kernel-radius", "none", "radius");
+  expect("taps", "none", "taps");
+  expect("depth-formats", "none", "no GL");
 }
 
 }  // namespace
