@@ -17,9 +17,9 @@
 #include "harness/options/options.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/cell_group.h"
-#include "report/analysis/trade_measures.h"
-#include "report/pages/answer/advice_text.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/measures.h"
+#include "report/pages/advice_text.h"
 #include "report/records/gpu_times.h"
 #include "report/records/json_io.h"
 

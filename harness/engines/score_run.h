@@ -12,7 +12,7 @@
 #include "harness/measure/scene_assets.h"
 #include "harness/options/progress.h"
 #include "harness/run/run_plan.h"
-#include "report/analysis/configuration.h"
+#include "report/analysis/cells.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::engines {

@@ -1,29 +1,301 @@
 #include "report/pages/run_data.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 #include <variant>
 
 #include "filters/kernel.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
-#include "report/analysis/cell_group.h"
-#include "report/analysis/claims.h"
-#include "report/analysis/picks.h"
-#include "report/analysis/place_state.h"
+#include "report/analysis/advice.h"
+#include "report/analysis/advice_words.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/measures.h"
 #include "report/analysis/trade.h"
-#include "report/analysis/trade_measures.h"
 #include "report/document/chart.h"
 #include "report/files/file_name.h"
-#include "report/pages/answer/answer_data.h"
-#include "report/pages/external_section.h"
+#include "report/pages/bias_page.h"
+#include "report/pages/sections.h"
+#include "report/pages/trade_section.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::pages {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kShape = 2.5;        // of the part of a picture: width over height
+constexpr double kMostShown = 480.0;  // pixels across, so that an edge is large enough to look at
+
+/// The worst value, the number that as a limit lets it pass, its place, and those with nothing to see; or why there is
+/// none.
+json describe_worst(const analysis::Verdict& verdict, const std::vector<analysis::Place>& places) {
+  if (!verdict.absent.empty()) return verdict.absent;
+  json unseen = json::array();
+  for (const records::CellRecord* cell : verdict.nothing_to_see) unseen.push_back(analysis::find_place(places, *cell));
+  return {{"value", *verdict.worst},
+          {"limit", std::stod(analysis::format_limit(*verdict.worst))},
+          {"place", analysis::find_place(places, *verdict.where)},
+          {"unseen", std::move(unseen)}};
+}
+
+/// How a configuration stands to everything that may be limited, by the names of the measures.
+json list_worst(const analysis::Configuration& configuration, const std::vector<analysis::Place>& places,
+                const std::vector<CostChoice>& costs) {
+  json worst = json::object();
+  const auto add = [&](const std::string& field, const analysis::LimitSpec& spec, analysis::LightMotion light) {
+    worst[field] = describe_worst(analysis::judge_limit(configuration, {&spec, 0.0, {}}, light, places), places);
+  };
+  for (const analysis::LimitSpec& spec : analysis::limit_table())
+    if (spec.metric) add(spec.field, spec, analysis::LightMotion::kMoving);
+  for (const CostChoice& cost : costs) add(cost.field, analysis::cost_spec(*cost.measure.cost), cost.measure.light);
+  return worst;
+}
+
+/// The ranks behind one whose costs cannot be told from its own, as pairs of the first and the one after the last.
+json list_ties(const analysis::Advice& advice, std::size_t rank) {
+  json ranges = json::array();
+  std::size_t end = 0;
+  for (std::size_t other = rank + 1; other < advice.keeping.size(); ++other) {
+    const auto gap = analysis::compare_costs(advice.keeping[rank], advice.keeping[other], advice.request.cheapest);
+    if (!gap.tied) continue;
+    if (end != other) ranges.push_back({other, other});
+    ranges.back()[1] = end = other + 1;
+  }
+  return ranges;
+}
+
+/// A scene, or all of them, with the configurations' cells there.
+struct Scope {
+  std::vector<std::string> scenes;  ///< empty: all
+  std::vector<analysis::Configuration> configurations;
+  std::vector<analysis::LeftOutPlace> left_out;
+};
+
+Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Configuration>& configurations) {
+  Scope scope{std::move(scenes), configurations, {}};
+  std::vector<const records::CellRecord*> advised;
+  for (analysis::Configuration& each : scope.configurations) {
+    std::erase_if(each.cells, [&](const records::CellRecord* cell) {
+      return !scope.scenes.empty() && std::ranges::count(scope.scenes, cell->scene) == 0;
+    });
+    for (const records::CellRecord* cell : each.cells)
+      if (records::is_advised(*cell)) advised.push_back(cell);
+  }
+  scope.left_out = analysis::list_left_out(advised);
+  for (analysis::Configuration& each : scope.configurations)
+    std::erase_if(each.cells, [&](const auto* cell) { return analysis::is_left_out(*cell, scope.left_out); });
+  return scope;
+}
+
+/// Where a configuration is most wrong, why, and the worst fault that is seen; empty where nothing is known.
+std::string describe_wrong(const analysis::Configuration& configuration, const std::vector<analysis::Place>& places) {
+  constexpr double kSeenRate = 0.01;
+  const auto rmse_of = [](const records::CellRecord* cell) { return cell->error.rmse.value_or(0.0); };
+  const records::CellRecord& worst = **std::ranges::max_element(configuration.cells, {}, rmse_of);
+  if (rmse_of(&worst) <= 0.0) return {};
+  const auto shares = analysis::is_lost_in_truth(worst) ? std::nullopt : records::list_shares(worst);
+  const auto part = shares ? analysis::find_dominating_part(*shares) : std::nullopt;
+  std::string text = "most wrong on " + analysis::describe_place(analysis::place_of(worst), places);
+  if (part) text += fmt::format(": {}", records::list_error_parts()[*part].meaning);
+  const records::CellRecord* where = nullptr;
+  const metrics::Metric* fault = nullptr;
+  double most = kSeenRate;
+  for (const metrics::Metric& metric : metrics::metric_table()) {
+    if (metric.limit.empty() || metric.group() != "artefact" || metric.unit != "share") continue;
+    for (const records::CellRecord* cell : configuration.cells) {
+      if (metric.read(*cell).value_or(0.0) < most) continue;
+      most = *metric.read(*cell);
+      where = cell;
+      fault = &metric;
+    }
+  }
+  if (fault)
+    text += fmt::format("; {} {} on {}", fault->title, records::format_rate(most),
+                        analysis::describe_place(analysis::place_of(*where), places));
+  return text;
+}
+
+/// What a scope has of each configuration; null of those without a cell there.
+json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, const std::vector<CostChoice>& choices) {
+  json rows = json::array();
+  for (const analysis::Configuration& each : scope.configurations) {
+    if (each.cells.empty()) {
+      rows.push_back(nullptr);
+      continue;
+    }
+    json row = {{"worst", list_worst(each, places, choices)},
+                {"rmse", describe_error(analysis::combine_rmse(each.cells))},
+                {"seam", analysis::find_seam(each.cells)}};
+    if (scope.scenes.empty()) row["wrong"] = describe_wrong(each, places);
+    for (const CostChoice& choice : choices) row[choice.field] = describe_cost(each.cells, choice);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// What advise() says without limits, by cost and class of width: configurations in the order of their costs, with
+/// their ties, and why others are not judged.
+json list_advice(const std::vector<records::CellRecord>& cells, const Scope& scope,
+                 const std::vector<std::string>& classes, const std::vector<CostChoice>& choices,
+                 const std::map<const records::CellRecord*, std::size_t>& indices) {
+  const auto index_of = [&](const auto& each) { return indices.at(each.configuration.cells.front()); };
+  json all = json::object();
+  for (const CostChoice& choice : choices) {
+    for (const std::string& wide : classes) {
+      analysis::AdviceRequest request;
+      request.light = choice.measure.light;
+      request.cheapest = *choice.measure.cost;
+      request.width_class = wide;
+      request.scenes = scope.scenes;
+      request.whole = true;
+      const analysis::Advice advice = analysis::advise(cells, request);
+      json order = json::array(), unjudged = json::array();
+      for (std::size_t rank = 0; rank < advice.keeping.size(); ++rank)
+        order.push_back({{"index", index_of(advice.keeping[rank])}, {"tied", list_ties(advice, rank)}});
+      for (const analysis::Unjudged& each : advice.unjudged)
+        unjudged.push_back({{"index", index_of(each)}, {"gap", each.reason}});
+      all[choice.measure.id][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
+    }
+  }
+  return all;
+}
+
+/// Classes that the scope's configurations have, and that of any width, whose name is empty.
+std::vector<std::string> list_classes_of(const Scope& scope, const std::vector<std::string>& classes) {
+  std::vector<std::string> own = {""};
+  for (const std::string& name : classes)
+    if (std::ranges::any_of(scope.configurations, [&](const analysis::Configuration& each) {
+          return !each.cells.empty() && records::is_advised(*each.cells.front()) &&
+                 each.cells.front()->kernel.width_class == name;
+        }))
+      own.push_back(name);
+  return own;
+}
+
+}  // namespace
+
+std::vector<CostChoice> list_cost_choices(const records::RunRecord& run,
+                                          const std::vector<records::CellRecord>& cells) {
+  std::vector<CostChoice> choices;
+  for (analysis::Measure& measure : analysis::list_cost_measures(cells)) {
+    const analysis::CostKind cost = *measure.cost;
+    if (!cost.is_of_frame()) continue;
+    const bool is_static = measure.light == analysis::LightMotion::kStatic;
+    CostChoice choice{{}, measure.field(), measure.name, analysis::unit_of(measure, run.gl), {}};
+    if (cost == analysis::CostKind::kTime)
+      choice.title = fmt::format("{} light, this {}", measure.id, run.gl.software ? "CPU" : "GPU");
+    if (!choices.empty() && cost != *choices.front().measure.cost)
+      choice.option = "--cheapest " + (cost.gpu.empty() ? "time" : "gpu:" + cost.gpu);
+    if (is_static) choice.option += choice.option.empty() ? "--light-motion static" : " --light-motion static";
+    choice.measure = std::move(measure);
+    choices.push_back(std::move(choice));
+  }
+  return choices;
+}
+
+json describe_error(const std::optional<analysis::Estimate>& error) {
+  if (!error) return {};
+  const std::size_t count = error->replicates.size();
+  return {{"value", error->value},
+          {"reach", error->high - error->value},
+          {"replicates", error->replicates},
+          {"t", count > 1 ? json(metrics::find_student_t(count)) : json()}};
+}
+
+std::string describe_setting(const std::vector<records::CellRecord>& cells) {
+  std::set<std::string> scenes, filters, maps, sizes;
+  for (const records::CellRecord& cell : cells) {
+    scenes.insert(cell.scene);
+    filters.insert(cell.filter);
+    maps.insert(fmt::format("{}²", cell.map_size));
+    sizes.insert(fmt::format("{} × {}", cell.width, cell.height));
+  }
+  const auto count = [](const std::set<std::string>& all, const char* kind) {
+    return all.size() == 1 ? *all.begin() : fmt::format("{} {}", all.size(), kind);
+  };
+  return fmt::format("{} · map {} · {} · {} filter{}", count(scenes, "scenes"), fmt::join(maps, ", "),
+                     count(sizes, "sizes"), filters.size(), filters.size() == 1 ? "" : "s");
+}
+
+std::array<double, 4> choose_part(const records::CellRecord& cell) {
+  const double across = cell.width, down = cell.height;
+  if (!cell.images.hardest) return {0.0, 0.0, across, down};
+  const records::TileRecord& tile = *cell.images.hardest;
+  const double width = std::min(across, std::max(kMostShown, across / 2.0)), height = std::min(down, width / kShape);
+  return {std::clamp(tile.left + 0.5 * (tile.width - width), 0.0, across - width),
+          std::clamp(tile.top + 0.5 * (tile.height - height), 0.0, down - height), width, height};
+}
+
+std::optional<analysis::Cost> measure_cost(const std::vector<const records::CellRecord*>& cells,
+                                           const CostChoice& choice) {
+  return analysis::measure_cost(cells, *choice.measure.cost, choice.measure.light);
+}
+
+json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice) {
+  const auto cost = measure_cost(cells, choice);
+  return cost ? json(cost->mean) : json();
+}
+
+std::vector<std::string> list_answered_scenes(const std::vector<records::CellRecord>& cells) {
+  std::vector<std::string> scenes;
+  for (const records::CellRecord& cell : cells)
+    if (records::is_advised(cell) && std::ranges::count(scenes, cell.scene) == 0) scenes.push_back(cell.scene);
+  return scenes.size() < 2 || cells.size() > kMostCellsInDetail ? std::vector<std::string>() : scenes;
+}
+
+std::string describe_biases(const analysis::Configuration& configuration,
+                            const std::vector<records::BiasToShip>& biases) {
+  std::vector<std::string> texts;
+  for (const records::BiasToShip& bias : biases)
+    if (std::ranges::any_of(configuration.cells, [&](const auto* cell) { return bias.is_of(*cell); }))
+      texts.push_back(fmt::format("{}: {}", bias.scene, describe_bias_to_ship(bias)));
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+json make_answer_data(const std::vector<records::CellRecord>& cells,
+                      const std::vector<analysis::Configuration>& configurations,
+                      const std::vector<std::string>& classes, const std::vector<CostChoice>& choices) {
+  const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
+  const std::vector<analysis::Place> places = analysis::list_places(all);
+  std::map<const records::CellRecord*, std::size_t> indices;
+  for (std::size_t i = 0; i < configurations.size(); ++i)
+    for (const records::CellRecord* cell : configurations[i].cells) indices[cell] = i;
+  std::vector<Scope> scopes = {make_scope({}, configurations)};
+  for (const std::string& scene : list_answered_scenes(cells)) scopes.push_back(make_scope({scene}, configurations));
+  const auto explain_absence = [&](const std::string& scene) -> json {  // from the choice for all scenes
+    const auto is_counted = [&](const analysis::Configuration& each) {
+      return std::ranges::count(each.cells, scene, &records::CellRecord::scene) > 0;
+    };
+    const auto found =
+        std::ranges::find(scopes.front().left_out, scene, [](const auto& each) { return each.place.scene; });
+    const bool is_left_out = found != scopes.front().left_out.end();
+    if (!is_left_out || std::ranges::any_of(scopes.front().configurations, is_counted)) return nullptr;
+    return analysis::describe_state(found->state);
+  };
+  json data = json::array();
+  for (const Scope& scope : scopes) {
+    const std::string scene = scope.scenes.empty() ? "" : scope.scenes.front();
+    analysis::AdviceRequest request;
+    request.scenes = scope.scenes;
+    const std::string judged = analysis::describe_judged_lights(analysis::advise(cells, request));
+    data.push_back({{"scene", scene.empty() ? json() : json(scene)},
+                    {"left_out", explain_absence(scene)},
+                    {"judged", judged.empty() ? judged : judged + "."},
+                    {"rows", list_rows(scope, places, choices)},
+                    {"advice", list_advice(cells, scope, list_classes_of(scope, classes), choices, indices)}});
+  }
+  return data;
+}
+
 namespace {
 
 using nlohmann::json;

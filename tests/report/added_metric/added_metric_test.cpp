@@ -5,11 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/analysis/limits.h"
-#include "report/pages/text_tables.h"
+#include "report/analysis/measures.h"
+#include "report/pages/tables.h"
 #include "report/records/csv_tables.h"
 #include "report/records/json_io.h"
-#include "report/regress/compared_metrics.h"
 #include "report/regress/tolerances.h"
 
 namespace shadowbench {

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "report/analysis/cell_group.h"
+#include "report/analysis/cells.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::analysis {

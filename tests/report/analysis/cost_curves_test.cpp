@@ -1,7 +1,6 @@
-#include "report/analysis/cost_curves.h"
-
 #include <gmock/gmock.h>
 
+#include "report/analysis/trade.h"
 #include "trade_cells.h"
 
 namespace shadowbench::analysis {

@@ -1,10 +1,9 @@
-#include "report/analysis/front.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "reference/metrics/error_stats.h"
+#include "report/analysis/measures.h"
 
 namespace shadowbench::analysis {
 namespace {

@@ -1,9 +1,7 @@
-#include "report/analysis/light_widths.h"
-
 #include <gmock/gmock.h>
 
-#include "report/analysis/cell_group.h"
-#include "report/analysis/configuration.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/findings.h"
 #include "report/analysis/trade.h"
 #include "trade_cells.h"
 

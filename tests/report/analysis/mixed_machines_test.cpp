@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "report/analysis/advice_words.h"
-#include "report/analysis/summary.h"
+#include "report/analysis/findings.h"
 #include "report/analysis/trade.h"
 #include "report/records/absence.h"
 #include "tests/report/analysis/mixed_cells.h"

@@ -1,6 +1,4 @@
 // Which of the candidates are called fast, balanced and best.
-#include "report/analysis/picks.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -12,8 +10,9 @@
 #include <set>
 #include <tuple>
 
+#include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/place_state.h"
+#include "report/analysis/cells.h"
 #include "tests/report/analysis/made_up_runs.h"
 #include "tests/report/records/synthetic.h"
 

@@ -1,7 +1,6 @@
-#include "report/analysis/stability_words.h"
-
 #include <gmock/gmock.h>
 
+#include "report/analysis/findings.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::analysis {

@@ -1,8 +1,7 @@
-#include "report/analysis/summary.h"
-
 #include <gmock/gmock.h>
 
-#include "report/analysis/cell_group.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/findings.h"
 #include "report/records/format.h"
 #include "tests/report/records/synthetic.h"
 

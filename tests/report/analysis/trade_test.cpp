@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "report/pages/fronts_csv.h"
+#include "report/pages/tables.h"
 #include "trade_cells.h"
 
 namespace shadowbench::analysis {

@@ -1,11 +1,11 @@
-#include "report/pages/answer/advice_text.h"
+#include "report/pages/advice_text.h"
 
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
 #include "report/analysis/advice_words.h"
-#include "report/analysis/configuration.h"
+#include "report/analysis/cells.h"
 #include "report/records/absence.h"
 #include "tests/report/records/synthetic.h"
 

@@ -1,8 +1,8 @@
 // Short names say what differs, and no more.
-#include "report/records/cell_names.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "report/records/cell_key.h"
 
 namespace shadowbench::records {
 namespace {

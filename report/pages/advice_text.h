@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "report/analysis/advice.h"
+
+namespace shadowbench::pages {
+/// Writes an advice for people: the first line is the answer, then its evidence. At most 100 columns where labels and
+/// names allow.
+std::string make_advice_text(const records::RunRecord& run, const analysis::Advice& advice);
+
+/// Writes an advice as JSON. The same fields every time: a value that does not exist is null, and `absent` beside it
+/// says why.
+nlohmann::ordered_json make_advice_json(const records::RunRecord& run, const analysis::Advice& advice);
+
+}  // namespace shadowbench::pages

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "report/analysis/advice.h"
+#include "report/document/blocks.h"
+#include "report/records/bias_record.h"
+#include "report/records/records.h"
+
+namespace shadowbench::pages {
+/// What a run's page asks first: no limit, a moving light, and analysis::choose_cost().
+analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells);
+
+/// A cell whose picture a page shows first, and the part of it that is seen: left, top, width, height; pixels.
+struct FirstPicture {
+  std::string key;
+  std::array<double, 4> part{};
+};
+
+/// Those that the page of these cells shows: one of each answer, where it differs most from the truth.
+std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRecord>& measured);
+
+/// Says which filters are fast, balanced and best, over all scenes and on each, at what cost and error and why, with a
+/// picture of one beside the truth. In the browser a script makes the same of limits that the reader moves.
+/// `biases`: what a sweep of the bias recommends, which has a row where it is of the filters and maps that are named.
+document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                      const analysis::AdviceRequest& request,
+                                      const std::vector<records::BiasToShip>& biases);
+
+}  // namespace shadowbench::pages
