@@ -122,7 +122,7 @@ std::vector<const records::CellRecord*> choose_class(std::vector<const records::
 }
 
 // Says why a value cannot be had; empty where it can.
-std::string find_gap(const std::vector<const records::CellRecord*>& cells, const LimitSpec& spec, LightMotion light,
+std::string find_gap(const std::vector<const records::CellRecord*>& cells, const Quantity& spec, LightMotion light,
                      const std::vector<Place>& places) {
   for (const records::CellRecord* cell : cells) {
     if (spec.read(*cell, light)) continue;
@@ -305,7 +305,7 @@ bool limits_what_is_seen(const AdviceRequest& request) {
 Verdict judge_limit(const Configuration& configuration, const Demand& demand, LightMotion light,
                     const std::vector<Place>& places) {
   Verdict verdict;
-  const LimitSpec& spec = *demand.spec;
+  const Quantity& spec = *demand.spec;
   std::vector<const records::CellRecord*> telling;
   for (const records::CellRecord* cell : configuration.cells) {
     const bool tells = spec.read(*cell, light) || !records::has_nothing_to_see(*cell, spec.field);

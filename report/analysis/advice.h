@@ -13,6 +13,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::analysis {
+
 /// What a filter may claim whose penumbrae are narrow where caster and receiver touch, and widen with their distance.
 inline constexpr const char* kContactHardening = "contact-hardening";
 

@@ -39,6 +39,19 @@ std::vector<const records::CellRecord*> point_to(const std::vector<records::Cell
   return pointers;
 }
 
+std::vector<CellList> pivot(const CellList& cells, std::initializer_list<const char*> free) {
+  std::vector<CellList> groups;
+  std::map<std::string, std::size_t> places;
+  for (const records::CellRecord* cell : cells) {
+    auto settings = records::cell_settings(*cell);
+    for (const char* name : free) settings.erase(name);
+    const auto [place, is_new] = places.emplace(records::dump_line(settings), groups.size());
+    if (is_new) groups.emplace_back();
+    groups[place->second].push_back(cell);
+  }
+  return groups;
+}
+
 Place place_of(const records::CellRecord& cell) { return {cell.scene, cell.view}; }
 
 std::vector<Place> list_places(const std::vector<const records::CellRecord*>& cells) {
@@ -60,18 +73,10 @@ std::string describe_place(const Place& place, const std::vector<Place>& places)
 
 std::vector<Configuration> list_configurations(const std::vector<const records::CellRecord*>& cells) {
   std::vector<Configuration> configurations;
-  std::map<std::string, std::size_t> indices;
-  for (const records::CellRecord* cell : cells) {
-    auto settings = records::cell_settings(*cell);
-    settings.erase("scene");
-    settings.erase("view");
-    const auto [index, is_new] = indices.emplace(records::dump_line(settings), configurations.size());
-    if (is_new) {
-      settings.erase("filter");
-      settings.erase("params");
-      configurations.push_back({"", records::dump_line(settings), {}});
-    }
-    configurations[index->second].cells.push_back(cell);
+  for (CellList& own : pivot(cells, {"scene", "view"})) {
+    auto surroundings = records::cell_settings(*own.front());
+    for (const char* name : {"scene", "view", "filter", "params"}) surroundings.erase(name);
+    configurations.push_back({"", records::dump_line(surroundings), std::move(own)});
   }
   set_names(configurations);
   return configurations;
@@ -103,16 +108,10 @@ std::array<std::size_t, metrics::kErrorParts> order_parts(const records::PartSha
 
 std::vector<CellGroup> group_cells(const std::vector<records::CellRecord>& cells) {
   std::vector<CellGroup> groups;
-  std::map<std::string, std::size_t> places;
-  for (const records::CellRecord& cell : cells) {
-    auto settings = records::cell_settings(cell);
-    settings.erase("filter");
-    settings.erase("params");
-    const auto [place, is_new] = places.emplace(records::dump_line(settings), groups.size());
-    if (is_new) groups.push_back({cell.scene, {}});
-    groups[place->second].cells.push_back(cell);
+  for (const CellList& own : pivot(point_to(cells), {"filter", "params"})) {
+    CellGroup& group = groups.emplace_back(CellGroup{own.front()->scene, {}, records::CellNames(own)});
+    for (const records::CellRecord* cell : own) group.cells.push_back(*cell);
   }
-  for (CellGroup& group : groups) group.names = records::CellNames(point_to(group.cells));
   return groups;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,8 +12,15 @@
 #include "report/records/records.h"
 
 namespace shadowbench::analysis {
+
 /// Points to each of some cells, in their order. Requires that the cells outlive what is returned.
 std::vector<const records::CellRecord*> point_to(const std::vector<records::CellRecord>& cells);
+
+using CellList = std::vector<const records::CellRecord*>;
+
+/// The pivot of everything that is compared: groups cells that agree in all settings but those named `free` ("filter",
+/// "map_size"), in the order in which each group first appears.
+std::vector<CellList> pivot(const CellList& cells, std::initializer_list<const char*> free);
 
 /// Names what a filter is judged on: a scene, seen from one of its views.
 struct Place {

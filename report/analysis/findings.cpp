@@ -67,19 +67,22 @@ std::string list_some(const std::vector<std::string>& names) {
 }
 
 std::string describe_extremes(const std::vector<Rated>& all, const char* link, const char* kind) {
+  bool ties = false;
   const auto describe = [&](const Rated& end) {
     std::vector<std::string> names;
     for (const Rated& each : all)
       if (each.text == end.text) names.push_back(each.name);
+    ties = names.size() > 1;
     const bool are_all = names.size() == all.size() && names.size() > kMostNamed;
     return fmt::format("{} {} {}{}", end.text, link,
                        are_all ? fmt::format("all {} {}", names.size(), kind) : list_some(names),
-                       names.size() > 1 ? ", which tie" : "");
+                       ties ? ", which tie" : "");
   };
   const auto [least, most] = std::ranges::minmax_element(all, {}, &Rated::rate);
   if (least->text == most->text) return describe(*least);
-  const std::string begin = describe(*least);
-  return fmt::format("from {}{} to {}", begin, begin.ends_with("tie") ? "," : "", describe(*most));
+  std::string begin = describe(*least);
+  if (ties) begin += ",";
+  return fmt::format("from {} to {}", begin, describe(*most));
 }
 
 namespace {

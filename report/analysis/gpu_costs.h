@@ -11,6 +11,7 @@
 #include "report/records/text_table.h"
 
 namespace shadowbench::analysis {
+
 /// What the lookup of a filter takes time of, as members of an estimate.
 inline constexpr const char* kGpuResources[] = {"arithmetic", "sampling", "memory"};
 using GpuResources = std::array<double, std::size(kGpuResources)>;

@@ -107,43 +107,53 @@ std::optional<double> read_estimate(const records::CellRecord& cell, const std::
 
 }  // namespace
 
-std::optional<double> LimitSpec::read(const records::CellRecord& cell, LightMotion light) const {
+std::optional<double> Quantity::read(const records::CellRecord& cell, LightMotion at) const {
   if (metric) return metric->read(cell);
-  if (!gpu.empty()) return read_estimate(cell, gpu, light);
-  const auto& time = frame_time(cell, light);
+  if (is(CostKind::kGpu)) return read_estimate(cell, cost->gpu, at);
+  const auto& time = frame_time(cell, at);
   return time ? std::optional(time->median) : std::nullopt;
 }
 
-std::span<const LimitSpec> limit_table() {
-  static const std::vector<LimitSpec> table = [] {
-    std::vector<LimitSpec> limits;
+std::span<const Quantity> limit_table() {
+  static const std::vector<Quantity> table = [] {
+    std::vector<Quantity> limits;
     for (const metrics::Metric& metric : metrics::metric_table())
       if (!metric.limit.empty())
-        limits.push_back({std::string(metric.limit), std::string(metric.path),
-                          fmt::format("{}: {}, {} (see 'list metrics')", metric.title, metric.unit,
-                                      metrics::describe_range(metric.range)),
-                          &metric});
-    limits.push_back({kMaxMs, "time_ms", "a frame, ms: its estimate, or its median time; see --cheapest", nullptr});
+        limits.push_back({.id = std::string(metric.name()),
+                          .title = std::string(metric.title),
+                          .meaning = fmt::format("{}: {}, {} (see 'list metrics')", metric.title, metric.unit,
+                                                 metrics::describe_range(metric.range)),
+                          .field = std::string(metric.path),
+                          .option = std::string(metric.limit),
+                          .metric = &metric});
+    limits.push_back({.id = "time",
+                      .title = "time of a frame",
+                      .meaning = "a frame, ms: its estimate, or its median time; see --cheapest",
+                      .field = "time_ms",
+                      .option = kMaxMs,
+                      .cost = CostKind::kTime});
     return limits;
   }();
   return table;
 }
 
-const LimitSpec& limit_of(std::string_view field) {
-  return *std::ranges::find(limit_table(), field, &LimitSpec::field);
-}
+const Quantity& limit_of(std::string_view field) { return *std::ranges::find(limit_table(), field, &Quantity::field); }
 
-const LimitSpec& cost_spec(const CostKind& cost) {
+const Quantity& cost_spec(const CostKind& cost) {
   switch (cost.kind) {
     case CostKind::kTime: return limit_of("time_ms");
     case CostKind::kBytes: return limit_of("cost.map_bytes");
     case CostKind::kFetches: return limit_of("cost.fetches");
     case CostKind::kGpu: break;
   }
-  static std::map<std::string, LimitSpec> specs;
+  static std::map<std::string, Quantity> specs;
   return specs
-      .try_emplace(cost.gpu, LimitSpec{kMaxMs, fmt::format("gpu.{}.frame_ms", cost.gpu),
-                                       "estimated milliseconds of a frame", nullptr, cost.gpu})
+      .try_emplace(cost.gpu, Quantity{.id = "gpu." + cost.gpu,
+                                      .title = "estimated milliseconds of a frame",
+                                      .meaning = "",
+                                      .field = fmt::format("gpu.{}.frame_ms", cost.gpu),
+                                      .option = kMaxMs,
+                                      .cost = cost})
       .first->second;
 }
 
@@ -173,9 +183,9 @@ Measured read_metric(const records::CellRecord& cell, const metrics::Metric& met
   return value && std::isfinite(*value) ? Measured{exact(*value), {}} : miss(cell, metric.path);
 }
 
-Measured read_frame(const records::CellRecord& cell, const Measure& cost) {
+Measured read_frame(const records::CellRecord& cell, const Quantity& cost) {
   const auto value = cost_spec(*cost.cost).read(cell, cost.light);
-  if (!value) return miss(cell, cost.field());
+  if (!value) return miss(cell, cost.full_field());
   if (!cost.is(CostKind::kTime)) return {exact(*value), {}};
   const records::Interval& interval = frame_time(cell, cost.light)->ci95;
   return {Estimate{*value, interval.low, interval.high}, {}};
@@ -217,19 +227,20 @@ Estimate root_mean_square(const std::vector<Estimate>& estimates) {
 constexpr const char* kMean = "mean over the scenes";
 constexpr const char* kRmse = "error.rmse";
 
-Measure make_measure(std::string_view path, const char* interval, const char* over_scenes,
-                     Estimate (*combine)(const std::vector<Estimate>&)) {
+Quantity make_measure(std::string_view path, const char* interval, const char* over_scenes,
+                      Estimate (*combine)(const std::vector<Estimate>&)) {
   const metrics::Metric& metric = metrics::find_metric(path);
-  return {std::string(metric.name()),
-          std::string(metric.title),
-          fmt::format("{}; {}", metric.definition, interval),
-          over_scenes,
-          combine,
-          &metric};
+  return {.id = std::string(metric.name()),
+          .title = std::string(metric.title),
+          .meaning = fmt::format("{}; {}", metric.definition, interval),
+          .field = std::string(path),
+          .metric = &metric,
+          .over_scenes = over_scenes,
+          .combine = combine};
 }
 
-Measure make_count_measure(std::string_view path, const char* interval, CostKind::Kind kind) {
-  Measure measure = make_measure(path, interval, kMean, mean_over_scenes);
+Quantity make_count_measure(std::string_view path, const char* interval, CostKind::Kind kind) {
+  Quantity measure = make_measure(path, interval, kMean, mean_over_scenes);
   measure.cost = kind;
   return measure;
 }
@@ -263,9 +274,9 @@ Estimate mean_over_scenes(const std::vector<Estimate>& estimates) {
   return {mean, mean - std::sqrt(below) / count, mean + std::sqrt(above) / count};
 }
 
-const std::array<Measure, kErrorMeasures>& list_error_measures() {
+const std::array<Quantity, kErrorMeasures>& list_error_measures() {
   static const char* const kRootMeanSquare = "root mean square over the scenes";
-  static const std::array<Measure, kErrorMeasures> kMeasures = {
+  static const std::array<Quantity, kErrorMeasures> kMeasures = {
       make_measure(kRmse, "interval: 95 %, over the phases of the map's grid", kRootMeanSquare, root_mean_square),
       make_measure("error.kernel_rmse", "no interval", kRootMeanSquare, root_mean_square),
       make_measure("artefact.leak", "no interval", "the worst scene", worst_of),
@@ -289,13 +300,20 @@ CostKind choose_cost(const std::vector<records::CellRecord>& cells) {
   return CostKind::kTime;
 }
 
-Measure make_frame_measure(const CostKind& cost, LightMotion light,
-                           const std::vector<const records::CellRecord*>& cells) {
+Quantity make_frame_measure(const CostKind& cost, LightMotion light,
+                            const std::vector<const records::CellRecord*>& cells) {
   const bool is_moving = light == LightMotion::kMoving;
-  Measure made{name_light(light), {}, {}, kMean, mean_over_scenes, nullptr, cost, light};
+  Quantity made{.id = name_light(light),
+                .title = {},
+                .meaning = {},
+                .field = cost_spec(cost).field,
+                .cost = cost,
+                .light = light,
+                .over_scenes = kMean,
+                .combine = mean_over_scenes};
   if (cost.kind == CostKind::kGpu) {
     made.id = fmt::format("gpu.{}.{}", cost.gpu, made.id);
-    made.name = fmt::format("estimate for {}, {} light", cost.gpu, name_light(light));
+    made.title = fmt::format("estimate for {}, {} light", cost.gpu, name_light(light));
     made.meaning = fmt::format(
         "ms of a {}x{} frame with one map, estimated for {}, {} light: {}; left out: {}what every lookup pays. "
         "Published times were missed by a factor of at most {}",
@@ -303,7 +321,7 @@ Measure make_frame_measure(const CostKind& cost, LightMotion light,
         is_moving ? "prefilter and lookups" : "lookups", is_moving ? "drawing the map, and " : "",
         records::kEstimateFactor);
   } else {
-    made.name =
+    made.title =
         is_moving ? "time of map, prefilter and filter, moving light" : "time of the filter alone, static light";
     made.meaning = fmt::format(
         "ms {} with one map, measured, {} light: {}; left out: what every lookup pays, which one that reads nothing "
@@ -313,7 +331,7 @@ Measure make_frame_measure(const CostKind& cost, LightMotion light,
   return made;
 }
 
-std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells) {
+std::vector<Quantity> list_cost_measures(const std::vector<records::CellRecord>& cells) {
   const std::vector<const records::CellRecord*> all = point_to(cells);
   std::vector<CostKind> costs = {choose_cost(cells)};
   const auto add = [&](const CostKind& cost) {
@@ -321,7 +339,7 @@ std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& 
   };
   if (!mixes_machines(cells)) add(CostKind::kTime);
   for (const std::string& gpu : list_gpus(all)) add({CostKind::kGpu, gpu});
-  std::vector<Measure> measures;
+  std::vector<Quantity> measures;
   for (const CostKind& cost : costs)
     for (const LightMotion light : {LightMotion::kMoving, LightMotion::kStatic})
       measures.push_back(make_frame_measure(cost, light, all));
@@ -331,32 +349,30 @@ std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& 
   return measures;
 }
 
-std::string Measure::field() const {
-  return metric ? std::string(metric->path) : fmt::format("{}.{}", cost_spec(*cost).field, name_light(light));
-}
+std::string Quantity::full_field() const { return metric ? field : fmt::format("{}.{}", field, name_light(light)); }
 
-std::string unit_of(const Measure& measure, const records::GlRecord& gl) {
+std::string unit_of(const Quantity& measure, const records::GlRecord& gl) {
   if (measure.is(CostKind::kTime)) return records::time_unit(gl);
   return measure.is(CostKind::kGpu) ? "ms" : "";
 }
 
-std::string name_axis(const Measure& measure, const records::GlRecord& gl) {
-  if (measure.is(CostKind::kTime)) return fmt::format("{}, ms: {}", measure.name, records::describe_clock(gl));
-  if (!measure.is(CostKind::kGpu)) return measure.name;
-  return fmt::format("{}, ms of a {}x{} frame", measure.name, records::kGpuFrameWidth, records::kGpuFrameHeight);
+std::string name_axis(const Quantity& measure, const records::GlRecord& gl) {
+  if (measure.is(CostKind::kTime)) return fmt::format("{}, ms: {}", measure.title, records::describe_clock(gl));
+  if (!measure.is(CostKind::kGpu)) return measure.title;
+  return fmt::format("{}, ms of a {}x{} frame", measure.title, records::kGpuFrameWidth, records::kGpuFrameHeight);
 }
 
-std::string format_value(const Measure& measure, double value) {
+std::string format_value(const Quantity& measure, double value) {
   return measure.is(CostKind::kBytes) ? records::format_bytes(value) : records::format_number(value);
 }
 
-std::string format_estimate(const Measure& measure, const Estimate& estimate) {
+std::string format_estimate(const Quantity& measure, const Estimate& estimate) {
   const std::string value = format_value(measure, estimate.value);
   if (estimate.low == estimate.high) return value;
   return fmt::format("{} [{}, {}]", value, format_value(measure, estimate.low), format_value(measure, estimate.high));
 }
 
-Measured read_error(const records::CellRecord& cell, const Measure& measure) {
+Measured read_error(const records::CellRecord& cell, const Quantity& measure) {
   const metrics::Metric& metric = *measure.metric;
   Measured error = read_metric(cell, metric);
   if (error.estimate && metric.path == kRmse) error.estimate = estimate_rmse(cell);
@@ -372,7 +388,7 @@ std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord
   return estimates.empty() ? std::nullopt : std::optional(root_mean_square(estimates));
 }
 
-Measured read_cost(const records::CellRecord& cell, const Measure& cost) {
+Measured read_cost(const records::CellRecord& cell, const Quantity& cost) {
   return cost.metric ? read_metric(cell, *cost.metric) : read_frame(cell, cost);
 }
 

@@ -12,6 +12,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::analysis {
+
 /// A value with the ends of its interval; both ends equal the value where it is exact.
 struct Estimate {
   double value = 0.0;
@@ -93,25 +94,36 @@ struct CostKind {
   bool is_of_frame() const { return kind == kTime || kind == kGpu; }
 };
 
-/// One number of a cell that may be limited; less is better.
-struct LimitSpec {
-  std::string option;             ///< "--max-rmse"
-  std::string field;              ///< of the record: "error.rmse"; "time_ms" for a sum over passes
-  std::string text;               ///< for help
-  const metrics::Metric* metric;  ///< null: the time of a frame, or an estimate
-  std::string gpu = {};           ///< of an estimate: the GPU that it is for
+/// One number of a cell: an error, a fault, or a cost. Of what may be limited or is on an axis, less is better.
+struct Quantity {
+  std::string id;           ///< in file names, CSV, JSON and links: "rmse", "moving", "gpu.navi21.static"
+  std::string title;        ///< for axes and choices: "RMSE to the area truth"
+  std::string meaning;      ///< what it is and what its interval is; of a frame also what is left out
+  std::string field;        ///< of the record: "error.rmse"; "time_ms" for a sum over passes
+  std::string option = {};  ///< of `advise`, which limits it: "--max-rmse"; empty: none
+  std::string unit = {};
+  const metrics::Metric* metric = nullptr;                      ///< where it is read from; null for what a frame costs
+  std::optional<CostKind> cost = {};                            ///< nothing of an error
+  LightMotion light = LightMotion::kMoving;                     ///< of what a frame costs
+  const char* over_scenes = "";                                 ///< how one number is made of several scenes'
+  Estimate (*combine)(const std::vector<Estimate>&) = nullptr;  ///< makes it; requires at least one scene
+
+  bool is(CostKind::Kind kind) const { return cost && cost->kind == kind; }
 
   std::optional<double> read(const records::CellRecord& cell, LightMotion light) const;
+
+  /// The field with its light: "time_ms.moving".
+  std::string full_field() const;
 };
 
 /// Lists everything that may be limited: the metrics of the table that have an option, and the time of a frame.
-std::span<const LimitSpec> limit_table();
+std::span<const Quantity> limit_table();
 
 /// The row of a field. Requires that there is one.
-const LimitSpec& limit_of(std::string_view field);
+const Quantity& limit_of(std::string_view field);
 
 /// What a cost is read by, and limited: of a frame, by --max-ms.
-const LimitSpec& cost_spec(const CostKind& cost);
+const Quantity& cost_spec(const CostKind& cost);
 
 /// What a filter costs in one frame, without what every lookup pays. Nothing where a pass that is paid was not timed.
 const std::optional<records::OwnTime>& frame_time(const records::CellRecord& cell, LightMotion light);
@@ -121,7 +133,7 @@ const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell
 
 /// One thing asked of a configuration: a limit, or, without `spec`, a claim of its filter.
 struct Demand {
-  const LimitSpec* spec = nullptr;
+  const Quantity* spec = nullptr;
   double most = 0.0;  ///< a value of this size keeps the limit
   std::string claim;
 };
@@ -133,29 +145,12 @@ inline constexpr std::size_t kErrorMeasures = 4;
 inline constexpr std::size_t kMovingCost = 0,
                              kStaticCost = 1;  ///< of the costs: choose_cost(), the light moving or static
 
-/// One axis of the trade.
-struct Measure {
-  std::string id;           ///< in file names, CSV, JSON and links: "rmse", "moving", "gpu.navi21.static"
-  std::string name;         ///< for axes and choices: "RMSE to the area truth"
-  std::string meaning;      ///< what it is and what its interval is; of a frame also what is left out
-  const char* over_scenes;  ///< how one number is made of several scenes'
-  Estimate (*combine)(const std::vector<Estimate>&);  ///< makes it; requires at least one scene
-  const metrics::Metric* metric;                      ///< where it is read from; null for what a frame costs
-  std::optional<CostKind> cost = {};                  ///< nothing of an error
-  LightMotion light = LightMotion::kMoving;           ///< of what a frame costs
-
-  bool is(CostKind::Kind kind) const { return cost && cost->kind == kind; }
-
-  /// The field of a cell, and of the page's data: "time_ms.moving".
-  std::string field() const;
-};
-
 /// The arithmetic mean over scenes, each of which counts the same. They are measured independently, so that the
 /// distances to the ends of their intervals add up in quadrature. Requires at least one scene.
 Estimate mean_over_scenes(const std::vector<Estimate>& estimates);
 
 /// Lists the errors: rmse, kernel_rmse, leak, flip.
-const std::array<Measure, kErrorMeasures>& list_error_measures();
+const std::array<Quantity, kErrorMeasures>& list_error_measures();
 
 /// The cost that all of a run's answer, tables, charts and pictures are in unless something else is asked for: of a
 /// frame, in the run's clock; but where a software rasteriser drew all cells, whose times say nothing of a GPU, or
@@ -163,27 +158,27 @@ const std::array<Measure, kErrorMeasures>& list_error_measures();
 CostKind choose_cost(const std::vector<records::CellRecord>& cells);
 
 /// Describes the cost of a frame: its light, what is left out, and how sure it is.
-Measure make_frame_measure(const CostKind& cost, LightMotion light,
-                           const std::vector<const records::CellRecord*>& cells);
+Quantity make_frame_measure(const CostKind& cost, LightMotion light,
+                            const std::vector<const records::CellRecord*>& cells);
 
 /// Lists the costs: of a frame, the light moving and static, by choose_cost() and by the others that the run has; then
 /// fetches and bytes.
-std::vector<Measure> list_cost_measures(const std::vector<records::CellRecord>& cells = {});
+std::vector<Quantity> list_cost_measures(const std::vector<records::CellRecord>& cells = {});
 
 /// Names the GPUs that cells have costs on.
 std::vector<std::string> list_gpus(const std::vector<const records::CellRecord*>& cells);
 
 /// The unit of what a frame costs: "ms (CPU)"; empty for all else.
-std::string unit_of(const Measure& measure, const records::GlRecord& gl);
+std::string unit_of(const Quantity& measure, const records::GlRecord& gl);
 
 /// Names a measure with its unit: "time of the lookup, ms: CPU time (software rasteriser)".
-std::string name_axis(const Measure& measure, const records::GlRecord& gl);
+std::string name_axis(const Quantity& measure, const records::GlRecord& gl);
 
 /// Writes a value of a measure for people, without its unit except for bytes: "0.0512", "1.5 MiB".
-std::string format_value(const Measure& measure, double value);
+std::string format_value(const Quantity& measure, double value);
 
 /// Writes an estimate with its interval where it has one: "3.9 [3.8, 4.1]".
-std::string format_estimate(const Measure& measure, const Estimate& estimate);
+std::string format_estimate(const Quantity& measure, const Estimate& estimate);
 
 /// A value or the reason why there is none.
 struct Measured {
@@ -193,13 +188,13 @@ struct Measured {
 
 /// Reads an error from a cell; `measure` is of list_error_measures().
 /// RMSE to the area truth: its 95 % interval; see find_rmse_reach(). The others have no interval in the record.
-Measured read_error(const records::CellRecord& cell, const Measure& measure);
+Measured read_error(const records::CellRecord& cell, const Quantity& measure);
 
 /// The RMSE over cells of several places: the root of the mean square. Nothing where a cell has none, or there is none.
 std::optional<Estimate> combine_rmse(const std::vector<const records::CellRecord*>& cells);
 
 /// Reads a cost from a cell; `measure` is of list_cost_measures(). Times: frame_time(), with
 /// its interval.
-Measured read_cost(const records::CellRecord& cell, const Measure& measure);
+Measured read_cost(const records::CellRecord& cell, const Quantity& measure);
 
 }  // namespace shadowbench::analysis

@@ -11,6 +11,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::analysis {
+
 /// A filter with its parameters and a map size, and what it got and paid in one scope.
 struct TradeConfiguration {
   std::string filter;
@@ -19,7 +20,7 @@ struct TradeConfiguration {
   std::optional<double> sigma_texels;      ///< width of its kernel; none where that differs between scenes
   std::optional<std::size_t> width_class;  ///< see find_class()
   std::string label;                       ///< tells it apart in its scope: "vsm (radius 4), map 512"
-  std::vector<std::size_t> cells;          ///< indices into the run's cells: one, or one per scene and view
+  CellList cells;                          ///< of the run: one, or one per scene and view
   std::array<Measured, kErrorMeasures> errors;
   std::vector<Measured> costs;  ///< one for each of the scope's
 };
@@ -33,18 +34,14 @@ struct TradeScope {
   std::string view;
   int width = 0;
   int height = 0;
-  std::vector<Measure> costs;  ///< those that the run has: list_cost_measures() of its cells
+  std::vector<Quantity> costs;  ///< those that the run has: list_cost_measures() of its cells
   std::vector<TradeConfiguration> configurations;
   std::size_t incomplete = 0;  ///< configurations left out because not every scene and view has a cell of them
 };
 
-/// Labels configurations of a run's cells by what differs among them, as records::CellNames does.
-void label_configurations(std::vector<TradeConfiguration>& configurations,
-                          const std::vector<records::CellRecord>& cells);
-
 /// Sorts a run's cells into scopes: scenes together first, where there are several, then each scene by itself in the
 /// order in which it appears. Scenes together hold only configurations that every scene and
-/// view has, and leave out what list_left_out() does.
+/// view has, and leave out what list_left_out() does. Requires that the cells outlive what is returned.
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells);
 
 /// The configurations of one filter that differ in nothing but the width of their kernel and the parameters that it
@@ -99,7 +96,7 @@ struct CostChart {
   std::string scope_id;
   std::string title;  ///< "cubes · view main · 480 × 270 · map 512"
   int map_size = 0;
-  std::vector<Measure> costs;  ///< of its scope
+  std::vector<Quantity> costs;  ///< of its scope
   std::vector<CostCurve> curves;
 
   /// Lists the widths of its curves, ascending.
@@ -108,8 +105,7 @@ struct CostChart {
 
 /// Sorts cells into charts over the width, whose curves are those of list_width_series(). Charts in which no filter has
 /// several widths are left out.
-std::vector<CostChart> make_width_charts(const std::vector<records::CellRecord>& cells,
-                                         const std::vector<TradeScope>& scopes);
+std::vector<CostChart> make_width_charts(const std::vector<TradeScope>& scopes);
 
 /// What a filter got and paid with one map, in a frame that draws the map.
 struct MapPoint {
@@ -129,7 +125,7 @@ struct MapFamily {
 };
 
 /// The cost of map families: time of map, prefilter and filter.
-Measure make_map_measure(const std::vector<const records::CellRecord*>& cells);
+Quantity make_map_measure(const std::vector<const records::CellRecord*>& cells);
 
 /// Lists the families with maps of several fits; of several the first is that of all filters, with the maps that all
 /// have. Suspect cells, and those without error, bytes or time, are left out.

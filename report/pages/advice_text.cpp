@@ -80,7 +80,9 @@ Row describe_limit(const analysis::Demand& demand, const analysis::Verdict& verd
                    const analysis::Advice& advice) {
   if (!verdict.worst) return {analysis::describe_demand(demand), "shown"};
   const bool is_time = demand.spec == &analysis::cost_spec(analysis::CostKind::kTime);
-  const std::string unit = is_time ? " " + records::time_unit(run.gl) : demand.spec->gpu.empty() ? "" : " ms";
+  const std::string unit = is_time                                     ? " " + records::time_unit(run.gl)
+                           : demand.spec->is(analysis::CostKind::kGpu) ? " ms"
+                                                                       : "";
   const std::string worst = analysis::format_kept(*verdict.worst, demand.most);
   return {analysis::describe_demand(demand), worst + unit, place_name(*verdict.where, advice),
           remark(demand, verdict, advice.request.light)};

@@ -6,6 +6,7 @@
 #include "report/analysis/advice.h"
 
 namespace shadowbench::pages {
+
 /// Writes an advice for people: the first line is the answer, then its evidence. At most 100 columns where labels and
 /// names allow.
 std::string make_advice_text(const records::RunRecord& run, const analysis::Advice& advice);

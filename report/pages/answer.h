@@ -10,6 +10,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
+
 /// What a run's page asks first: no limit, a moving light, and analysis::choose_cost().
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells);
 

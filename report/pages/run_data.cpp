@@ -30,6 +30,7 @@
 namespace shadowbench::pages {
 namespace {
 
+using analysis::Quantity;
 using nlohmann::json;
 
 constexpr double kShape = 2.5;        // of the part of a picture: width over height
@@ -49,14 +50,14 @@ json describe_worst(const analysis::Verdict& verdict, const std::vector<analysis
 
 /// How a configuration stands to everything that may be limited, by the names of the measures.
 json list_worst(const analysis::Configuration& configuration, const std::vector<analysis::Place>& places,
-                const std::vector<CostChoice>& costs) {
+                const std::vector<Quantity>& costs) {
   json worst = json::object();
-  const auto add = [&](const std::string& field, const analysis::LimitSpec& spec, analysis::LightMotion light) {
+  const auto add = [&](const std::string& field, const Quantity& spec, analysis::LightMotion light) {
     worst[field] = describe_worst(analysis::judge_limit(configuration, {&spec, 0.0, {}}, light, places), places);
   };
-  for (const analysis::LimitSpec& spec : analysis::limit_table())
+  for (const Quantity& spec : analysis::limit_table())
     if (spec.metric) add(spec.field, spec, analysis::LightMotion::kMoving);
-  for (const CostChoice& cost : costs) add(cost.field, analysis::cost_spec(*cost.measure.cost), cost.measure.light);
+  for (const Quantity& cost : costs) add(cost.full_field(), analysis::cost_spec(*cost.cost), cost.light);
   return worst;
 }
 
@@ -118,14 +119,16 @@ std::string describe_wrong(const analysis::Configuration& configuration, const s
       fault = &metric;
     }
   }
-  if (fault)
-    text += fmt::format("; {} {} on {}", fault->title, records::format_rate(most),
-                        analysis::describe_place(analysis::place_of(*where), places));
+  if (!fault) return text;
+  std::string name(fault->name());
+  std::ranges::replace(name, '_', ' ');
+  text += fmt::format("; {} {}", name, records::format_rate(most));
+  if (where != &worst) text += " on " + analysis::describe_place(analysis::place_of(*where), places);
   return text;
 }
 
 /// What a scope has of each configuration; null of those without a cell there.
-json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, const std::vector<CostChoice>& choices) {
+json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, const std::vector<Quantity>& choices) {
   json rows = json::array();
   for (const analysis::Configuration& each : scope.configurations) {
     if (each.cells.empty()) {
@@ -136,7 +139,7 @@ json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, c
                 {"rmse", describe_error(analysis::combine_rmse(each.cells))},
                 {"seam", analysis::find_seam(each.cells)}};
     if (scope.scenes.empty()) row["wrong"] = describe_wrong(each, places);
-    for (const CostChoice& choice : choices) row[choice.field] = describe_cost(each.cells, choice);
+    for (const Quantity& choice : choices) row[choice.full_field()] = describe_cost(each.cells, choice);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -145,15 +148,15 @@ json list_rows(const Scope& scope, const std::vector<analysis::Place>& places, c
 /// What advise() says without limits, by cost and class of width: configurations in the order of their costs, with
 /// their ties, and why others are not judged.
 json list_advice(const std::vector<records::CellRecord>& cells, const Scope& scope,
-                 const std::vector<std::string>& classes, const std::vector<CostChoice>& choices,
+                 const std::vector<std::string>& classes, const std::vector<Quantity>& choices,
                  const std::map<const records::CellRecord*, std::size_t>& indices) {
   const auto index_of = [&](const auto& each) { return indices.at(each.configuration.cells.front()); };
   json all = json::object();
-  for (const CostChoice& choice : choices) {
+  for (const Quantity& choice : choices) {
     for (const std::string& wide : classes) {
       analysis::AdviceRequest request;
-      request.light = choice.measure.light;
-      request.cheapest = *choice.measure.cost;
+      request.light = choice.light;
+      request.cheapest = *choice.cost;
       request.width_class = wide;
       request.scenes = scope.scenes;
       request.whole = true;
@@ -163,7 +166,7 @@ json list_advice(const std::vector<records::CellRecord>& cells, const Scope& sco
         order.push_back({{"index", index_of(advice.keeping[rank])}, {"tied", list_ties(advice, rank)}});
       for (const analysis::Unjudged& each : advice.unjudged)
         unjudged.push_back({{"index", index_of(each)}, {"gap", each.reason}});
-      all[choice.measure.id][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
+      all[choice.id][wide] = {{"order", std::move(order)}, {"unjudged", std::move(unjudged)}};
     }
   }
   return all;
@@ -183,21 +186,13 @@ std::vector<std::string> list_classes_of(const Scope& scope, const std::vector<s
 
 }  // namespace
 
-std::vector<CostChoice> list_cost_choices(const records::RunRecord& run,
-                                          const std::vector<records::CellRecord>& cells) {
-  std::vector<CostChoice> choices;
-  for (analysis::Measure& measure : analysis::list_cost_measures(cells)) {
-    const analysis::CostKind cost = *measure.cost;
-    if (!cost.is_of_frame()) continue;
-    const bool is_static = measure.light == analysis::LightMotion::kStatic;
-    CostChoice choice{{}, measure.field(), measure.name, analysis::unit_of(measure, run.gl), {}};
-    if (cost == analysis::CostKind::kTime)
-      choice.title = fmt::format("{} light, this {}", measure.id, run.gl.software ? "CPU" : "GPU");
-    if (!choices.empty() && cost != *choices.front().measure.cost)
-      choice.option = "--cheapest " + (cost.gpu.empty() ? "time" : "gpu:" + cost.gpu);
-    if (is_static) choice.option += choice.option.empty() ? "--light-motion static" : " --light-motion static";
-    choice.measure = std::move(measure);
-    choices.push_back(std::move(choice));
+std::vector<Quantity> list_cost_choices(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+  std::vector<Quantity> choices = analysis::list_cost_measures(cells);
+  std::erase_if(choices, [](const Quantity& each) { return !each.cost->is_of_frame(); });
+  for (Quantity& choice : choices) {
+    choice.unit = analysis::unit_of(choice, run.gl);
+    if (choice.is(analysis::CostKind::kTime))
+      choice.title = fmt::format("{} light, this {}", choice.id, run.gl.software ? "CPU" : "GPU");
   }
   return choices;
 }
@@ -235,13 +230,8 @@ std::array<double, 4> choose_part(const records::CellRecord& cell) {
           std::clamp(tile.top + 0.5 * (tile.height - height), 0.0, down - height), width, height};
 }
 
-std::optional<analysis::Cost> measure_cost(const std::vector<const records::CellRecord*>& cells,
-                                           const CostChoice& choice) {
-  return analysis::measure_cost(cells, *choice.measure.cost, choice.measure.light);
-}
-
-json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice) {
-  const auto cost = measure_cost(cells, choice);
+json describe_cost(const std::vector<const records::CellRecord*>& cells, const Quantity& choice) {
+  const auto cost = analysis::measure_cost(cells, *choice.cost, choice.light);
   return cost ? json(cost->mean) : json();
 }
 
@@ -263,7 +253,7 @@ std::string describe_biases(const analysis::Configuration& configuration,
 
 json make_answer_data(const std::vector<records::CellRecord>& cells,
                       const std::vector<analysis::Configuration>& configurations,
-                      const std::vector<std::string>& classes, const std::vector<CostChoice>& choices) {
+                      const std::vector<std::string>& classes, const std::vector<Quantity>& choices) {
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   std::map<const records::CellRecord*, std::size_t> indices;
@@ -298,71 +288,72 @@ json make_answer_data(const std::vector<records::CellRecord>& cells,
 
 namespace {
 
-using nlohmann::json;
-
 json value_of(const std::optional<double>& value) { return value && std::isfinite(*value) ? json(*value) : json(); }
 
 json path_of(const std::optional<std::string>& path) { return path ? json(files::encode_url_path(*path)) : json(); }
 
-/// What the page says of one column of its table of numbers.
-struct MeasureWords {
-  std::string_view id, title, text, unit, option = {}, group = {};
-  metrics::MetricDirection direction = metrics::MetricDirection::kLess;
-};
-
-json make_measure(const MeasureWords& words) {
+json make_measure(const Quantity& quantity) {
   static constexpr const char* kBetter[] = {"less", "more", "zero", "neither"};
-  return {{"id", words.id},
-          {"title", words.title},
-          {"text", words.text},
-          {"unit", words.unit},
-          {"option", words.option},
-          {"group", words.group},
-          {"better", kBetter[static_cast<std::size_t>(words.direction)]}};
+  const metrics::Metric* metric = quantity.metric;
+  const auto direction = metric ? metric->direction : metrics::MetricDirection::kLess;
+  return {{"id", quantity.full_field()},
+          {"title", quantity.title},
+          {"text", quantity.meaning},
+          {"unit", quantity.unit},
+          {"option", quantity.option},
+          {"group", metric ? metric->group() : "cost"},
+          {"better", kBetter[static_cast<std::size_t>(direction)]}};
 }
 
 /// Everything that the table can show, and that limits can be set on: of what a frame costs in milliseconds, once.
-json list_measures(const std::vector<CostChoice>& costs) {
-  json measures = json::array();
-  bool is_limited = false;
-  for (const CostChoice& cost : costs) {
-    measures.push_back(make_measure({.id = cost.field,
-                                     .title = cost.title,
-                                     .text = cost.measure.meaning,
-                                     .unit = cost.unit,
-                                     .option = is_limited ? "" : "--max-ms",
-                                     .group = "cost"}));
-    is_limited = true;
-  }
+json list_measures(std::vector<Quantity> quantities) {
+  quantities.front().option = analysis::cost_spec(*quantities.front().cost).option;
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty())
-      measures.push_back(make_measure(
-          {metric.path, metric.title, metric.definition, metric.unit, metric.limit, metric.group(), metric.direction}));
+      quantities.push_back({.id = std::string(metric.name()),
+                            .title = std::string(metric.title),
+                            .meaning = metric.definition,
+                            .field = std::string(metric.path),
+                            .option = std::string(metric.limit),
+                            .unit = std::string(metric.unit),
+                            .metric = &metric});
+  json measures = json::array();
+  for (const Quantity& each : quantities) measures.push_back(make_measure(each));
   return measures;
 }
 
-json list_values(const records::CellRecord& cell, const std::vector<CostChoice>& costs) {
+/// How `advise` is asked for a cost, where `usual` is what it takes without.
+std::string write_cost_options(const Quantity& choice, const analysis::CostKind& usual) {
+  std::vector<std::string> options;
+  if (*choice.cost != usual)
+    options.push_back("--cheapest " + (choice.cost->gpu.empty() ? "time" : "gpu:" + choice.cost->gpu));
+  if (choice.light == analysis::LightMotion::kStatic) options.emplace_back("--light-motion static");
+  return fmt::format("{}", fmt::join(options, " "));
+}
+
+json list_values(const records::CellRecord& cell, const std::vector<Quantity>& costs) {
   json values;
-  for (const CostChoice& cost : costs) values[cost.field] = describe_cost({&cell}, cost);
+  for (const Quantity& cost : costs) values[cost.full_field()] = describe_cost({&cell}, cost);
   for (const metrics::Metric& metric : metrics::metric_table())
     if (metric.tabled || !metric.limit.empty()) values[std::string(metric.path)] = value_of(metric.read(cell));
   return values;
 }
 
 /// Of times the 95 % intervals, or the quartiles where there are none.
-json list_intervals(const records::CellRecord& cell, const std::vector<CostChoice>& costs) {
+json list_intervals(const records::CellRecord& cell, const std::vector<Quantity>& costs) {
   json intervals = json::object();
-  for (const CostChoice& choice : costs) {
-    const auto cost = choice.measure.is(analysis::CostKind::kTime) ? measure_cost({&cell}, choice) : std::nullopt;
+  for (const Quantity& choice : costs) {
+    if (!choice.is(analysis::CostKind::kTime)) continue;
+    const auto cost = analysis::measure_cost({&cell}, *choice.cost, choice.light);
     if (!cost) continue;
     const records::Interval& interval = cost->ci95 ? *cost->ci95 : cost->quartiles;
-    intervals[choice.field] = {interval.low, interval.high};
+    intervals[choice.full_field()] = {interval.low, interval.high};
   }
   return intervals;
 }
 
 json make_cell(const records::CellRecord& cell, std::size_t configuration, std::size_t place,
-               const std::vector<CostChoice>& costs) {
+               const std::vector<Quantity>& costs) {
   return {{"key", cell.key},
           {"configuration", configuration},
           {"place", place},
@@ -383,10 +374,10 @@ json make_cell(const records::CellRecord& cell, std::size_t configuration, std::
 /// All that is true of a configuration on every scene: without the view, and lengths in units of one scene's map.
 std::string describe_fully(records::CellRecord cell) {
   cell.map_scale = {};
-  const std::string settings = records::describe_settings(cell),
+  const std::string settings = records::describe_settings(cell).substr(std::string("view ").size() + cell.view.size()),
                     params = records::describe_params(records::named_params(cell));
   if (cell.external) return fmt::format("{} · {}", cell.filter, describe_engine(*cell.external));
-  return cell.filter + (params.empty() ? "" : " · " + params) + settings.substr(settings.find(" · "));
+  return cell.filter + (params.empty() ? "" : " · " + params) + settings;
 }
 
 /// The filter as the command line takes it: "vsm:radius=4,store=rg32f".
@@ -404,7 +395,7 @@ std::string write_request(const records::CellRecord& cell) {
 /// `counted` are the configuration's cells that are not left out of what is said of all scenes.
 json make_configuration(const analysis::Configuration& configuration,
                         const std::vector<const records::CellRecord*>& counted, const std::vector<std::string>& filters,
-                        const std::vector<CostChoice>& choices, const std::vector<records::BiasToShip>& biases) {
+                        const std::vector<Quantity>& choices, const std::vector<records::BiasToShip>& biases) {
   const records::CellRecord& cell = *configuration.cells.front();
   const document::ChartStyle style =
       document::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
@@ -423,8 +414,8 @@ json make_configuration(const analysis::Configuration& configuration,
                {"color", style.color},
                {"bias", describe_biases(configuration, biases)},
                {"hardens", analysis::shows_claim(configuration.cells, analysis::kContactHardening)}};
-  for (const CostChoice& choice : choices)
-    made[choice.field] = counted.empty() ? json() : describe_cost(counted, choice);
+  for (const Quantity& choice : choices)
+    made[choice.full_field()] = counted.empty() ? json() : describe_cost(counted, choice);
   return made;
 }
 
@@ -435,11 +426,11 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   const std::vector<std::string> filters = analysis::list_filters(cells);
-  const std::vector<CostChoice> choices = list_cost_choices(run, cells);
+  const std::vector<Quantity> choices = list_cost_choices(run, cells);
   json data{{"files", records::value_json(run.filter_files)},
             {"measures", list_measures(choices)},
             {"costs", json::array()},
-            {"cost", choices.front().measure.id},
+            {"cost", choices.front().id},
             {"words", analysis::answer_words()},
             {"most_of_tie", analysis::kMostOfTie},
             {"setting", describe_setting(cells)},
@@ -448,14 +439,14 @@ json make_run_data(const records::RunRecord& run, const std::vector<records::Cel
             {"truths", json::array()},
             {"configurations", json::array()},
             {"cells", json::array()}};
-  for (const CostChoice& choice : choices)
-    data["costs"].push_back({{"id", choice.measure.id},
-                             {"field", choice.field},
+  for (const Quantity& choice : choices)
+    data["costs"].push_back({{"id", choice.id},
+                             {"field", choice.full_field()},
                              {"title", choice.title},
                              {"unit", choice.unit},
-                             {"option", choice.option},
-                             {"text", choice.measure.meaning},
-                             {"gpu", choice.measure.cost->gpu}});
+                             {"option", write_cost_options(choice, *choices.front().cost)},
+                             {"text", choice.meaning},
+                             {"gpu", choice.cost->gpu}});
   std::vector<std::string> classes;
   for (const std::string& each : filters::list_width_names())
     if (std::ranges::any_of(cells, [&](const records::CellRecord& cell) {

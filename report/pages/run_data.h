@@ -12,16 +12,11 @@
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
-/// A cost of a frame that a reader may ask for.
-struct CostChoice {
-  analysis::Measure measure;
-  std::string field;  ///< of a configuration's and a cell's value
-  std::string title, unit;
-  std::string option;  ///< of `advise`
-};
 
-/// Lists them, the light moving and static; the page begins with the first, which `advise` takes without an option.
-std::vector<CostChoice> list_cost_choices(const records::RunRecord& run, const std::vector<records::CellRecord>& cells);
+/// Lists the costs of a frame that a reader may ask for, the light moving and static; the page begins with the first,
+/// which `advise` takes without an option.
+std::vector<analysis::Quantity> list_cost_choices(const records::RunRecord& run,
+                                                  const std::vector<records::CellRecord>& cells);
 
 /// An error for the scripts: its value, how far it may be off, and its groups of phases; null where there is none.
 nlohmann::json describe_error(const std::optional<analysis::Estimate>& error);
@@ -30,10 +25,8 @@ nlohmann::json describe_error(const std::optional<analysis::Estimate>& error);
 /// top, width, height, pixels. All of it where nobody knows where.
 std::array<double, 4> choose_part(const records::CellRecord& cell);
 
-/// What cells cost; nothing where one has no value. The mean alone; null likewise.
-std::optional<analysis::Cost> measure_cost(const std::vector<const records::CellRecord*>& cells,
-                                           const CostChoice& choice);
-nlohmann::json describe_cost(const std::vector<const records::CellRecord*>& cells, const CostChoice& choice);
+/// What cells cost on the mean; null where one has no value.
+nlohmann::json describe_cost(const std::vector<const records::CellRecord*>& cells, const analysis::Quantity& choice);
 
 /// What was compared, in a line: "5 scenes · map 1024² · 960 × 540 · 8 filters."
 std::string describe_setting(const std::vector<records::CellRecord>& cells);
@@ -49,7 +42,8 @@ std::string describe_biases(const analysis::Configuration& configuration,
 /// nothing else. `cells`: all of the run, of which `configurations` are.
 nlohmann::json make_answer_data(const std::vector<records::CellRecord>& cells,
                                 const std::vector<analysis::Configuration>& configurations,
-                                const std::vector<std::string>& classes, const std::vector<CostChoice>& choices);
+                                const std::vector<std::string>& classes,
+                                const std::vector<analysis::Quantity>& choices);
 
 /// The scenes that the answer has by themselves: all, or none where there is one, or where the run is too large.
 std::vector<std::string> list_answered_scenes(const std::vector<records::CellRecord>& cells);

@@ -138,10 +138,9 @@ std::string join_front_row(std::vector<std::string> fields) {
   return fmt::format("{}\r\n", fmt::join(fields, ","));
 }
 
-std::string join_keys(const std::vector<records::CellRecord>& cells,
-                      const analysis::TradeConfiguration& configuration) {
+std::string join_keys(const analysis::TradeConfiguration& configuration) {
   std::vector<std::string> keys;
-  for (const std::size_t i : configuration.cells) keys.push_back(cells[i].key);
+  for (const records::CellRecord* cell : configuration.cells) keys.push_back(cell->key);
   return fmt::format("{}", fmt::join(keys, "+"));
 }
 
@@ -151,8 +150,7 @@ void append(std::vector<std::string>& fields, const std::optional<analysis::Esti
     fields.push_back(estimate ? fmt::format("{}", *estimate.*member) : std::string());
 }
 
-std::vector<std::string> describe_place(const std::vector<records::CellRecord>& cells,
-                                        const analysis::TradeScope& scope, const analysis::TradeFront& front,
+std::vector<std::string> describe_place(const analysis::TradeScope& scope, const analysis::TradeFront& front,
                                         std::size_t configuration) {
   const auto found = std::find(front.configurations.begin(), front.configurations.end(), configuration);
   if (found == front.configurations.end()) {
@@ -162,14 +160,14 @@ std::vector<std::string> describe_place(const std::vector<records::CellRecord>& 
   }
   const analysis::Placement& place = front.placements[static_cast<std::size_t>(found - front.configurations.begin())];
   if (place.standing == analysis::Standing::kApart) return {"", "", "", "its kernel is of no class of width"};
-  const std::string by = join_keys(cells, scope.configurations[front.configurations[place.by]]);
+  const std::string by = join_keys(scope.configurations[front.configurations[place.by]]);
   return {place.standing == analysis::Standing::kFront ? "1" : "0",
           place.standing == analysis::Standing::kDominated ? by : "",
           place.standing == analysis::Standing::kTied ? by : "", ""};
 }
 
-std::string make_row(const std::vector<records::CellRecord>& cells, const analysis::TradeScope& scope,
-                     const analysis::TradeFront& front, std::size_t i, const std::string& renderer) {
+std::string make_row(const analysis::TradeScope& scope, const analysis::TradeFront& front, std::size_t i,
+                     const std::string& renderer) {
   const analysis::TradeConfiguration& each = scope.configurations[i];
   std::vector<std::string> fields = {scope.id,
                                      scope.scene,
@@ -178,7 +176,7 @@ std::string make_row(const std::vector<records::CellRecord>& cells, const analys
                                      fmt::format("{}", scope.height),
                                      analysis::list_error_measures()[front.error].id,
                                      scope.costs[front.cost].id,
-                                     join_keys(cells, each),
+                                     join_keys(each),
                                      each.filter,
                                      records::dump_line(records::value_json(each.params)),
                                      fmt::format("{}", each.map_size),
@@ -186,17 +184,17 @@ std::string make_row(const std::vector<records::CellRecord>& cells, const analys
                                      std::string(analysis::name_class(each.width_class))};
   append(fields, each.errors[front.error].estimate);
   append(fields, each.costs[front.cost].estimate);
-  const auto place = describe_place(cells, scope, front, i);
+  const auto place = describe_place(scope, front, i);
   fields.insert(fields.end(), place.begin(), place.end());
   fields.push_back(renderer);
   return join_front_row(fields);
 }
 
-std::string make_rows(const std::vector<records::CellRecord>& cells, const analysis::TradeScope& scope,
-                      std::size_t error, std::size_t cost, const std::string& renderer) {
+std::string make_rows(const analysis::TradeScope& scope, std::size_t error, std::size_t cost,
+                      const std::string& renderer) {
   const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
   std::string rows;
-  for (std::size_t i = 0; i < scope.configurations.size(); ++i) rows += make_row(cells, scope, front, i, renderer);
+  for (std::size_t i = 0; i < scope.configurations.size(); ++i) rows += make_row(scope, front, i, renderer);
   return rows;
 }
 
@@ -239,15 +237,14 @@ void write_fronts_csv(const std::vector<records::CellRecord>& cells, const std::
   write(join_front_row(names));
   for (const analysis::TradeScope& scope : scopes)
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error)
-      for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) write(make_rows(cells, scope, error, cost, {}));
+      for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) write(make_rows(scope, error, cost, {}));
   for (const records::GpuTimes& times : machines) {
     records::Results timed{{}, cells};
     records::apply_gpu_times(timed, times);
     for (const analysis::TradeScope& scope : analysis::make_trade_scopes(timed.cells))
       for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error)
         for (std::size_t cost = 0; cost < scope.costs.size(); ++cost)
-          if (scope.costs[cost].is(analysis::CostKind::kTime))
-            write(make_rows(timed.cells, scope, error, cost, times.renderer));
+          if (scope.costs[cost].is(analysis::CostKind::kTime)) write(make_rows(scope, error, cost, times.renderer));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "report/records/text_table.h"
 
 namespace shadowbench::pages {
+
 /// Makes the table of what a group's cells cost, for people, one row per cell, its times being those of `gl`.
 records::TextTable make_cost_table(const analysis::CellGroup& group, const records::GlRecord& gl);
 

@@ -53,10 +53,10 @@ ChartSeries start_line(std::string title, const char* color, document::LineStyle
   return series;
 }
 
-std::string say_value(const analysis::Measure& measure, const analysis::Estimate& estimate,
+std::string say_value(const analysis::Quantity& measure, const analysis::Estimate& estimate,
                       const records::GlRecord& gl) {
   const std::string unit = analysis::unit_of(measure, gl);
-  return fmt::format("{}: {}{}{}", measure.name, analysis::format_estimate(measure, estimate), unit.empty() ? "" : " ",
+  return fmt::format("{}: {}{}{}", measure.title, analysis::format_estimate(measure, estimate), unit.empty() ? "" : " ",
                      unit);
 }
 
@@ -131,14 +131,14 @@ class FrontChart {
     made.label = configuration.label;
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
-                    "kernel: " + records::describe_kernel(cells_[configuration.cells.front()].kernel),
+                    "kernel: " + records::describe_kernel(configuration.cells.front()->kernel),
                     fmt::format("map {0} × {0}", configuration.map_size),
                     say_value(error_, values.error, gl_),
                     say_value(cost_, values.cost, gl_),
                     describe_standing(point)};
     const auto worst = std::ranges::max_element(configuration.cells, {},
-                                                [&](std::size_t i) { return cells_[i].error.rmse.value_or(0.0); });
-    made.opens = cells_[*worst].key;
+                                                [](const auto* cell) { return cell->error.rmse.value_or(0.0); });
+    made.opens = (*worst)->key;
     return made;
   }
 
@@ -183,8 +183,8 @@ class FrontChart {
   const analysis::TradeFront& front_;
   const std::vector<records::CellRecord>& cells_;
   const records::GlRecord& gl_;
-  const analysis::Measure& error_ = analysis::list_error_measures()[front_.error];
-  const analysis::Measure& cost_ = scope_.costs[front_.cost];
+  const analysis::Quantity& error_ = analysis::list_error_measures()[front_.error];
+  const analysis::Quantity& cost_ = scope_.costs[front_.cost];
   const bool is_large_ = cells_.size() > kMostCellsInDetail;
   const std::vector<analysis::WidthSeries> widths_ =
       is_large_ ? std::vector<analysis::WidthSeries>()
@@ -240,17 +240,17 @@ class WidthChart {
   const analysis::CostChart& chart_;
   std::size_t light_;
   const records::GlRecord& gl_;
-  const analysis::Measure& cost_ = chart_.costs[light_];
+  const analysis::Quantity& cost_ = chart_.costs[light_];
 };
 
 /// The maps of a filter: RMSE over their bytes, a curve for each fit.
-document::Chart make_map_chart(const analysis::MapFamily& family, const analysis::Measure& cost,
+document::Chart make_map_chart(const analysis::MapFamily& family, const analysis::Quantity& cost,
                                const records::GlRecord& gl) {
   document::Chart made;
   made.title = family.title;
   made.id = "maps." + files::make_file_stem(made.title);
   made.x_name = "bytes of the map, all layers";
-  made.y_name = analysis::list_error_measures()[0].name;
+  made.y_name = analysis::list_error_measures()[0].title;
   std::vector<double> bytes;
   std::map<std::string, double> least;
   for (const analysis::MapPoint& map : family.maps) {
@@ -284,10 +284,10 @@ document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>&
                                         const std::vector<records::CellRecord>& cells, const records::GlRecord& gl) {
   const std::vector<std::string> filters = analysis::list_filters(cells);
   document::ChartChoice choice{"front", {{"scene", {}}, {"error", {}}, {"cost", {}}}, {}};
-  for (const analysis::Measure& error : analysis::list_error_measures())
-    choice.selectors[1].options.push_back(error.name);
-  for (const analysis::Measure& cost : analysis::list_cost_measures(cells)) {
-    choice.selectors[2].options.push_back(cost.name);
+  for (const analysis::Quantity& error : analysis::list_error_measures())
+    choice.selectors[1].options.push_back(error.title);
+  for (const analysis::Quantity& cost : analysis::list_cost_measures(cells)) {
+    choice.selectors[2].options.push_back(cost.title);
     choice.selectors[2].costs.push_back(cost.id);
   }
   for (const analysis::TradeScope& scope : scopes) {
@@ -314,7 +314,7 @@ document::ChartChoice make_width_choice(const std::vector<analysis::CostChart>& 
   return choice;
 }
 
-document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const analysis::Measure& cost,
+document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const analysis::Quantity& cost,
                                       const records::GlRecord& gl) {
   document::ChartChoice choice{"maps", {{"filter", {}}}, {}};
   for (const analysis::MapFamily& family : families) {
@@ -340,7 +340,7 @@ constexpr const char* kMapsNote =
 
 /// How fronts are read: what dominated and tied mean, what the intervals are, how scenes are combined, and what each of
 /// `costs` is.
-std::vector<std::string> explain_fronts(const std::vector<analysis::Measure>& costs) {
+std::vector<std::string> explain_fronts(const std::vector<analysis::Quantity>& costs) {
   std::vector<std::string> sentences = {
       fmt::format(
           "Only filters whose kernels are about equally wide are compared: a wider kernel makes a softer shadow, "
@@ -352,9 +352,9 @@ std::vector<std::string> explain_fronts(const std::vector<analysis::Measure>& co
       "clearly less. Clearly: errors where the 95 % interval of their difference, which is taken group by group of "
       "the phases that all cells share, does not hold 0; times whose 95 % intervals do not overlap; everything else "
       "where the numbers differ. Of several that beat a cell, the cheapest is named."};
-  const auto explain = [&](const analysis::Measure& measure) {
+  const auto explain = [&](const analysis::Quantity& measure) {
     sentences.push_back(
-        fmt::format("{}: {}. All scenes together: {}.", measure.name, measure.meaning, measure.over_scenes));
+        fmt::format("{}: {}. All scenes together: {}.", measure.title, measure.meaning, measure.over_scenes));
   };
   std::ranges::for_each(analysis::list_error_measures(), explain);
   std::ranges::for_each(costs, explain);
@@ -389,7 +389,7 @@ std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
   trade.has_fronts = analysis::has_trade(trade.scopes);
   trade.map_families = analysis::list_map_families(analysis::point_to(cells));
   if (!trade.has_fronts && trade.map_families.empty()) return std::nullopt;
-  if (trade.has_fronts) trade.width_charts = analysis::make_width_charts(cells, trade.scopes);
+  if (trade.has_fronts) trade.width_charts = analysis::make_width_charts(trade.scopes);
   return trade;
 }
 

@@ -9,6 +9,7 @@
 #include "report/document/chart.h"
 
 namespace shadowbench::pages {
+
 /// A run of more cells than this has a page without what nobody could look through: the tables and bars of every scene
 /// and map, and what is beaten in the charts of fronts. The CSV files have all of it.
 inline constexpr std::size_t kMostCellsInDetail = 2000;
@@ -25,7 +26,7 @@ document::ChartChoice make_width_choice(const std::vector<analysis::CostChart>& 
 
 /// Draws RMSE over bytes for the maps of every family, a curve for each fit; their cost, which make_map_measure()
 /// measures, is told beside.
-document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const analysis::Measure& cost,
+document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const analysis::Quantity& cost,
                                       const records::GlRecord& gl);
 
 /// The trade of a run: everything that is said and drawn of it.

@@ -10,6 +10,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
+
 /// One of the program's pages, and where it lies in a report's folder.
 struct PageFile {
   std::string_view command;   ///< the command that makes it

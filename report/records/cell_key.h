@@ -12,6 +12,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::records {
+
 /// The parameters as they were asked for: one whose value the light's width gave is "light" everywhere.
 ParamMap named_params(const CellRecord& cell);
 

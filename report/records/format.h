@@ -9,6 +9,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::records {
+
 /// Stands in a text for a value that does not exist.
 inline constexpr const char* kNothing = "–";
 

@@ -8,6 +8,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::records {
+
 /// Writes a cell as JSON. A value that is missing or not finite is null, and `absent` in the JSON says why.
 nlohmann::json to_json(const CellRecord& cell);
 

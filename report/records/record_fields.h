@@ -8,6 +8,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::records {
+
 inline constexpr About kPositive{.least = 0};
 
 // What a cell costs on GPUs that were not there; see record_fields.h.

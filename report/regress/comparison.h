@@ -10,6 +10,7 @@
 #include "report/regress/baseline.h"
 
 namespace shadowbench::regress {
+
 /// How a cell stands to its baseline, the worst last.
 enum class Outcome { kSame, kSlower, kChanged, kLessAccurate, kExtra, kMissing, kUnreadable, kBroken };
 

@@ -11,6 +11,7 @@
 #include "report/regress/comparison.h"
 
 namespace shadowbench::regress {
+
 /// Which cells are compared; an empty list: all.
 struct Selection {
   std::vector<std::string> filters;

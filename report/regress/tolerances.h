@@ -9,6 +9,7 @@
 #include "report/records/records.h"
 
 namespace shadowbench::regress {
+
 /// Lists the metrics that a baseline keeps, in the order of their table.
 const std::vector<metrics::Metric>& list_compared_metrics();
 

@@ -71,7 +71,7 @@ TEST_F(AddedMetric, HasItsTolerance) {
 }
 
 TEST_F(AddedMetric, MayBeLimited) {
-  const auto limit = std::ranges::find(analysis::limit_table(), "--max-banding", &analysis::LimitSpec::option);
+  const auto limit = std::ranges::find(analysis::limit_table(), "--max-banding", &analysis::Quantity::option);
   ASSERT_NE(limit, analysis::limit_table().end());
   EXPECT_EQ(limit->read(cell_, analysis::LightMotion::kMoving), 0.125);
 }

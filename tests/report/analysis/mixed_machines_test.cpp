@@ -69,7 +69,7 @@ TEST(MixedMachines, CostIsAnEstimateWhereThereIsOne_AndNoTime) {
     (*cell.gpu)["navi21"].estimate = records::GpuEstimateRecord{};
   }
   EXPECT_EQ(choose_cost(cells), CostKind(CostKind::kGpu, "navi21"));
-  for (const Measure& cost : list_cost_measures(cells)) EXPECT_FALSE(cost.is(CostKind::kTime)) << cost.id;
+  for (const Quantity& cost : list_cost_measures(cells)) EXPECT_FALSE(cost.is(CostKind::kTime)) << cost.id;
   for (records::CellRecord& cell : cells) cell.machine = cells[2].machine;
   EXPECT_EQ(choose_cost(cells), CostKind::kTime) << "of one GPU";
 }

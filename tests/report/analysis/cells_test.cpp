@@ -1,10 +1,10 @@
+#include "report/analysis/cells.h"
+
 #include <gmock/gmock.h>
 
-#include "report/analysis/cells.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::analysis {
-
 using namespace records;
 namespace {
 
@@ -29,4 +29,5 @@ TEST(LostInTruth, IsAnErrorThatTheTruthsOwnExplains) {
 }
 
 }  // namespace
+
 }  // namespace shadowbench::analysis

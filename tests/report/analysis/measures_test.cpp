@@ -1,9 +1,10 @@
+#include "report/analysis/measures.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "reference/metrics/error_stats.h"
-#include "report/analysis/measures.h"
 
 namespace shadowbench::analysis {
 namespace {
@@ -126,4 +127,5 @@ TEST(Front, EveryCellOffTheFront_NamesAMember) {
 }
 
 }  // namespace
+
 }  // namespace shadowbench::analysis
