@@ -17,9 +17,9 @@
 #include "harness/options/options.h"
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/cell_group.h"
-#include "report/analysis/trade_measures.h"
-#include "report/pages/answer/advice_text.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/measures.h"
+#include "report/pages/advice_text.h"
 #include "report/records/gpu_times.h"
 #include "report/records/json_io.h"
 
@@ -73,7 +73,7 @@ std::set<std::string> list_claims() {
 AdviceRequest make_request(const AdviseArguments& arguments) {
   AdviceRequest request;
   for (std::size_t i = 0; i < arguments.limits.size(); ++i) {
-    const analysis::LimitSpec& spec = analysis::limit_table()[i];
+    const analysis::Quantity& spec = analysis::limit_table()[i];
     if (arguments.limits[i])
       request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option.c_str()), {}});
   }
@@ -133,8 +133,8 @@ Command make_advise_command() {
   auto a = std::make_shared<AdviseArguments>();
   command.add("RUN", &a->run, "a run's folder, or its results.json").names(ValueKind::kFile).require();
   for (std::size_t i = 0; i < a->limits.size(); ++i) {
-    const analysis::LimitSpec& spec = analysis::limit_table()[i];
-    command.add(spec.option, &a->limits[i], spec.text);
+    const analysis::Quantity& spec = analysis::limit_table()[i];
+    command.add(spec.option, &a->limits[i], spec.meaning);
   }
   command.add("--requires", &a->claims,
               "a property the filter must claim and the run confirm, such as contact-hardening; repeatable");

@@ -17,11 +17,11 @@
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
 #include "reference/metrics/error_stats.h"
-#include "report/analysis/configuration.h"
+#include "report/analysis/cells.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/images/picture_io.h"
-#include "report/pages/write_report.h"
+#include "report/pages/write_page.h"
 #include "report/records/cell_key.h"
 
 namespace shadowbench::engines {

@@ -13,7 +13,7 @@
 #include "harness/options/experiment_file.h"
 #include "harness/options/options.h"
 #include "harness/run/run_plan.h"
-#include "report/analysis/configuration.h"
+#include "report/analysis/cells.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::engines {

@@ -11,7 +11,7 @@
 #include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"
 #include "report/records/absence.h"
-#include "report/records/error_parts.h"
+#include "report/records/format.h"
 
 namespace shadowbench::measure {
 namespace {

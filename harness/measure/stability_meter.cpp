@@ -12,7 +12,7 @@
 #include "harness/measure/view_receivers.h"
 #include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"
-#include "report/analysis/stability_words.h"
+#include "report/analysis/findings.h"
 #include "report/files/file_name.h"
 #include "report/records/format.h"
 

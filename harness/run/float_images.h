@@ -8,7 +8,7 @@
 #include "harness/measure/scene_truth.h"
 #include "harness/options/options.h"
 #include "report/images/picture_io.h"
-#include "report/records/error_parts.h"
+#include "report/records/format.h"
 
 namespace shadowbench::run {
 

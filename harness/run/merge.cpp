@@ -11,9 +11,9 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "harness/live/frame_file.h"
-#include "report/analysis/summary.h"
+#include "report/analysis/findings.h"
 #include "report/files/folder_lock.h"
-#include "report/pages/write_report.h"
+#include "report/pages/write_page.h"
 #include "report/records/gpu_times.h"
 #include "report/records/json_io.h"
 

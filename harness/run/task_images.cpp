@@ -11,8 +11,8 @@
 #include "harness/measure/filter_setup.h"
 #include "harness/render/picture_passes.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/summary.h"
-#include "report/analysis/trade_measures.h"
+#include "report/analysis/findings.h"
+#include "report/analysis/measures.h"
 #include "report/files/file_name.h"
 #include "report/images/color_values.h"
 #include "report/images/grid.h"
@@ -20,7 +20,7 @@
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"
 #include "report/pages/grid_sheets.h"
-#include "report/records/cell_names.h"
+#include "report/records/cell_key.h"
 #include "report/records/format.h"
 
 namespace shadowbench::run {

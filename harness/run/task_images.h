@@ -11,7 +11,7 @@
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"
 #include "harness/options/options.h"
-#include "report/analysis/limits.h"
+#include "report/analysis/measures.h"
 #include "report/images/image.h"
 #include "report/records/records.h"
 

@@ -8,7 +8,7 @@
 
 #include "report/images/canvas.h"
 #include "report/images/text.h"
-#include "report/records/error_parts.h"
+#include "report/records/format.h"
 
 namespace shadowbench::view {
 namespace {

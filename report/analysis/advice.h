@@ -8,13 +8,22 @@
 #include <utility>
 #include <vector>
 
-#include "report/analysis/configuration.h"
-#include "report/analysis/front.h"
-#include "report/analysis/limits.h"
-#include "report/analysis/place_state.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/measures.h"
 #include "report/records/records.h"
 
 namespace shadowbench::analysis {
+
+/// What a filter may claim whose penumbrae are narrow where caster and receiver touch, and widen with their distance.
+inline constexpr const char* kContactHardening = "contact-hardening";
+
+/// Holds what a configuration's filter claims of itself against what its cells show: says why a claim is not shown;
+/// empty where it is. Every place that can show it must; a place that cannot says nothing. Of contact hardening the
+/// growth of penumbrae decides, of another claim nothing is measured.
+std::string find_doubt(const std::vector<const records::CellRecord*>& cells, const std::string& claim);
+
+/// Whether a configuration's filter claims something, and shows it.
+bool shows_claim(const std::vector<const records::CellRecord*>& cells, const std::string& claim);
 
 /// What is looked for.
 struct AdviceRequest {
@@ -137,5 +146,42 @@ struct Advice {
 /// is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have, or a claim
 /// that no filter makes; Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
+
+/// A seam from here on is seen: a step of brightness of 2 %, about Weber's fraction of the eye.
+inline constexpr double kVisibleSeam = 0.02;
+
+/// An RMSE that is tied with the least is no best one where it is larger than this many times that: too few phases
+/// tell.
+inline constexpr double kMostOfTie = 1.1;
+
+/// What an answer may be called, the cheapest first.
+inline constexpr const char *kFast = "fast", *kBalanced = "balanced", *kBest = "best";
+
+/// One of the answers that a reader chooses from.
+struct Pick {
+  std::vector<std::string> names;  ///< of those above: one, or fast and best
+  std::size_t index = 0;           ///< into Advice::keeping
+  std::string why;
+};
+
+/// Lists them, the cheapest first; none is beaten by a candidate that keeps the demands. *Fast* is the first that is
+/// advised. *Best* is the cheapest whose RMSE over the places is not clearly above the least; there is none where no
+/// RMSE is known, or that RMSE is more than a tenth above the least all the same, as too few phases tell. *Balanced*
+/// is, of those between the two, the one furthest below the straight line from fast to best in the plane of cost and
+/// RMSE (the knee; Satopaa et al. 2011, Finding a "Kneedle" in a Haystack); its RMSE is clearly less than that of the
+/// fast one, and its cost clearly less than that of the best. Costs that cannot be compared leave it out. Where the
+/// cost and RMSE of another cannot be told from a pick's, that with the smaller seam between cascades is picked; a seam
+/// that is seen is said. Requires one that keeps the demands.
+std::vector<Pick> list_picks(const Advice& advice);
+
+/// The sentences of an answer, by name, with names and numbers in braces; a page's script fills the same.
+const std::map<std::string, std::string>& answer_words();
+
+/// Says in a sentence which filter to use, and which where shadows must look right. Requires one that keeps the
+/// demands.
+std::string describe_choice(const Advice& advice);
+
+/// Says which filters on smaller maps a candidate beats: "its larger map beats pcss, map 1024"; empty where it is none.
+std::string describe_larger_map(const Candidate& candidate, const std::vector<Candidate>& others);
 
 }  // namespace shadowbench::analysis

@@ -8,10 +8,9 @@
 #include <cmath>
 #include <set>
 
-#include "report/analysis/cell_group.h"
-#include "report/analysis/cost_curves.h"
-#include "report/analysis/place_state.h"
-#include "report/analysis/trade_measures.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/measures.h"
+#include "report/analysis/trade.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
 #include "report/records/gpu_frame.h"

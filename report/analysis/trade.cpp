@@ -1,18 +1,18 @@
 #include "report/analysis/trade.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 
 #include "filters/kernel.h"
-#include "report/analysis/cell_group.h"
-#include "report/analysis/configuration.h"
-#include "report/analysis/place_state.h"
+#include "report/analysis/cells.h"
 #include "report/files/file_name.h"
 #include "report/records/cell_key.h"
-#include "report/records/cell_names.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
 
@@ -21,105 +21,67 @@ namespace {
 
 constexpr std::size_t kFewestCells = 3;
 
-std::string settings_without(const records::CellRecord& cell, std::initializer_list<const char*> names) {
-  auto settings = records::cell_settings(cell);
-  for (const char* name : names) settings.erase(name);
-  return records::dump_line(settings);
-}
-
-std::string place_key(const records::CellRecord& cell) {
-  return settings_without(cell, {"filter", "params", "map_size"});
-}
-
-std::string picture_key(const records::CellRecord& cell) {
-  return settings_without(cell, {"filter", "params", "map_size", "scene", "view"});
-}
-
-std::string configuration_key(const records::CellRecord& cell) {
-  return records::dump_line(
-      nlohmann::json{cell.filter, records::value_json(records::named_params(cell)), cell.map_size});
-}
-
-// Groups indices of cells by a key, in the order in which each key first appears.
-template <class Key>
-std::vector<std::vector<std::size_t>> group_indices(const std::vector<records::CellRecord>& cells,
-                                                    const std::vector<std::size_t>& indices, Key key) {
-  std::vector<std::vector<std::size_t>> groups;
-  std::map<std::string, std::size_t> places;
-  for (const std::size_t i : indices) {
-    const auto [place, is_new] = places.emplace(key(cells[i]), groups.size());
-    if (is_new) groups.emplace_back();
-    groups[place->second].push_back(i);
-  }
-  return groups;
-}
-
 // Reads cells' errors and costs; those of several scenes are combined.
 class CellReader {
  public:
-  explicit CellReader(const std::vector<records::CellRecord>& cells)
-      : cells_(cells), costs_(list_cost_measures(cells)) {}
+  explicit CellReader(const std::vector<records::CellRecord>& cells) : costs_(list_cost_measures(cells)) {}
 
-  const std::vector<Measure>& costs() const { return costs_; }
+  const std::vector<Quantity>& costs() const { return costs_; }
 
-  TradeConfiguration read(const std::vector<std::size_t>& indices) const {
-    const records::CellRecord& first = cells_[indices.front()];
+  TradeConfiguration read(const CellList& cells) const {
+    const records::CellRecord& first = *cells.front();
     const bool is_as_wide = std::ranges::all_of(
-        indices, [&](std::size_t i) { return cells_[i].kernel.sigma_texels == first.kernel.sigma_texels; });
+        cells, [&](const auto* cell) { return cell->kernel.sigma_texels == first.kernel.sigma_texels; });
     TradeConfiguration result{
-        first.filter, records::named_params(first), first.map_size, {}, find_class(first), {}, indices, {}, {}};
+        first.filter, records::named_params(first), first.map_size, {}, find_class(first), {}, cells, {}, {}};
     if (is_as_wide) result.sigma_texels = first.kernel.sigma_texels;
     for (std::size_t i = 0; i < kErrorMeasures; ++i)
-      result.errors[i] = combine(indices, read_error, list_error_measures()[i]);
-    for (const Measure& cost : costs_) result.costs.push_back(combine(indices, read_cost, cost));
+      result.errors[i] = combine(cells, read_error, list_error_measures()[i]);
+    for (const Quantity& cost : costs_) result.costs.push_back(combine(cells, read_cost, cost));
     return result;
   }
 
  private:
-  const std::vector<records::CellRecord>& cells_;
-  std::vector<Measure> costs_;
+  std::vector<Quantity> costs_;
 
-  Measured combine(const std::vector<std::size_t>& indices,
-                   Measured (*read_one)(const records::CellRecord&, const Measure&), const Measure& measure) const {
+  static Measured combine(const CellList& cells, Measured (*read_one)(const records::CellRecord&, const Quantity&),
+                          const Quantity& measure) {
     std::vector<Estimate> estimates;
-    for (const std::size_t i : indices) {
-      const bool is_suspect = cells_[i].status == records::CellStatus::kSuspect;
-      Measured one = is_suspect ? Measured{std::nullopt, "suspect: see the warnings"} : read_one(cells_[i], measure);
-      if (!one.estimate || indices.size() == 1) return one;
+    for (const records::CellRecord* cell : cells) {
+      const bool is_suspect = cell->status == records::CellStatus::kSuspect;
+      Measured one = is_suspect ? Measured{std::nullopt, "suspect: see the warnings"} : read_one(*cell, measure);
+      if (!one.estimate || cells.size() == 1) return one;
       estimates.push_back(*one.estimate);
     }
     return {measure.combine(estimates), {}};
   }
 };
 
-TradeScope make_place_scope(const std::vector<records::CellRecord>& cells, const std::vector<std::size_t>& indices,
-                            const CellReader& reader) {
-  const records::CellRecord& first = cells[indices.front()];
+TradeScope make_place_scope(const CellList& cells, const CellReader& reader) {
+  const records::CellRecord& first = *cells.front();
   TradeScope scope;
   scope.scene = first.scene;
   scope.view = first.view;
   scope.title = fmt::format("{} · view {} · {} × {}", first.scene, first.view, first.width, first.height);
   scope.id = files::make_file_stem(fmt::format("{}.{}.{}x{}", first.scene, first.view, first.width, first.height));
-  for (const auto& group : group_indices(cells, indices, configuration_key))
-    scope.configurations.push_back(reader.read({group.front()}));
+  for (const CellList& own : pivot(cells, {})) scope.configurations.push_back(reader.read({own.front()}));
   return scope;
 }
 
-TradeScope make_joint_scope(const std::vector<records::CellRecord>& cells, const std::vector<std::size_t>& indices,
-                            const CellReader& reader) {
-  const records::CellRecord& first = cells[indices.front()];
-  const std::size_t places = group_indices(cells, indices, place_key).size();
-  const std::size_t scenes =
-      group_indices(cells, indices, [](const records::CellRecord& cell) { return cell.scene; }).size();
+TradeScope make_joint_scope(const CellList& cells, const CellReader& reader) {
+  const records::CellRecord& first = *cells.front();
+  std::set<std::string> names;
+  for (const records::CellRecord* cell : cells) names.insert(cell->scene);
+  const std::size_t places = list_places(cells).size(), scenes = names.size();
   TradeScope scope;
   scope.title = fmt::format("{} · {} × {}",
                             places == scenes ? fmt::format("all {} scenes", scenes)
                                              : fmt::format("all {} views of {} scenes", places, scenes),
                             first.width, first.height);
   scope.id = fmt::format("all.{}x{}", first.width, first.height);
-  for (const auto& group : group_indices(cells, indices, configuration_key))
-    if (group.size() == places)
-      scope.configurations.push_back(reader.read(group));
+  for (const CellList& own : pivot(cells, {"scene", "view"}))
+    if (own.size() == places)
+      scope.configurations.push_back(reader.read(own));
     else
       ++scope.incomplete;
   return scope;
@@ -167,38 +129,36 @@ void label_series(std::vector<WidthSeries>& all) {
   }
 }
 
-}  // namespace
-
-void label_configurations(std::vector<TradeConfiguration>& configurations,
-                          const std::vector<records::CellRecord>& cells) {
-  std::vector<const records::CellRecord*> firsts;
-  for (const TradeConfiguration& each : configurations) firsts.push_back(&cells[each.cells.front()]);
+// By what differs among them, as records::CellNames does.
+void label_configurations(std::vector<TradeConfiguration>& configurations) {
+  CellList firsts;
+  for (const TradeConfiguration& each : configurations) firsts.push_back(each.cells.front());
   const records::CellNames names(firsts);
-  for (TradeConfiguration& each : configurations) each.label = names.name(cells[each.cells.front()]);
+  for (TradeConfiguration& each : configurations) each.label = names.name(*each.cells.front());
 }
 
+}  // namespace
+
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells) {
-  std::vector<std::size_t> all(cells.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  const CellList all = point_to(cells);
   const CellReader reader(cells);
   std::vector<TradeScope> scopes;
-  const std::vector<LeftOutPlace> left_out = list_left_out(point_to(cells));
-  std::vector<std::size_t> counted = all;
-  std::erase_if(counted, [&](std::size_t i) { return is_left_out(cells[i], left_out); });
-  for (const auto& picture : group_indices(cells, counted, picture_key))
-    if (group_indices(cells, picture, place_key).size() > 1) scopes.push_back(make_joint_scope(cells, picture, reader));
-  for (const auto& place : group_indices(cells, all, place_key))
-    scopes.push_back(make_place_scope(cells, place, reader));
+  const std::vector<LeftOutPlace> left_out = list_left_out(all);
+  CellList counted = all;
+  std::erase_if(counted, [&](const auto* cell) { return is_left_out(*cell, left_out); });
+  for (const CellList& picture : pivot(counted, {"filter", "params", "map_size", "scene", "view"}))
+    if (list_places(picture).size() > 1) scopes.push_back(make_joint_scope(picture, reader));
+  for (const CellList& place : pivot(all, {"filter", "params", "map_size"}))
+    scopes.push_back(make_place_scope(place, reader));
   std::set<std::string> fits;
   for (const records::CellRecord& cell : cells) fits.insert(cell.fit);
   for (TradeScope& scope : scopes) {
-    const records::CellRecord* first =
-        scope.configurations.empty() ? nullptr : &cells[scope.configurations[0].cells[0]];
+    const records::CellRecord* first = scope.configurations.empty() ? nullptr : scope.configurations[0].cells[0];
     scope.width = first ? first->width : 0;
     scope.height = first ? first->height : 0;
     scope.costs = reader.costs();
     if (first && fits.size() > 1) scope.title += " · " + records::name_fit(first->fit, fits);
-    label_configurations(scope.configurations, cells);
+    label_configurations(scope.configurations);
   }
   std::erase_if(scopes, [](const TradeScope& scope) { return scope.configurations.empty(); });
   make_unique(scopes);
@@ -265,6 +225,174 @@ std::vector<std::string> list_filters(const std::vector<records::CellRecord>& ce
   for (const records::CellRecord& cell : cells)
     if (std::find(filters.begin(), filters.end(), cell.filter) == filters.end()) filters.push_back(cell.filter);
   return filters;
+}
+
+namespace {
+
+CostCurve make_width_curve(const TradeScope& scope, const WidthSeries& series) {
+  const records::CellRecord& last = *scope.configurations[series.configurations.back()].cells.front();
+  CostCurve curve{series.filter, series.label, {}, last.cost.prefilter_texels.value_or(0) > 0};
+  for (const std::size_t i : series.configurations) {
+    const TradeConfiguration& each = scope.configurations[i];
+    curve.points.push_back(
+        {*each.sigma_texels, {*each.costs[kMovingCost].estimate, *each.costs[kStaticCost].estimate}});
+  }
+  return curve;
+}
+
+std::vector<CostCurve> make_width_curves(const TradeScope& scope, int map_size) {
+  std::vector<std::size_t> timed;
+  for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
+    const TradeConfiguration& each = scope.configurations[i];
+    if (each.map_size == map_size && each.costs[kStaticCost].estimate && each.costs[kMovingCost].estimate)
+      timed.push_back(i);
+  }
+  std::vector<CostCurve> curves;
+  for (const WidthSeries& series : list_width_series(scope.configurations, timed))
+    curves.push_back(make_width_curve(scope, series));
+  return curves;
+}
+
+bool has_several_fits(std::span<const MapPoint> maps) {
+  return std::ranges::any_of(
+      maps, [&](const MapPoint& map) { return map.name != maps.front().name; });
+}
+
+/// Layers that share the bytes of one map are rounded down to whole texels.
+constexpr double kEqualBytes = 0.99;
+
+/// The maps that all families have.
+MapFamily join_families(const std::vector<MapFamily>& families, const Quantity& cost) {
+  std::map<std::pair<std::string, int>, std::vector<MapPoint>> by_map;
+  for (const MapFamily& family : families)
+    for (const MapPoint& each : family.maps) by_map[{each.name, each.size}].push_back(each);
+  MapFamily joined{"all filters", {}};
+  for (const auto& [map, points] : by_map) {
+    if (points.size() < families.size()) continue;
+    MapPoint& all = joined.maps.emplace_back(points.front());
+    std::vector<Estimate> costs, errors;
+    for (const MapPoint& each : points) {
+      all.bytes = std::min(all.bytes, each.bytes);
+      all.seam = std::max(all.seam, each.seam);
+      costs.push_back(each.cost);
+      errors.push_back(each.rmse);
+    }
+    all.cost = cost.combine(costs);
+    all.rmse = list_error_measures().front().combine(errors);
+  }
+  std::ranges::stable_sort(joined.maps, {}, &MapPoint::bytes);
+  return joined;
+}
+
+/// The least error of every kind of fit but that of `best`, ascending.
+std::string list_other_fits(std::span<const MapPoint> maps, const MapPoint& best) {
+  std::vector<MapPoint> others(maps.begin(), maps.end());
+  std::ranges::sort(others, {}, [](const MapPoint& each) { return each.rmse.value; });
+  std::set<std::string> kinds = {best.kind};
+  std::vector<std::string> texts;
+  for (const MapPoint& each : others)
+    if (kinds.insert(each.kind).second)
+      texts.push_back(fmt::format("{} by {}", records::format_number(each.rmse.value), each.name));
+  return texts.empty() ? "" : fmt::format(" ({})", fmt::join(texts, "; "));
+}
+
+/// Of those whose error is not clearly above the least, the one with the least seam; one without any goes first.
+const MapPoint& choose_map(std::span<const MapPoint> maps) {
+  const MapPoint& least = *std::ranges::min_element(maps, {}, [](const MapPoint& each) { return each.rmse.value; });
+  const MapPoint* best = &least;
+  for (const MapPoint& each : maps)
+    if (each.seam < best->seam && !is_clearly_less_error(least.rmse, each.rmse)) best = &each;
+  return *best;
+}
+
+}  // namespace
+
+std::vector<double> CostChart::widths() const {
+  std::set<double> widths;
+  for (const CostCurve& curve : curves)
+    for (const CurvePoint& point : curve.points) widths.insert(point.sigma_texels);
+  return {widths.begin(), widths.end()};
+}
+
+std::vector<CostChart> make_width_charts(const std::vector<TradeScope>& scopes) {
+  std::vector<CostChart> charts;
+  for (const TradeScope& scope : scopes) {
+    if (scope.scene.empty()) continue;
+    std::set<int> map_sizes;
+    for (const TradeConfiguration& each : scope.configurations) map_sizes.insert(each.map_size);
+    for (const int map_size : map_sizes) {
+      CostChart chart{scope.id, fmt::format("{} · map {}", scope.title, map_size), map_size, scope.costs,
+                      make_width_curves(scope, map_size)};
+      const auto has_several = [](const CostCurve& curve) { return curve.points.size() > 1; };
+      if (std::ranges::any_of(chart.curves, has_several)) charts.push_back(std::move(chart));
+    }
+  }
+  return charts;
+}
+
+Quantity make_map_measure(const std::vector<const records::CellRecord*>& cells) {
+  return make_frame_measure(CostKind::kTime, LightMotion::kMoving, cells);
+}
+
+std::vector<MapFamily> list_map_families(const std::vector<const records::CellRecord*>& cells) {
+  std::set<std::string> fits;
+  for (const records::CellRecord* cell : cells) fits.insert(cell->fit);
+  if (fits.size() < 2) return {};
+  const Quantity cost = make_map_measure(cells);
+  const auto places = list_places(cells);
+  const std::vector<CellList> filters = pivot(cells, {"scene", "view", "fit", "map_size"});
+  std::vector<records::CellRecord> plain;  // without their maps, which are in no name
+  for (const CellList& each : filters) {
+    plain.push_back(*each.front());
+    plain.back().fit.clear();
+    plain.back().map_size = 0;
+  }
+  const records::CellNames names(point_to(plain));
+  std::vector<MapFamily> families;
+  for (std::size_t i = 0; i < filters.size(); ++i) {
+    std::vector<MapFamily> own;
+    for (const Place& place : places)
+      own.push_back({fmt::format("{} on {}", names.name(plain[i]), describe_place(place, places)), {}});
+    for (const records::CellRecord* each : filters[i]) {
+      const records::CellRecord& cell = *each;
+      const Measured paid = read_cost(cell, cost), rmse = read_error(cell, list_error_measures()[0]);
+      if (cell.status != records::CellStatus::kOk || !paid.estimate || !rmse.estimate || !cell.cost.map_bytes) continue;
+      own[find_place(places, cell)].maps.push_back(
+          {cell.fit.substr(0, cell.fit.find_first_of(": ")), records::name_fit(cell.fit, fits), cell.map_size,
+           static_cast<double>(*cell.cost.map_bytes), *paid.estimate, *rmse.estimate, cell.artefact.seam});
+    }
+    for (MapFamily& family : own) {
+      std::ranges::stable_sort(family.maps, {}, &MapPoint::bytes);
+      if (has_several_fits(family.maps)) families.push_back(std::move(family));
+    }
+  }
+  if (families.size() > 1)
+    if (MapFamily joined = join_families(families, cost); has_several_fits(joined.maps))
+      families.insert(families.begin(), std::move(joined));
+  return families;
+}
+
+std::string describe_best_map(const std::vector<MapFamily>& families) {
+  if (families.empty()) return {};
+  const MapFamily& family = families.front();
+  std::string text;
+  for (std::span<const MapPoint> rest = family.maps; !rest.empty();) {
+    const double bytes = rest.back().bytes;
+    const auto first =
+        std::ranges::find_if(rest, [&](const MapPoint& each) { return each.bytes > kEqualBytes * bytes; });
+    const std::span<const MapPoint> maps(first, rest.end());
+    rest = {rest.begin(), first};
+    if (!has_several_fits(maps)) continue;
+    const MapPoint& best = choose_map(maps);
+    const auto ties = std::ranges::count_if(
+        maps, [&](const MapPoint& each) { return &each != &best && !is_clearly_less_error(best.rmse, each.rmse); });
+    text += fmt::format("{} {}: {}, {} texels a side, RMSE {}", text.empty() ? "Best map at" : "; at",
+                        records::format_bytes(bytes), best.name, best.size, records::format_number(best.rmse.value));
+    if (best.seam) text += ", seam " + records::format_number(best.seam);
+    if (ties > 0) text += fmt::format(", tied with {} other{}", ties, ties > 1 ? "s" : "");
+    if (rest.size() + maps.size() == family.maps.size()) text += list_other_fits(maps, best);
+  }
+  return text.empty() ? text : text + ".";
 }
 
 }  // namespace shadowbench::analysis

@@ -36,6 +36,7 @@ const makeMeasurer = (select, choose) => {
 // `shadowbench advise` gives the same, as the command below the answer.
 const startAnswer = (holder) => {
   const kSteps = 60;
+  const kPicks = ["Fast", "Balanced", "Best"];
   const kClaim = "contact-hardening";
   const places = run.places.map(({ title }) => title);
   const state = { wide: "", soft: false, limits: {} };
@@ -125,7 +126,10 @@ const startAnswer = (holder) => {
     Object.assign(button.dataset, { index, place });
     element(button, "bdi", {}, labelOf(index));
     const costText = `${format(cost)} ${costChoice().unit}`;
-    if (scope !== all) return element(button, "span", {}, rmse ? format(rmse.value) : costText);
+    if (scope !== all) {
+      element(button, "span", {}, rmse ? format(rmse.value) : costText);
+      return cell;
+    }
     const share = (value, most) => (most > 0 ? Math.min(1, Math.max(0, value / most)) : null);
     const less = rmse && none?.value > rmse.value ? fill("less", { share: percent(1 - rmse.value / none.value) }) : "";
     if (rmse) addNumber(cell, "error", format(rmse.value), `RMSE${less}`, share(rmse.value, none?.value ?? 0));
@@ -133,6 +137,7 @@ const startAnswer = (holder) => {
     addNumber(cell, "cost", costText, "a frame", share(cost, dearest));
     if (gain) element(cell, "span", {}, fill("balanced", { gain: percent(gain), extra: percent(extra) }));
     if (scope.rows[index].wrong) element(cell, "span", {}, scope.rows[index].wrong);
+    return cell;
   };
   const addRow = (scope, judged) => {
     const row = element(table.tBodies[0] ?? element(table, "tbody"), "tr");
@@ -141,10 +146,10 @@ const startAnswer = (holder) => {
     for (const part of title.split(/(?<=[._-])/)) head.append(part, document.createElement("wbr"));
     if (scope.left_out) return element(row, "td", { colSpan: 3 }, scope.left_out);
     if (judged.keeping.length === 0) return element(row, "td", { colSpan: 3 }, fill("fails"));
-    for (const column of [0, 1, 2]) {
+    for (const [column, title] of kPicks.entries()) {
       const own = judged.picks.find(({ columns }) => columns.includes(column));
-      if (own) addPick(row, own, scope, judged);
-      else element(row, "td", {}, "–");
+      const cell = own ? addPick(row, own, scope, judged) : element(row, "td", { className: "empty" }, "–");
+      cell.dataset.head = title;
     }
   };
   // What a sweep of the bias recommends for picks, where one was made.
@@ -162,7 +167,7 @@ const startAnswer = (holder) => {
     if (judged.keeping.length === 0) return;
     const head = element(element(table, "thead"), "tr");
     element(head, "td");
-    for (const title of ["Fast", "Balanced", "Best"]) element(head, "th", { scope: "col" }, title);
+    for (const title of kPicks) element(head, "th", { scope: "col" }, title);
     addRow(all, judged);
     for (const scope of run.scopes.slice(1)) {
       const own = judge(scope);

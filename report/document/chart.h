@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/analysis/front.h"
+#include "report/analysis/measures.h"
 #include "report/document/chart_axis.h"
 
 namespace shadowbench::document {

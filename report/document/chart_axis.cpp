@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/analysis/trade_measures.h"
+#include "report/analysis/measures.h"
 
 namespace shadowbench::document {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "report/images/canvas.h"
-#include "report/records/error_parts.h"
+#include "report/records/format.h"
 
 namespace shadowbench::images {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "report/analysis/extremes.h"
+#include "report/analysis/findings.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv_tables.h"
 #include "report/records/format.h"

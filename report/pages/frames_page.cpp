@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "report/analysis/summary.h"
+#include "report/analysis/findings.h"
 #include "report/files/file_name.h"
 #include "report/records/format.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/analysis/cell_group.h"
+#include "report/analysis/cells.h"
 #include "report/document/blocks.h"
 
 namespace shadowbench::pages {

@@ -12,14 +12,14 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/cell_group.h"
-#include "report/analysis/picks.h"
-#include "report/analysis/trade_measures.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/measures.h"
 #include "report/images/color_values.h"
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
-#include "report/pages/answer/answer.h"
+#include "report/pages/answer.h"
 #include "report/records/absence.h"
 #include "report/records/format.h"
 

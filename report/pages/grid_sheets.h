@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/analysis/cell_group.h"
+#include "report/analysis/cells.h"
 #include "report/images/sheet.h"
 #include "report/records/records.h"
 

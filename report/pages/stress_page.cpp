@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "report/analysis/extremes.h"
+#include "report/analysis/findings.h"
 #include "report/document/markdown.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"

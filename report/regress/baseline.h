@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "report/regress/compared_metrics.h"
 #include "report/regress/pixel_change.h"
 #include "report/regress/tolerances.h"
 

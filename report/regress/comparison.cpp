@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "base/error.h"
+#include "base/files.h"
 #include "report/records/format.h"
-#include "report/regress/noise_test.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -314,6 +316,177 @@ Comparison compare_truth(const ActualTruth& actual, const TruthImages& expected,
   add_noise(comparison, test, "pixels of the truth differ by more than its standard errors explain", "pixel",
             actual.images.area.width);
   return comparison;
+}
+
+namespace {
+
+using metrics::NoisyDifference;
+
+constexpr int kBlock = 8;
+constexpr double kScrambles = 16.0;  ///< scrambles that a truth's standard error is estimated from (reference/truth)
+constexpr double kUnanimousLimit = 3.0 / 64.0;
+constexpr double kHalfVariance = 0x1p-22 / 12.0;  ///< variance of rounding to 16 bits below 1, in steps of 2^-11
+
+/// A pixel, or several together, as two tests see it: by the deviation that was measured over seeds, and as lookups
+/// that were counted. Few seeds do not tell the deviation of what hardly ever happens, and counts do not know of
+/// lookups that agree.
+struct Noise {
+  NoisyDifference difference;
+  metrics::Share drawn;
+  metrics::Share expected;
+
+  /// The larger probability: chance explains the pixel where either test says so.
+  double p() const { return std::max(metrics::find_p(difference), metrics::find_p(drawn, expected)); }
+};
+
+std::vector<Noise> list_noise(const images::Image& image, const images::UncertaintyImages& expected, double lookups) {
+  const double seeds = images::kSpreadSeeds;
+  std::vector<Noise> noise(image.texels.size());
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    const double value = static_cast<double>(image.texels[i]), mean = static_cast<double>(expected.seed_mean.texels[i]);
+    const double deviation = static_cast<double>(expected.seed_deviation.texels[i]);
+    noise[i] = {{value - mean, deviation * deviation * (1.0 + 1.0 / seeds) + kHalfVariance, seeds - 1.0},
+                {value * lookups, lookups},
+                {mean * lookups * seeds, lookups * seeds}};
+  }
+  return noise;
+}
+
+Noise add(const std::vector<const Noise*>& parts) {
+  Noise sum;
+  std::vector<NoisyDifference> differences;
+  for (const Noise* part : parts) {
+    differences.push_back(part->difference);
+    sum.drawn = {sum.drawn.lit + part->drawn.lit, sum.drawn.lookups + part->drawn.lookups};
+    sum.expected = {sum.expected.lit + part->expected.lit, sum.expected.lookups + part->expected.lookups};
+  }
+  sum.difference = metrics::add_differences(differences);
+  return sum;
+}
+
+std::vector<double> test_blocks(const std::vector<Noise>& pixels, int width, int height) {
+  std::vector<double> probabilities;
+  for (int top = 0; top < height; top += kBlock) {
+    for (int left = 0; left < width; left += kBlock) {
+      std::vector<const Noise*> block;
+      for (int y = top; y < std::min(top + kBlock, height); ++y)
+        for (int x = left; x < std::min(left + kBlock, width); ++x)
+          block.push_back(&pixels[static_cast<std::size_t>(y * width + x)]);
+      probabilities.push_back(add(block).p());
+    }
+  }
+  return probabilities;
+}
+
+}  // namespace
+
+SpreadTest test_spread(const images::Image& image, const images::UncertaintyImages& expected, double lookups,
+                       double level) {
+  const std::vector<Noise> pixels = list_noise(image, expected, lookups);
+  std::vector<double> probabilities;
+  for (const Noise& pixel : pixels) probabilities.push_back(pixel.p());
+  // Two tests are made, at half the level each.
+  return {metrics::test_pixels(probabilities, 0.5 * level),
+          metrics::test_pixels(test_blocks(pixels, image.width, image.height), 0.5 * level)};
+}
+
+metrics::PixelTest test_truth(const TruthImages& a, const TruthImages& b, double level) {
+  std::vector<double> probabilities(a.area.texels.size());
+  for (std::size_t i = 0; i < probabilities.size(); ++i) {
+    const double of_a = static_cast<double>(a.standard_error.texels[i]),
+                 of_b = static_cast<double>(b.standard_error.texels[i]);
+    double difference = static_cast<double>(a.area.texels[i]) - static_cast<double>(b.area.texels[i]);
+    if (of_a == 0.0 || of_b == 0.0)
+      difference = std::copysign(std::max(std::abs(difference) - kUnanimousLimit, 0.0), difference);
+    probabilities[i] = metrics::find_p({difference, of_a * of_a + of_b * of_b + 2.0 * kHalfVariance, kScrambles - 1.0});
+  }
+  return metrics::test_pixels(probabilities, level);
+}
+
+/// Ratios that no run is compared with are not kept: they would only make the files differ.
+BaselineCell Accepter::make_cell(const ActualCell& cell) const {
+  const records::CellRecord& record = cell.record;
+  ComparedValues values = read_values(record);
+  const auto is_ignored = [&](const auto& value) {
+    return std::isinf(tolerances_.find(record.filter, value.first).limit);
+  };
+  std::erase_if(values.ratios, is_ignored);
+  return {name_cell(record), record.map_size, record.width, record.height, cell.origin, std::move(values)};
+}
+
+/// A file that cannot be read keeps only its numbers, if those can be read, and the cells that are taken over now.
+CellFile& Accepter::file(const std::string& scene, const std::string& filter) {
+  const auto [place, is_new] = files_.try_emplace({scene, filter});
+  if (!is_new) return place->second;
+  try {
+    place->second = baseline_.read_cells(scene, filter);
+    return place->second;
+  } catch (const Error&) {
+    place->second = {};
+  }
+  try {
+    place->second.cells = baseline_.read_numbers(scene, filter);
+  } catch (const Error& error) {
+    lines_.push_back(fmt::format("lost: every other cell of {} {}: {}", scene, filter, error.what()));
+  }
+  return place->second;
+}
+
+std::map<std::string, TruthImages>& Accepter::truths(const std::string& scene) {
+  const auto [place, is_new] = truths_.try_emplace(scene);
+  if (!is_new) return place->second;
+  try {
+    place->second = baseline_.read_truths(scene);
+  } catch (const Error& error) {
+    lines_.push_back(fmt::format("lost: the truth of every other view of {}: {}", scene, error.what()));
+  }
+  return place->second;
+}
+
+void Accepter::take(Comparison& comparison, const ActualCell& cell) {
+  if (!comparison.differs() || cell.images.visibility.empty()) return;
+  CellFile& own = file(cell.record.scene, cell.record.filter);
+  BaselineCell taken = make_cell(cell);
+  const auto same = std::ranges::find(own.cells, taken.key, &BaselineCell::key);
+  if (same == own.cells.end())
+    own.cells.push_back(std::move(taken));
+  else
+    *same = std::move(taken);
+  CellImages& kept = own.images[cell.record.key] = cell.images;
+  kept.uncertainty.rounding = coarsen_rounding(cell.images.uncertainty.rounding);
+  note(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+}
+
+void Accepter::take(Comparison& comparison, const ActualTruth& truth) {
+  if (!comparison.differs()) return;
+  truths(truth.record.scene)[comparison.key] = truth.images;
+  note(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+}
+
+void Accepter::drop(Comparison& comparison) {
+  if (comparison.filter == kTruthName) {
+    truths(comparison.scene).erase(comparison.key);
+  } else {
+    CellFile& own = file(comparison.scene, comparison.filter);
+    std::erase_if(own.cells, [&](const BaselineCell& each) { return each.key == comparison.key; });
+  }
+  note(comparison, "removed");
+}
+
+void Accepter::note(Comparison& comparison, const std::string& what) {
+  comparison.accepted = true;
+  std::string line = fmt::format("{}: {} {} ({})", what, comparison.scene, comparison.label, comparison.settings);
+  if (comparison.outcome != Outcome::kExtra)
+    for (const Finding& finding : comparison.findings) line += "\n  - " + finding.text;
+  lines_.push_back(std::move(line));
+}
+
+std::vector<std::string> Accepter::write() {
+  // Tolerances come first: a folder that is written only in part is then known to be a baseline.
+  if (!baseline_.exists()) write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
+  for (const auto& [name, own] : files_) baseline_.write_cells(name.first, name.second, own);
+  for (const auto& [scene, truths] : truths_) baseline_.write_truths(scene, truths);
+  return lines_;
 }
 
 }  // namespace shadowbench::regress

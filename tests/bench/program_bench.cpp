@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/pages/write_report.h"
+#include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 
 extern char** environ;

@@ -39,6 +39,7 @@ test("ThePage_IsShort_AndItsFirstScreenHasTheAnswerAndShadows", async (context) 
 test("LongNamesOfScenes_StayInTheirColumnOfTheAnswer", async () => {
   const file = changePage("several", "long.html", ({ scopes, places }) => {
     for (const each of [...scopes, ...places]) if (each.scene) each.scene = each.title = `underthegreatwallofstairs_${each.scene}.spot`;
+    for (const each of scopes) each.left_out = each.scene && "not tested";  // else what is answered alike has no row
   });
   for (const viewport of [kNarrow, kWide, { width: 1920, height: 1080 }]) {
     const { page, close } = await open(file, { viewport });

@@ -140,11 +140,3 @@ export const listViolations = async (page) => {
   const { violations } = await page.evaluate(() => axe.run({ resultTypes: ["violations"], preload: false }));
   return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id} at ${target}: ${failureSummary.replaceAll(/\s+/g, " ")}`));
 };
-
-// Numbers from 0 to 1 that are the same in every run of the tests (mulberry32).
-export const makeRandom = (seed) => () => {
-  seed = (seed + 0x6d2b79f5) | 0;
-  let mixed = Math.imul(seed ^ (seed >>> 15), 1 | seed);
-  mixed = (mixed + Math.imul(mixed ^ (mixed >>> 7), 61 | mixed)) ^ mixed;
-  return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32;
-};

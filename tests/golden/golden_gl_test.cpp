@@ -9,7 +9,7 @@
 #include "filters/kernel.h"
 #include "harness/gl/context/context.h"
 #include "report/regress/baseline.h"
-#include "report/regress/noise_test.h"
+#include "report/regress/comparison.h"
 #include "tests/harness/cli/program.h"
 #include "tests/harness/render/bench_fixture.h"
 

@@ -10,7 +10,7 @@
 
 #include "harness/run/run_experiment.h"
 #include "report/images/picture_io.h"
-#include "report/records/error_parts.h"
+#include "report/records/format.h"
 #include "tests/harness/run/silent.h"
 
 namespace shadowbench::test {

@@ -7,11 +7,11 @@
 
 #include "harness/run/task_images.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/trade_measures.h"
-#include "report/pages/answer/advice_text.h"
-#include "report/pages/answer/answer.h"
-#include "report/pages/fronts_csv.h"
+#include "report/analysis/measures.h"
+#include "report/pages/advice_text.h"
+#include "report/pages/answer.h"
 #include "report/pages/run_page.h"
+#include "report/pages/tables.h"
 #include "report/records/json_io.h"
 #include "tests/report/records/synthetic.h"
 

@@ -9,7 +9,7 @@
 
 #include "harness/run/run_experiment.h"
 #include "report/images/picture_io.h"
-#include "report/pages/answer/answer_data.h"
+#include "report/pages/run_data.h"
 #include "report/records/json_io.h"
 #include "tests/harness/run/silent.h"
 

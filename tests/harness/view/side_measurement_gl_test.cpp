@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "harness/view/side_measurement.h"
 #include "harness/view/stage.h"
-#include "report/records/error_parts.h"
+#include "report/records/format.h"
 #include "tests/harness/view/view_fixture.h"
 
 namespace shadowbench::test {

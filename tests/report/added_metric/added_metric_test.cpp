@@ -5,11 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/analysis/limits.h"
-#include "report/pages/text_tables.h"
+#include "report/analysis/measures.h"
+#include "report/pages/tables.h"
 #include "report/records/csv_tables.h"
 #include "report/records/json_io.h"
-#include "report/regress/compared_metrics.h"
 #include "report/regress/tolerances.h"
 
 namespace shadowbench {
@@ -72,7 +71,7 @@ TEST_F(AddedMetric, HasItsTolerance) {
 }
 
 TEST_F(AddedMetric, MayBeLimited) {
-  const auto limit = std::ranges::find(analysis::limit_table(), "--max-banding", &analysis::LimitSpec::option);
+  const auto limit = std::ranges::find(analysis::limit_table(), "--max-banding", &analysis::Quantity::option);
   ASSERT_NE(limit, analysis::limit_table().end());
   EXPECT_EQ(limit->read(cell_, analysis::LightMotion::kMoving), 0.125);
 }

@@ -20,8 +20,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-const LimitSpec* find_limit(const std::string& option) {
-  for (const LimitSpec& spec : limit_table())
+const Quantity* find_limit(const std::string& option) {
+  for (const Quantity& spec : limit_table())
     if (spec.option == option) return &spec;
   return nullptr;
 }
@@ -123,7 +123,7 @@ TEST(Advice, EveryLimit_IsKeptUpToItsValueAndNotBeyond) {
   for (const metrics::Metric& metric : metrics::metric_table())
     if (!metric.limit.empty() && metric.read(cells[0]).value_or(0.0) == 0.0)
       std::get<0>(metric.member)(cells[0]) = 0.25;
-  for (const LimitSpec& spec : limit_table()) {
+  for (const Quantity& spec : limit_table()) {
     const auto value = spec.read(cells[0], LightMotion::kMoving);
     ASSERT_TRUE(value) << spec.option;
     EXPECT_THAT(advise_on(cells, {{&spec, *value, {}}}).keeping, SizeIs(1)) << spec.option;

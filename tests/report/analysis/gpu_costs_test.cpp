@@ -1,6 +1,6 @@
 // What the report says of GPUs, on cells made by hand.
 
-#include "report/analysis/gpu/gpu_costs.h"
+#include "report/analysis/gpu_costs.h"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "report/analysis/advice_words.h"
-#include "report/analysis/summary.h"
+#include "report/analysis/findings.h"
 #include "report/analysis/trade.h"
 #include "report/records/absence.h"
 #include "tests/report/analysis/mixed_cells.h"
@@ -69,7 +69,7 @@ TEST(MixedMachines, CostIsAnEstimateWhereThereIsOne_AndNoTime) {
     (*cell.gpu)["navi21"].estimate = records::GpuEstimateRecord{};
   }
   EXPECT_EQ(choose_cost(cells), CostKind(CostKind::kGpu, "navi21"));
-  for (const Measure& cost : list_cost_measures(cells)) EXPECT_FALSE(cost.is(CostKind::kTime)) << cost.id;
+  for (const Quantity& cost : list_cost_measures(cells)) EXPECT_FALSE(cost.is(CostKind::kTime)) << cost.id;
   for (records::CellRecord& cell : cells) cell.machine = cells[2].machine;
   EXPECT_EQ(choose_cost(cells), CostKind::kTime) << "of one GPU";
 }

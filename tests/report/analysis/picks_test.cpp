@@ -1,6 +1,4 @@
 // Which of the candidates are called fast, balanced and best.
-#include "report/analysis/picks.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -12,8 +10,9 @@
 #include <set>
 #include <tuple>
 
+#include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
-#include "report/analysis/place_state.h"
+#include "report/analysis/cells.h"
 #include "tests/report/analysis/made_up_runs.h"
 #include "tests/report/records/synthetic.h"
 
@@ -111,7 +110,7 @@ TEST(Picks, OneThatIsCheapestAndLeastWrong_IsBoth) {
 
 TEST(Picks, ALimitOnAnError_LetsNoneThrough) {
   const auto cells = make_cells({{"none", 1, 0.05}, {"pcf", 2, 0.04}, {"pcss", 9, 0.03}});
-  const auto spec = std::ranges::find(limit_table(), "error.rmse", &LimitSpec::field);
+  const auto spec = std::ranges::find(limit_table(), "error.rmse", &Quantity::field);
   AdviceRequest request;
   request.demands = {{&*spec, 0.06, {}}};
   EXPECT_THAT(list_picks(cells, request), ElementsAre("fast: none", "balanced: pcf", "best: pcss"));
@@ -160,7 +159,7 @@ std::vector<Row> list_rows(const std::vector<records::CellRecord>& cells, double
 }
 
 Demand limit(const char* field, double most) {
-  return {&*std::ranges::find(limit_table(), field, &LimitSpec::field), most, {}};
+  return {&*std::ranges::find(limit_table(), field, &Quantity::field), most, {}};
 }
 
 /// What the fast one costs under demands; infinite where nothing keeps them.

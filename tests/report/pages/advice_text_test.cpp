@@ -1,11 +1,11 @@
-#include "report/pages/answer/advice_text.h"
+#include "report/pages/advice_text.h"
 
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
 #include "report/analysis/advice_words.h"
-#include "report/analysis/configuration.h"
+#include "report/analysis/cells.h"
 #include "report/records/absence.h"
 #include "tests/report/records/synthetic.h"
 
@@ -206,7 +206,7 @@ TEST(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
     else
       records::explain(cells[i], "artefact.leak", {"too few", true});
   const analysis::Demand leak{
-      &*std::ranges::find(analysis::limit_table(), std::string("artefact.leak"), &analysis::LimitSpec::field), 0.1, {}};
+      &*std::ranges::find(analysis::limit_table(), std::string("artefact.leak"), &analysis::Quantity::field), 0.1, {}};
   const auto limits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03), leak}))["advised"]["limits"];
   EXPECT_TRUE(limits[0]["nothing_to_see"].empty());
   EXPECT_EQ(limits[1]["nothing_to_see"].dump(), R"([{"scene":"stack","view":"main","reason":"too few"}])");

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "report/pages/write_report.h"
+#include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::pages {

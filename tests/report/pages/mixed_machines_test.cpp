@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "report/analysis/summary.h"
-#include "report/pages/write_report.h"
+#include "report/analysis/findings.h"
+#include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 #include "tests/report/analysis/mixed_cells.h"
 

@@ -16,13 +16,14 @@ namespace shadowbench::pages {
 namespace {
 
 constexpr int kRuns = 300, kQuestions = 4;
+constexpr double kNoises[] = {0.0, 0.001, 0.02};  ///< of groups of phases; 0: there are none
 
 /// Adds what tells two cells apart: a key, seams, and, of some runs, what groups of phases found.
-void finish(records::CellRecord& cell, std::size_t number, bool has_groups, std::mt19937& random) {
+void finish(records::CellRecord& cell, std::size_t number, double noise_of_groups, std::mt19937& random) {
   cell.key = fmt::format("{:016x}", number);
   cell.artefact.seam = 0.01 * static_cast<double>(random() % 4);
-  if (!has_groups || !cell.error.rmse) return;
-  std::normal_distribution<double> noise(0.0, 0.001);
+  if (noise_of_groups <= 0.0 || !cell.error.rmse) return;
+  std::normal_distribution<double> noise(0.0, noise_of_groups);
   double sum = 0.0;
   for (double& each : cell.rmse_replicates.emplace(4)) sum += each = std::max(1e-4, *cell.error.rmse + noise(random));
   cell.error.rmse = sum / 4.0;
@@ -58,13 +59,13 @@ nlohmann::json ask(const nlohmann::json& data, const std::vector<records::CellRe
 
 TEST(PicksScript, AgreesWithTheProgram_InMadeUpRuns) {
   if (std::system("node --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "node is not installed";
-  const TemporaryFolder folder("picks_script");
+  const records::TemporaryFolder folder("picks_script");
   std::mt19937 random(57);
   std::ofstream file(folder.path() / "runs.json");
   for (int i = 0; i < kRuns; ++i) {
     std::vector<records::CellRecord> cells = analysis::make_up_run(random);
     if (cells.empty()) continue;
-    for (std::size_t k = 0; k < cells.size(); ++k) finish(cells[k], k, i % 2 == 0, random);
+    for (std::size_t k = 0; k < cells.size(); ++k) finish(cells[k], k, kNoises[i % std::ssize(kNoises)], random);
     nlohmann::json data = make_run_data(records::make_run(), cells, {});
     nlohmann::json questions = nlohmann::json::array();
     for (int k = 0; k < kQuestions; ++k) questions.push_back(ask(data, cells, random, k > 0));

@@ -9,9 +9,8 @@
 
 #include "report/images/picture_io.h"
 #include "report/pages/grid_sheets.h"
-#include "report/pages/trade_charts.h"
+#include "report/pages/trade_section.h"
 #include "report/pages/write_page.h"
-#include "report/pages/write_report.h"
 #include "report/records/json_io.h"
 #include "tests/report/records/synthetic.h"
 

@@ -1,7 +1,6 @@
-#include "report/pages/text_tables.h"
-
 #include <gmock/gmock.h>
 
+#include "report/pages/tables.h"
 #include "report/records/format.h"
 #include "report/records/text_table.h"
 #include "tests/report/records/synthetic.h"

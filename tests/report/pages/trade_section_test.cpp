@@ -6,8 +6,7 @@
 #include <regex>
 
 #include "report/pages/run_page.h"
-#include "report/pages/trade_charts.h"
-#include "report/pages/write_report.h"
+#include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 #include "tests/report/analysis/trade_cells.h"
 

@@ -13,7 +13,7 @@
 #include "base/files.h"
 #include "report/images/grid.h"
 #include "report/records/cell_key.h"
-#include "report/records/error_parts.h"
+#include "report/records/format.h"
 #include "report/records/records.h"
 
 namespace shadowbench::records {

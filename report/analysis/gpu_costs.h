@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/analysis/cells.h"
+#include "report/records/records.h"
+#include "report/records/text_table.h"
+
+namespace shadowbench::analysis {
+
+/// What the lookup of a filter takes time of, as members of an estimate.
+inline constexpr const char* kGpuResources[] = {"arithmetic", "sampling", "memory"};
+using GpuResources = std::array<double, std::size(kGpuResources)>;
+
+/// What one configuration costs on one GPU: facts and bounds of its first cell, and the means of the estimates over its
+/// cells.
+struct GpuCost {
+  const Configuration* configuration = nullptr;
+  const records::GpuRecord* record = nullptr;
+  std::optional<double> estimate_ms;  ///< of a frame, moving light; nothing where a cell has none
+  double lookup_ms = 0.0, prefilter_ms = 0.0, map_ms = 0.0;  ///< the parts of it
+  GpuResources slowest_ms{};  ///< the lookups' part, by the resource that is the slowest in a cell: they add up to it
+  GpuResources alone_ms{};    ///< of each resource, were the others for nothing: they do not add up
+  /// With a moving light, in the run's clock; nothing where a cell has none, or a software rasteriser drew it: a CPU's
+  /// times say nothing of a GPU.
+  std::optional<double> measured_ms;
+};
+
+/// The costs of all configurations that have a record of the GPU and are right everywhere.
+std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurations, const std::string& gpu);
+
+/// How alike two orders of the same filters are: Spearman's rank correlation of estimated and measured costs, 1 for the
+/// same order, -1 for the opposite; nothing for fewer than three that have both.
+std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs);
+
+/// Says how alike the orders are, which filter's place differs most, which filters cost the same, and what was refused
+/// or guessed.
+std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs);
+
+/// One row for each configuration that the GPU's compiler took: the estimate, beside the time of the GPU that drew the
+/// run if one did, and facts of its lookup minus those of the empty one.
+records::TextTable make_gpu_table(const std::vector<GpuCost>& costs);
+
+}  // namespace shadowbench::analysis

@@ -1,0 +1,156 @@
+#include "report/pages/answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/analysis/advice.h"
+#include "report/analysis/advice_words.h"
+#include "report/analysis/cells.h"
+#include "report/analysis/measures.h"
+#include "report/pages/run_data.h"
+#include "report/records/format.h"
+
+namespace shadowbench::pages {
+namespace {
+
+constexpr std::array kPicks = {analysis::kFast, analysis::kBalanced, analysis::kBest};
+
+bool can_advise(const std::vector<records::CellRecord>& cells) {
+  return std::ranges::any_of(cells, records::is_advised);
+}
+
+std::string describe_pick(const analysis::Advice& advice, const analysis::Pick& pick, const records::GlRecord& gl,
+                          bool in_full) {
+  const analysis::Candidate& candidate = advice.keeping[pick.index];
+  std::string text = candidate.configuration.name;
+  if (in_full) text += ": " + analysis::format_cost(candidate.cost.mean, advice.request.cheapest, gl);
+  if (candidate.rmse) text += fmt::format(", RMSE {}", records::format_number(candidate.rmse->value));
+  return in_full ? fmt::format("{}; {}", text, pick.why) : text;
+}
+
+/// A row for all scenes, or for one: its picks. One that is both fast and best stands under both.
+std::vector<std::string> make_row(const std::string& head, const analysis::Advice& advice, const records::GlRecord& gl,
+                                  bool in_full) {
+  std::vector<std::string> row = {head};
+  row.resize(1 + kPicks.size(), records::kNothing);
+  for (const analysis::Pick& pick : analysis::list_picks(advice))
+    for (std::size_t i = 0; i < kPicks.size(); ++i)
+      if (std::ranges::count(pick.names, kPicks[i]) > 0) row[1 + i] = describe_pick(advice, pick, gl, in_full);
+  return row;
+}
+
+/// The bias of each pick; empty where none was swept.
+std::vector<std::string> make_bias_row(const analysis::Advice& advice, const std::vector<records::BiasToShip>& biases) {
+  std::vector<std::string> row(1 + kPicks.size(), records::kNothing);
+  bool is_any = false;
+  for (const analysis::Pick& pick : analysis::list_picks(advice)) {
+    const std::string bias = describe_biases(advice.keeping[pick.index].configuration, biases);
+    for (std::size_t i = 0; i < kPicks.size(); ++i)
+      if (std::ranges::count(pick.names, kPicks[i]) > 0 && !bias.empty()) row[1 + i] = bias;
+    is_any = is_any || !bias.empty();
+  }
+  row.front() = "bias to ship";
+  return is_any ? row : std::vector<std::string>();
+}
+
+document::Table make_table(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                           const analysis::Advice& advice, const std::vector<records::BiasToShip>& biases) {
+  document::Table table{"", {{"", "Fast", "Balanced", "Best"}, {}}};
+  const std::vector<std::string> scenes = list_answered_scenes(cells);
+  table.table.rows.push_back(
+      make_row(scenes.empty() ? advice.places.front().scene : "all scenes", advice, run.gl, true));
+  for (const std::string& scene : scenes) {
+    if (std::ranges::count(advice.places, scene, &analysis::Place::scene) == 0) {
+      const auto left_out =
+          std::ranges::find(advice.left_out, scene, [](const auto& each) { return each.place.scene; });
+      table.table.rows.push_back({scene, analysis::describe_state(left_out->state), "", ""});
+      continue;
+    }
+    analysis::AdviceRequest request = advice.request;
+    request.scenes = {scene};
+    const analysis::Advice own = analysis::advise(cells, request);
+    if (!own.keeping.empty()) table.table.rows.push_back(make_row(scene, own, run.gl, false));
+  }
+  if (auto row = make_bias_row(advice, biases); !row.empty()) table.table.rows.push_back(std::move(row));
+  return table;
+}
+
+/// The cell whose picture differs most from the truth's; null where none has both.
+const records::CellRecord* find_worst_picture(const analysis::Configuration& configuration) {
+  const records::CellRecord* worst = nullptr;
+  for (const records::CellRecord* cell : configuration.cells)
+    if (cell->images.picture && cell->images.truth_picture && cell->images.hardest && cell->error.flip &&
+        (!worst || *cell->error.flip > *worst->error.flip))
+      worst = cell;
+  return worst;
+}
+
+/// The picture to begin with: the fast one against the truth, on the scene where it differs most from it.
+std::optional<document::Split> make_picture(const analysis::Advice& advice) {
+  const analysis::Candidate& shown = advice.keeping.front();
+  const records::CellRecord* worst = find_worst_picture(shown.configuration);
+  if (!worst) return std::nullopt;
+  const std::string on = " on " + analysis::describe_place(analysis::place_of(*worst), advice.places);
+  const records::ImagesRecord& images = worst->images;
+  return document::Split{{images.truth_supersampled.value_or(*images.truth_picture), "truth" + on},
+                         {images.supersampled.value_or(*images.picture), shown.configuration.name + on},
+                         worst->width,
+                         worst->height,
+                         choose_part(*worst)};
+}
+
+}  // namespace
+
+analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells) {
+  analysis::AdviceRequest request;
+  request.cheapest = analysis::choose_cost(cells);
+  return request;
+}
+
+std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRecord>& measured) {
+  const auto withheld = analysis::withhold_mixed_times(measured);
+  const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
+  std::vector<FirstPicture> pictures;
+  if (!can_advise(cells)) return pictures;
+  const analysis::Advice advice = analysis::advise(cells, choose_request(cells));
+  if (advice.keeping.empty()) return pictures;
+  for (const analysis::Pick& pick : analysis::list_picks(advice))
+    if (const auto* cell = find_worst_picture(advice.keeping[pick.index].configuration))
+      pictures.push_back({cell->key, choose_part(*cell)});
+  return pictures;
+}
+
+document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
+                                      const analysis::AdviceRequest& request,
+                                      const std::vector<records::BiasToShip>& biases) {
+  document::Section section{"answer", "Which filter?", {}};
+  if (!can_advise(cells)) {
+    section.blocks = {document::Paragraph{
+        cells.empty() ? "The run holds no cell." : "The run has filters for teaching alone, which are not advised."}};
+    return section;
+  }
+  const analysis::Advice advice = analysis::advise(cells, request);
+  document::Mount mount{"answer", {}};
+  if (advice.keeping.empty()) {
+    mount.blocks.emplace_back(
+        document::Paragraph{fmt::format("Nothing fits: {}.", analysis::describe_failure(advice))});
+  } else {
+    mount.blocks.emplace_back(document::Paragraph{analysis::describe_choice(advice)});
+    if (const std::string judged = analysis::describe_judged_lights(advice); !judged.empty())
+      mount.blocks.emplace_back(document::Paragraph{judged + "."});
+    mount.blocks.emplace_back(document::Paragraph{describe_setting(cells), true});
+    mount.blocks.emplace_back(make_table(run, cells, advice, biases));
+    if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
+  }
+  mount.blocks.emplace_back(document::Paragraph{analysis::describe_cost(advice), true});
+  mount.blocks.emplace_back(document::Sentences{{}, analysis::list_advice_notes(advice, run.gl)});
+  section.blocks.emplace_back(std::move(mount));
+  return section;
+}
+
+}  // namespace shadowbench::pages
