@@ -40,6 +40,7 @@ void visit_fields(Is<GpuPassRecord> auto& pass, auto&& visit) {
 void visit_fields(Is<GpuEstimateRecord> auto& parts, auto&& visit) {
   visit("lookup", parts.lookup_us, kPositive);
   visit("prefilter", parts.prefilter_us, kPositive);
+  visit("map", parts.map_us, kPositive);
   visit("arithmetic", parts.arithmetic_us, kPositive);
   visit("sampling", parts.sampling_us, kPositive);
   visit("memory", parts.memory_us, kPositive);
@@ -55,13 +56,14 @@ void visit_fields(Is<GpuRecord> auto& gpu, auto&& visit) {
   std::optional<std::string> refused = null_if_empty(gpu.refused);
   visit("facts", gpu.facts);
   visit("frame_ms", kGroup,
-        {.text = "of a frame of 1920x1080, each pixel a lookup, with one map; moving: and its prefilter. Drawing the "
-                 "map, and what every lookup pays, is left out"});
+        {.text = "of a frame of 1920x1080, each pixel a lookup, with one map; moving: with its prefilter and a lower "
+                 "bound of drawing it. What every lookup pays is left out"});
   visit("frame_ms.moving", moving, {.least = 0});
   visit("frame_ms.static", still, {.least = 0});
   visit("parts_us", gpu.estimate,
         {.text = "lookup is of a million receivers, as dense as in that frame, and the largest of arithmetic, sampling "
-                 "and memory, which is null where the filter's reads are not known; prefilter is of one map"});
+                 "and memory, which is null where the filter's reads are not known; prefilter is of one map; map is a "
+                 "lower bound of drawing it, from its triangles and texels"});
   visit("bound_by", bound_by, {.one_of = "arithmetic,sampling,memory"});
   visit("refused", refused);
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(gpu)>>) {
