@@ -35,7 +35,7 @@ const makeSides = async (place, layer, mode) => {
     const gap = async () => subtract(found[1].value, found[0].value);
     found = [message ? { message } : await attempt(gap())];
   }
-  const mask = name === "visibility" && !differs ? undefined : await getMask(place);
+  const mask = await getMask(place);
   const planes = found.filter(({ value }, i) => value && names[i] === name).map(({ value }) => value);
   const palette = differs ? "diverging" : look.palette;
   const top = palette === "grey" ? white : findScale(planes, mask, white * Math.min(0.05, look.least));
@@ -63,7 +63,7 @@ const showScale = ({ top, palette, look, differs }) => {
   say(signed ? `\u2212${top}` : "0", low);
   element(bar, "i").style.background = `linear-gradient(to right,${kPalettes[palette]})`;
   say(signed ? `+${top}` : String(top), high);
-  if (palette !== "grey") element(bar, "span", { className: "hatch" }, `hatched: ${run.hatched || "not a receiver"}`);
+  element(bar, "span", { className: "hatch" }, `hatched: ${run.hatched || "not a receiver"}`);
 };
 const labelPane = (pane, titles) => {
   const isDifference = state.mode === "difference";
@@ -257,7 +257,7 @@ const showCrops = () => {
     if (layer === "picture") return cut(await getPicture(who, place), crop, 1);
     const name = await nameShown(who, place, layer);
     const values = await getNumbers(who, place, name);
-    const mask = name === "visibility" ? null : await getMask(place);
+    const mask = await getMask(place);
     const { palette } = layerOf(name);
     return paint(values, mask, size.width, crop, palette, palette === "grey" ? white : scale);
   };

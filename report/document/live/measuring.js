@@ -125,10 +125,10 @@ const sayQueries = (times, isSoftware) => {
   return ` Timer queries differ from ${apart} of ${asked.length} times by more than both intervals (\u2260).${cpu}`;
 };
 // Shows what is known of the filters of a place.
-const fillResults = (table, place, { found, samplingAt, sayReference }, isSoftware) => {
+const fillResults = (box, place, { found, samplingAt, sayReference }, isSoftware) => {
   const whos = listFiltersAt(place);
   const rows = whos.map((who) => [who, found.get(cellAt(who, place).key) ?? {}]);
-  table.replaceChildren();
+  box.replaceChildren();
   if (rows.every(([, { rmse, refused }]) => rmse === undefined && !refused)) return;
   const { weight, shift, turn } = samplingAt(run.configurations[whos[0]].map);
   const isExact = weight < 1e-5 && shift === 0 && turn < 1e-6;
@@ -141,7 +141,9 @@ const fillResults = (table, place, { found, samplingAt, sayReference }, isSoftwa
   const title = `What this GPU draws on ${run.places[place].title}.`;
   const times = rows.flatMap(([, { filter, prefilter }]) => [filter, prefilter]);
   const ofQueries = sayQueries(map ? [map, ...times] : times, isSoftware);
-  element(table, "caption", {}, `${title} ${sampling}${ofMap}${ofQueries}${sayReference(place)}`);
+  // As a caption it would be as wide as the table, and be cut where the table is.
+  element(box, "p", { className: "note results" }, `${title} ${sampling}${ofMap}${ofQueries}${sayReference(place)}`);
+  const table = element(element(box, "div", { className: "scroll", tabIndex: 0 }), "table", { ariaLabel: title });
   const head = element(element(table, "thead"), "tr");
   const columns = [...kResultColumns, ...(times.some((time) => time?.queries) ? kQueryColumns : [])];
   for (const column of columns) element(head, "th", { scope: "col" }, column);
@@ -167,7 +169,7 @@ const fillResults = (table, place, { found, samplingAt, sayReference }, isSoftwa
         row,
         "td",
         { title: sayInterval(each?.queries) },
-        (each && areQueriesApart(each) ? "\u2260 " : "") + say(each?.queries),
+        each?.queries?.median > 0 ? (areQueriesApart(each) ? "\u2260 " : "") + say(each.queries) : "",
       );
   }
 };

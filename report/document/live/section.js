@@ -2,6 +2,10 @@
 const startLive = (holder) => {
   let opened = null;
   const open = () => (opened ??= openLive(holder));
+  const still = findEntry(kTruth, 0)?.picture ?? run.cells.find(({ picture }) => picture)?.picture;
+  element(holder, "p", { className: "note" }, "Filters are drawn here by this GPU once this section is reached.");
+  if (still)
+    element(element(holder, "div", { className: "live-stage" }), "img", { src: still, alt: "As the run drew it" });
   onceSeen(holder, open);
   const followLink = () => {
     if (!readLink("live")) return;
@@ -82,7 +86,7 @@ const openLive = (holder) => {
   const command = code.parentNode;
   command.hidden = true;
   const unsaid = element(command, "span", { className: "unsaid" });
-  const results = element(element(holder, "div", { className: "scroll", tabIndex: 0 }), "table");
+  const results = element(holder, "div");
   const measuring = makeMeasuring(engine);
   const places = run.places
     .map((_, place) => place)
@@ -140,8 +144,10 @@ const openLive = (holder) => {
   };
   const fillTable = () => fillResults(results, state.place, measuring, engine.isSoftware);
   const sayRenderer = () =>
-    `Drawn here by ${titleGpu(engine.renderer)}.` +
-    (engine.isSoftware ? " That is a CPU: its times are not those of a GPU." : "");
+    isGpuLost
+      ? `Nothing is drawn now: ${kGpuIsGone[0].toLowerCase()}${kGpuIsGone.slice(1)}`
+      : `Drawn here by ${titleGpu(engine.renderer)}.` +
+        (engine.isSoftware ? " That is a CPU: its times are not those of a GPU." : "");
 
   const timeAll = async (onStep) => {
     for (const place of places) {
@@ -301,7 +307,7 @@ const openLive = (holder) => {
     stop,
     lose: () => {
       measuring.stop(kGpuIsGone);
-      status.textContent = `Nothing is drawn now: ${kGpuIsGone[0].toLowerCase()}${kGpuIsGone.slice(1)}`;
+      status.textContent = sayRenderer();
     },
   };
 };
