@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
 
-const file = new URL("../../report/document/live/gpu_names.js", import.meta.url);
-const titleGpu = new Function(`${readFileSync(file, "utf8")}; return titleGpu;`)();
+const file = new URL("../../report/document/live/machine_times.js", import.meta.url);
+const titleGpu = new Function("location", `${readFileSync(file, "utf8")}; return titleGpu;`)({ pathname: "" });
 
 const kTitles = {
   // Chromium and Edge under Windows.
