@@ -187,6 +187,17 @@ test("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven_OrIsHidden", asy
   }
 });
 
+test("Printed_TheAnswerHasItsThreeNames_AndNoForm", async () => {
+  const { page, close } = await openRun("several");
+  const names = await page.locator(".picks tbody tr").first().locator("bdi").allTextContents();
+  assert.ok(names.length > 1, names.join());
+  await page.emulateMedia({ media: "print" });
+  const printed = await page.locator(".picks").innerText();
+  for (const name of names) assert.ok(printed.includes(name), name);
+  for (const form of await page.locator("form, .sliders").all()) assert.equal(await form.isVisible(), false);
+  await close();
+});
+
 test("ALink_OpensTheSameAnswerAndTable", async () => {
   const { page, close } = await openAnswer("several");
   await choose(page, "cost", "static");

@@ -5,9 +5,10 @@ import test from "node:test";
 
 const take = (file, name) => {
   const text = readFileSync(new URL(`../../report/document/${file}`, import.meta.url), "utf8");
-  return new Function("document", `${text}; return ${name};`)({ createElement: () => ({ getContext: () => ({}) }) });
+  const page = { createElement: () => ({ getContext: () => ({}) }) };
+  return new Function("document", "location", `${text}; return ${name};`)(page, { pathname: "" });
 };
-const titleGpu = take("live/gpu_names.js", "titleGpu"), fitAxis = take("chart_drawing.js", "fitAxis");
+const titleGpu = take("live/machine_times.js", "titleGpu"), fitAxis = take("chart_drawing.js", "fitAxis");
 
 const kTitles = {
   // Chromium and Edge under Windows.

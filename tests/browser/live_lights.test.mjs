@@ -57,7 +57,7 @@ test("AReferenceForALamp_IsNearItsTracedTruth", (context) => withBrowser(kMesa, 
   for (const light of ["spot", "bulb"]) {
     await pick(page, "Scene", { label: `wide.${light}` }, ".live");
     await press(page, "Check against the run");
-    const said = await page.locator(".live caption").textContent();
+    const said = await page.locator(".live .results").textContent();
     found[light] = Number(/The mean of 256 maps from points of the light has an RMSE of ([\d.]+) to the traced truth/.exec(said)?.[1]);
   }
   context.diagnostic(JSON.stringify(found));

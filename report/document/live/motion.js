@@ -1,3 +1,145 @@
+// Moves a light: its map is drawn by the run's own steps, with other matrices for each of its layers. A sun turns about
+// the scene's middle, and its windows become as large as they must be: around the scene, or around what the camera sees of
+// it where the run's windows follow that. A spot light goes round the middle and keeps looking at what it looked at; a
+// point light goes round it too, and the faces of its cube stay parallel to the axes.
+const kOfLight = [
+  ...["clip_from_world", "uv_depth_from_world", "light_direction_ws", "light_right_ws", "light_up_ws"],
+  ...["texel_size_ws", "depth_range_ws", "bias_constant", "bias_slope", "light_position_ws", "far_over_near"],
+];
+const kWindowMargin = 1.05; // for kernels beyond the border
+const kNearestShare = 1 / 500; // of a lamp's far plane, as the program has it
+
+const lengthOfRow = (m, row) => Math.hypot(m[row], m[4 + row], m[8 + row]);
+const setRow = (m, row, values) => m.map((value, i) => ((i & 3) === row ? values[i >> 2] : value));
+const add = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
+const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+
+// The sphere around what a camera sees between two depths: through the corners, or around the far ones alone.
+const findSlice = ({ clip, position, forward }, from, to) => {
+  const half = Math.hypot(1 / lengthOfRow(clip, 0), 1 / lengthOfRow(clip, 1));
+  const isPerspective = lengthOfRow(clip, 3) > 0;
+  const at = isPerspective ? Math.min(to, ((from + to) / 2) * (1 + half * half)) : (from + to) / 2;
+  const reachTo = (depth) => Math.hypot(depth - at, half * (isPerspective ? depth : 1));
+  return { middle: add(position, forward, at), radius: Math.max(reachTo(from), reachTo(to)) };
+};
+
+// What a sun's layer becomes that covers a sphere of a scene; `back` takes the world to where the sun was.
+const frameSun = (uv, back, cover, { middle, radius }) => {
+  const wide = 2 * cover.radius * Math.max(lengthOfRow(uv, 0), lengthOfRow(uv, 1));
+  const deep = 2 * radius * lengthOfRow(uv, 2);
+  const narrow = (own, center) => {
+    const matrix = multiply(own, back);
+    const [u, v] = transform(matrix, cover.middle, 1);
+    const toOrigin = multiply(shiftBy([-u, -v, -transform(matrix, middle, 1)[2]]), matrix);
+    return multiply(shiftBy(center), multiply(scaleBy([1 / wide, 1 / wide, 1 / deep]), toOrigin));
+  };
+  return { wide, deep, uv: narrow(uv, [0.5, 0.5, 0.5]), clipOf: (clip) => narrow(clip, [0, 0, 0.5]) };
+};
+// What a lamp's layer becomes, so far from a scene's middle; `range` is the run's own from the near to the far plane.
+const frameLamp = (uv, back, range, distance, { radius }) => {
+  const far = 1.001 * (distance + radius);
+  const near = Math.max((distance - radius) / Math.sqrt(3), kNearestShare * far);
+  const turned = multiply(uv, back);
+  const along = [0, 1, 2, 3].map((column) => turned[4 * column + 3]);
+  const past = add(along, [0, 0, 0, near], -1).map((value) => value / (far - near));
+  const clipOf = (clip) => {
+    const isReversed =
+      dot(
+        [0, 4, 8].map((i) => clip[i + 2]),
+        [0, 4, 8].map((i) => clip[i + 3]),
+      ) < 0;
+    const depth = past.map((value) => far * value);
+    return setRow(multiply(clip, back), 2, isReversed ? add(along, depth, -1) : depth);
+  };
+  return { wide: 1, deep: (far - near) / range, uv: setRow(turned, 2, past), clipOf, farOverNear: far / near };
+};
+
+// `bounds` are the scene's; `cameraNow` gives where the camera is; `fit` is the run's.
+const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => {
+  const { middle, radius } = bounds;
+  const uniformsOf = player.uniformsOf;
+  const find = (name) => steps.map((index) => uniformsOf(index)[name]).find(Boolean);
+  const followsView = /^(view|cascades)/.test(fit);
+  const byMatrix = new Map();
+  for (const { uv_depth_from_world: uv, layer_slice: slice } of steps.map(uniformsOf))
+    if (uv && !byMatrix.has(String(uv))) byMatrix.set(String(uv), { uv, slice });
+  const layers = [...byMatrix.values()];
+  // A layer's casters have its window, but not its matrix.
+  const gapTo =
+    (clip) =>
+    ({ uv }) =>
+      clip.reduce((sum, value, i) => sum + ((i & 3) < 2 ? Math.abs(value - (2 * uv[i] - uv[i | 3])) : 0), 0);
+  const nearest = (clip) => layers.reduce((a, b) => (gapTo(clip)(b) < gapTo(clip)(a) ? b : a));
+  const layerOf = new Map();
+  for (const index of layers.length > 0 ? steps : []) {
+    const { uv_depth_from_world: uv, clip_from_world: clip } = uniformsOf(index);
+    const read = () => [...player.listSteps(index)].map((each) => layerOf.get(each)).find(Boolean);
+    layerOf.set(index, uv ? byMatrix.get(String(uv)) : casters.includes(index) ? nearest(clip) : read());
+  }
+  const direction = find("light_direction_ws");
+  const lamp = find("light_position_ws");
+  const isCube = find("layer_face") !== undefined;
+  const isBall = lamp && !(find("light_cone")?.[1] > -1); // a point light, which has no cone
+  const stays = layers.length === 0 || find("map_texels") ? "its map is bent for the run's own camera and light" : "";
+
+  const coverOf = ({ slice = [0, 0, Infinity, Infinity] }) => {
+    const camera = cameraNow();
+    const depth = dot(add(middle, camera.position, -1), camera.forward);
+    const [from, to] = [Math.max(0, slice[0], depth - radius), Math.min(slice[3], depth + radius)];
+    const seen = followsView && from < to ? findSlice(camera, from, to) : bounds;
+    return seen.radius < radius ? { ...seen, radius: kWindowMargin * seen.radius } : bounds;
+  };
+  const restore = () => {
+    for (const index of steps)
+      if (!uniformsOf(index).camera_forward_ws || !uniformsOf(index).clip_from_world)
+        player.setUniforms(index, Object.fromEntries(kOfLight.map((name) => [name, null])));
+  };
+  // `point` is one of the light's own, from its middle: tangents of a sun, metres of a lamp; only a point light is deep.
+  const move = ([yaw, pitch], point = [0, 0, 0]) => {
+    const isMoved = yaw !== 0 || pitch !== 0 || (followsView && cameraNow().isTurned);
+    const off = Math.hypot(...point);
+    if (!isMoved && off === 0) return restore();
+    const turn = turnAround(middle, direction, yaw, pitch);
+    const across = normalise(cross(direction, Math.abs(direction[1]) < 0.9 ? [0, 1, 0] : [1, 0, 0]));
+    const beside = add(add([0, 0, 0], across, point[0]), cross(direction, across), point[1]);
+    const about = (angle) => turnAt(middle, rotateAbout(normalise(beside), lamp ? 0 : angle));
+    const tilt = Math.atan(Math.hypot(...beside));
+    const shift = isBall ? add(beside, direction, point[2]) : beside;
+    // A spot light's cone stays about its middle.
+    const place = lamp && transform(turn.forth, isBall ? add(lamp, shift) : lamp, 1);
+    const unshift = lamp ? shiftBy(shift.map((value) => -value)) : about(-tilt);
+    const back = isCube ? shiftBy(add(lamp, place, -1)) : multiply(unshift, turn.back);
+    const turned = (vector) => (isCube ? vector : transform(turn.forth, transform(about(tilt), vector, 0), 0));
+    const distance = lamp && Math.hypot(...add(middle, lamp, -1));
+    const own = ({ uv }) => ({ wide: 1, deep: 1, uv: multiply(uv, back), clipOf: (clip) => multiply(clip, back) });
+    const frame = (layer) =>
+      lamp
+        ? frameLamp(layer.uv, back, find("depth_range_ws")[0], distance, { radius: bounds.radius + off })
+        : frameSun(layer.uv, back, coverOf(layer), bounds);
+    const framed = new Map(layers.map((layer) => [layer, isMoved ? frame(layer) : own(layer)]));
+    for (const index of steps) {
+      const base = uniformsOf(index);
+      const { wide, deep, uv, clipOf, farOverNear } = framed.get(layerOf.get(index) ?? layers[0]);
+      const changes = {};
+      if (base.uv_depth_from_world) changes.uv_depth_from_world = uv;
+      if (casters.includes(index)) changes.clip_from_world = clipOf(base.clip_from_world);
+      if (base.light_position_ws) changes.light_position_ws = place;
+      if (base.far_over_near && farOverNear) changes.far_over_near = [farOverNear];
+      for (const name of ["light_direction_ws", "light_right_ws", "light_up_ws"])
+        if (base[name]) changes[name] = turned(base[name]);
+      const factors = { texel_size_ws: wide, depth_range_ws: deep, bias_constant: 1 / deep, bias_slope: wide / deep };
+      for (const [name, factor] of Object.entries(factors)) if (base[name]) changes[name] = [base[name][0] * factor];
+      player.setUniforms(index, changes);
+    }
+  };
+  return {
+    isSun: !stays && !lamp,
+    stays,
+    moveLight: stays ? () => {} : move,
+    directionOf: ([yaw, pitch]) => transform(turnAround(middle, direction, yaw, pitch).forth, direction, 0),
+  };
+};
+
 // Moves the camera of a frame: nothing is drawn but the run's own steps, with other matrices. Matrices are in
 // columns, as uniforms have them.
 const multiply = (a, b) =>
@@ -105,4 +247,73 @@ const followDrags = (node, onTurn, begins = () => true) => {
     onTurn(x * kTurnPerPixel, y * kTurnPerPixel);
   });
   for (const end of ["pointerup", "pointercancel"]) node.addEventListener(end, () => (from = null));
+};
+
+// A reference where no rays were traced: the mean visibility of many maps, each drawn from another point of the light.
+const kReferenceMaps = 256;
+const kGoldenAngle = Math.PI * (3 - Math.sqrt(5));
+const kOtherAngle = 2 * Math.PI * (Math.SQRT2 - 1);
+// Points of a ball whose first two coordinates are spread evenly over a disk, by the spiral of a sunflower. With the third
+// they look so from every side: they are points of a sphere in four dimensions less one coordinate, and any two of its
+// coordinates are spread evenly over a disk (Archimedes' theorem of the sphere and the cylinder, two dimensions up).
+const ballPoint = (i, count) => {
+  const [squared, angle] = [(i + 0.5) / count, i * kGoldenAngle];
+  const radius = Math.sqrt(squared);
+  return [radius * Math.cos(angle), radius * Math.sin(angle), Math.sqrt(1 - squared) * Math.cos(i * kOtherAngle)];
+};
+
+// `frame` is that of a lookup without a filter.
+const makeReference = (gl, { player, picture, lightSize }, motion, visibility) => {
+  const { width, height } = player.textureOf(visibility);
+  const fragment = `#version 300 es
+    precision highp float;
+    uniform sampler2D mean;
+    uniform sampler2D next;
+    uniform float share;
+    out float visibility;
+    void main() {
+      ivec2 pixel = ivec2(gl_FragCoord.xy);
+      visibility = mix(texelFetch(mean, pixel, 0).x, texelFetch(next, pixel, 0).x, share);
+    }`;
+  const program = linkProgram(gl, "the reference", kTriangle, fragment);
+  const array = gl.createVertexArray();
+  const means = [0, 1].map(() => makeTarget(gl, gl.R32F, width, height));
+  let maps = 0;
+  const add = (texture) => {
+    const [from, to] = [means[maps % 2], means[(maps + 1) % 2]];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, to.framebuffer);
+    gl.viewport(0, 0, width, height);
+    [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
+    gl.useProgram(program);
+    [from.texture, texture].forEach((each, unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, each);
+      gl.bindSampler(unit, null);
+      gl.uniform1i(gl.getUniformLocation(program, unit === 0 ? "mean" : "next"), unit);
+    });
+    gl.uniform1f(gl.getUniformLocation(program, "share"), 1 / ++maps);
+    gl.bindVertexArray(array);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  };
+  return {
+    // Begins anew, since light or camera have moved.
+    restart: () => (maps = 0),
+    count: () => maps,
+    texture: () => means[maps % 2].texture,
+    read: () => {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, means[maps % 2].framebuffer);
+      return readValues(gl, width, height);
+    },
+    // Adds some maps from points of a light that is turned so.
+    refine: (light, count) => {
+      for (const last = Math.min(maps + count, kReferenceMaps); maps < last;) {
+        const point = ballPoint(maps, kReferenceMaps).map((value) => 0.5 * lightSize * value);
+        motion.moveLight(light, point);
+        player.draw(visibility);
+        add(player.textureOf(visibility).object);
+      }
+      motion.moveLight(light);
+      return maps < kReferenceMaps;
+    },
+  };
 };
