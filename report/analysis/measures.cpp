@@ -315,11 +315,10 @@ Quantity make_frame_measure(const CostKind& cost, LightMotion light,
     made.id = fmt::format("gpu.{}.{}", cost.gpu, made.id);
     made.title = fmt::format("estimate for {}, {} light", cost.gpu, name_light(light));
     made.meaning = fmt::format(
-        "ms of a {}x{} frame with one map, estimated for {}, {} light: {}; left out: {}what every lookup pays. "
+        "ms of a {}x{} frame with one map, estimated for {}, {} light: {}; left out: what every lookup pays. "
         "Published times were missed by a factor of at most {}",
         records::kGpuFrameWidth, records::kGpuFrameHeight, cost.gpu, name_light(light),
-        is_moving ? "prefilter and lookups" : "lookups", is_moving ? "drawing the map, and " : "",
-        records::kEstimateFactor);
+        is_moving ? "a lower bound of the map, prefilter and lookups" : "lookups", records::kEstimateFactor);
   } else {
     made.title =
         is_moving ? "time of map, prefilter and filter, moving light" : "time of the filter alone, static light";
