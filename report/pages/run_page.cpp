@@ -12,7 +12,7 @@
 #include "report/analysis/findings.h"
 #include "report/analysis/gpu_costs.h"
 #include "report/analysis/measures.h"
-#include "report/images/attribution_bar.h"
+#include "report/images/grid.h"
 #include "report/pages/answer.h"
 #include "report/pages/grid_sheets.h"
 #include "report/pages/run_data.h"

@@ -1,8 +1,7 @@
-#include "report/images/attribution_bar.h"
-
 #include <gmock/gmock.h>
 
 #include "report/images/color_values.h"
+#include "report/images/grid.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {

@@ -1,0 +1,311 @@
+#include "report/images/heat_figures.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "report/images/color_values.h"
+#include "report/images/map_figures.h"
+#include "report/images/picture_io.h"
+#include "tests/report/records/synthetic.h"
+
+namespace shadowbench::images {
+namespace {
+
+using namespace records;
+
+TEST(Diverging, ZeroIsNeutral_EndsAreBlueAndRed_BeyondIsTheEnd) {
+  const auto zero = map_diverging(0.0f, 0.5f), below = map_diverging(-0.5f, 0.5f), above = map_diverging(0.5f, 0.5f);
+  EXPECT_NEAR(zero[0], zero[2], 0.02f);
+  EXPECT_GT(below[2], below[0] + 0.3f);
+  EXPECT_GT(above[0], above[2] + 0.3f);
+  EXPECT_EQ(map_diverging(7.0f, 0.5f), above);
+  EXPECT_EQ(map_diverging(-7.0f, 0.5f), below);
+}
+
+TEST(ErrorScale, IsTheTopOfTheErrors_RoundedUp) {
+  Image image(100, 10, 1);
+  for (std::size_t i = 0; i < 1000; ++i) image.texels[i] = i < 500 ? 0.0f : 0.0003f * static_cast<float>(i + 1);
+  EXPECT_DOUBLE_EQ(choose_error_scale({&image}), 0.5);  // 95 % of the rest lie under 0.29
+  image.texels[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_DOUBLE_EQ(choose_error_scale({&image}), 0.5);
+}
+
+TEST(ErrorScale, RoundingErrorsAllOverAnImage_HaveNoSay) {
+  Image image(100, 10, 1);
+  std::fill(image.texels.begin(), image.texels.end(), 1e-7f);
+  std::fill_n(image.texels.begin(), 10, 0.4f);
+  EXPECT_DOUBLE_EQ(choose_error_scale({&image}), 0.5);
+}
+
+TEST(ErrorScale, OfNoError_IsTheSmallest) {
+  const Image image(4, 4, 1);
+  EXPECT_DOUBLE_EQ(choose_error_scale({&image}), 0.01);
+}
+
+// The ends of viridis, as its authors give them for a display: (0.267, 0.005, 0.329) and (0.993, 0.906, 0.144).
+TEST(ColorMaps, AreEncodedForADisplay) {
+  const Image colors = color_values(make_ramp(2, 1), color_map("viridis"));
+  const std::vector<float> ends = {0.267f, 0.005f, 0.329f, 0.993f, 0.906f, 0.144f};
+  for (std::size_t i = 0; i < ends.size(); ++i) EXPECT_NEAR(colors.texels[i], ends[i], 0.002f);
+}
+
+Image make_constant(int side, float value) {
+  Image image(side, side, 1);
+  std::fill(image.texels.begin(), image.texels.end(), value);
+  return image;
+}
+
+int count_stability_pixels(const Image& canvas, const images::Rgb& color) {
+  int count = 0;
+  for (std::size_t i = 0; i < canvas.texels.size(); i += 3) {
+    bool equal = true;
+    for (std::size_t c = 0; c < 3; ++c) equal = equal && std::abs(canvas.texels[i + c] - color[c]) < 0.5f / 255.0f;
+    count += equal ? 1 : 0;
+  }
+  return count;
+}
+
+Image draw(const StabilityImages& images) {
+  return draw_figure({"odd on cubes", "note", show_stability(images, {"a", "b", "c", "d"}), 2});
+}
+
+TEST(StabilityPicture, OnlyWhatExists_IsDrawn) {
+  StabilityImages all;
+  all.headroom = make_constant(64, 3.0f);
+  const Image one = draw(all);
+  all.variance = make_constant(64, 1e-6f);
+  all.half_difference = make_constant(64, 0.1f);
+  all.shortfall = all.violation = make_constant(64, 0.0f);
+  const Image four = draw(all);
+  EXPECT_GT(four.width, 2 * one.width - 100);
+  EXPECT_GT(four.height, 2 * one.height - 180);
+  const images::Rgb faint = map_diverging(-0.4f, 1.0f);  // a variance of 1e-6, four of ten decades from nothing
+  EXPECT_LT(count_stability_pixels(one, faint), 1000);
+  EXPECT_GE(count_stability_pixels(four, faint), 640 * 640);
+}
+
+/// One broken texel of a map that is reduced four times over must not be lost between the texels that are shown.
+TEST(StabilityPicture, OneBrokenTexel_IsSeen) {
+  for (const float broken : {-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    StabilityImages images;
+    images.headroom = make_constant(2560, 3.0f);
+    EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 0);
+    *images.headroom.at(1002, 1502) = broken;
+    EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 1);
+  }
+}
+
+TEST(StabilityPicture, EmptyTexel_IsNotBroken) {
+  StabilityImages images;
+  images.headroom = make_constant(64, std::numeric_limits<float>::infinity());
+  EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 0);
+}
+
+TEST(StabilityPicture, NegativeVariance_IsRed_AndTheLowestOfItsBlockIsShown) {
+  StabilityImages images;
+  images.variance = make_constant(1280, 1e-3f);
+  const images::Rgb red = map_diverging(0.5f, 1.0f);  // -1e-5, half-way down ten decades
+  const int of_bar = count_stability_pixels(draw(images), red);
+  *images.variance.at(7, 9) = -1e-5f;
+  const Image canvas = draw(images);
+  EXPECT_EQ(count_stability_pixels(canvas, red), of_bar + 1);
+  EXPECT_GT(count_stability_pixels(canvas, map_diverging(-0.7f, 1.0f)), 640 * 640 - 2);
+}
+
+TEST(StabilityPicture, UnexplainedShortfall_IsMagenta_ExplainedIsNot) {
+  StabilityImages images;
+  images.shortfall = make_constant(640, 0.1f);
+  images.violation = make_constant(640, 0.0f);
+  EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 0);
+  for (int x = 0; x < 5; ++x) *images.violation.at(x, 3) = 0.01f;
+  EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 5);
+}
+
+TEST(StabilityPicture, Difference_HasItsSign) {
+  StabilityImages images;
+  images.half_difference = make_constant(640, 0.1f);
+  EXPECT_GE(count_stability_pixels(draw(images), map_diverging(0.1f, 0.1f)), 640 * 640);
+}
+
+/// How many pixels of a picture are clearly of one colour.
+template <class IsColor>
+long count_pixels(const Image& picture, IsColor is_color) {
+  long count = 0;
+  for (std::size_t i = 0; i + 2 < picture.texels.size(); i += 3)
+    count += is_color(picture.texels[i], picture.texels[i + 1], picture.texels[i + 2]);
+  return count;
+}
+
+TEST(DifferencePicture, ShowsBothSigns_WhatIsNotFinite_AndFlip) {
+  const records::TemporaryFolder folder("difference_picture");
+  Image difference(64, 32, 1);
+  for (int x = 0; x < 64; ++x)
+    for (int y = 0; y < 32; ++y) difference.at(x, y)[0] = x < 16 ? 0.1f : x < 24 ? -0.1f : 0.0f;
+  write_figure(folder.path() / "a.png", {"a less b", "rmse 0.1", show_difference(difference, Image(64, 32, 1))});
+  const Image a = read_picture(folder.path() / "a.png");
+  const auto is_red = [](float r, float g, float b) { return r > 0.7f && g < 0.2f && b < 0.25f; };
+  const auto is_blue = [](float r, float g, float b) { return b > 0.6f && r < 0.15f && g < 0.4f; };
+  const auto is_magenta = [](float r, float g, float b) { return r > 0.99f && g < 0.01f && b > 0.99f; };
+  EXPECT_GT(count_pixels(a, is_red), 640 * 320 / 5);
+  EXPECT_GT(count_pixels(a, is_blue), 640 * 320 / 10);
+  EXPECT_LT(count_pixels(a, is_blue), 640 * 320 / 5) << "red is where the first is larger";
+  EXPECT_EQ(count_pixels(a, is_magenta), 0);
+  difference.at(40, 20)[0] = std::numeric_limits<float>::quiet_NaN();
+  difference.at(50, 20)[0] = std::numeric_limits<float>::infinity();
+  write_figure(folder.path() / "b.png", {"a less b", "rmse 0.1", show_difference(difference, {})});
+  const Image b = read_picture(folder.path() / "b.png");
+  EXPECT_EQ(count_pixels(b, is_magenta), 100) << "a pixel is ten by ten";
+  const auto is_grey = [](float r, float g, float blue) {
+    return std::abs(r - 0.72f) < 0.01f && std::abs(g - 0.74f) < 0.01f && std::abs(blue - 0.77f) < 0.01f;
+  };
+  EXPECT_EQ(count_pixels(b, is_grey), 100) << "left out by the mask";
+  EXPECT_LT(b.width, a.width) << "one panel";
+}
+
+/// A ramp on the left half, nothing on the right one.
+Image make_depth_map(int side) {
+  Image depth(side, side, 1);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      *depth.at(x, y) = x < side / 2 ? 0.2f + 0.5f * static_cast<float>(y) / static_cast<float>(side) : 1.0f;
+  return depth;
+}
+
+std::size_t count_color(const Image& image, float r, float g, float b) {
+  const auto near = [](float a, float c) { return std::abs(a - c) < 1e-5f; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < image.texels.size(); i += 3)
+    if (near(image.texels[i], r) && near(image.texels[i + 1], g) && near(image.texels[i + 2], b)) ++count;
+  return count;
+}
+
+TEST(DepthHistogram, CountsEveryTexelOnce_EmptyOnesApart) {
+  const DepthHistogram histogram = count_depths(make_depth_map(64), 10);
+  EXPECT_EQ(histogram.empty, 64 * 32);
+  EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), std::int64_t{0}), 64 * 32);
+  EXPECT_EQ(histogram.counts[1], 0);
+  EXPECT_EQ(histogram.counts[7], 0);
+  for (std::size_t bin = 2; bin < 7; ++bin)
+    EXPECT_NEAR(static_cast<double>(histogram.counts[bin]), 64 * 32 / 5.0, 40.0) << bin;
+}
+
+TEST(DepthHistogram, DepthsOutsideTheRange_GoToTheNearestBin) {
+  Image depth(2, 1, 1);
+  depth.texels = {-0.5f, 2.0f};
+  const DepthHistogram histogram = count_depths(depth, 4);
+  EXPECT_EQ(histogram.counts, (std::vector<std::int64_t>{1, 0, 0, 1}));
+}
+
+Image draw_depth(const Image& stored, const filters::DepthCurve& curve) {
+  return draw_figure({"map", "note", show_depth({{stored, 12.0}}, curve)});
+}
+
+TEST(DepthPicture, ShowsTheMapAndABarForEveryFilledBin) {
+  const Image drawn = draw_depth(make_depth_map(256), {});
+  EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 768u * 384u) << "the empty half";
+  const std::size_t bars = count_color(drawn, 0.20f, 0.36f, 0.60f);
+  EXPECT_GT(bars, 5000u);
+  Image flat = make_depth_map(256);
+  for (float& depth : flat.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
+  EXPECT_LT(count_color(draw_depth(flat, {}), 0.20f, 0.36f, 0.60f), bars / 20) << "one bin instead of many";
+}
+
+TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLinearised) {
+  const Image depth = make_depth_map(256);
+  for (const filters::DepthCurve& curve :
+       {filters::DepthCurve{true}, filters::DepthCurve{false, 50.0}, filters::DepthCurve{true, 50.0}}) {
+    Image stored = depth;
+    for (float& d : stored.texels) d = curve.store(d);
+    const Figure figure{"map", "note", show_depth({{stored, 12.0}}, curve)};
+    const Image drawn = draw_figure(figure);
+    EXPECT_GT(drawn.width, 3 * draw_depth(depth, {}).width / 2);
+    EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 2 * 768u * 384u) << "the empty half, twice";
+    // The linearised map is that of the linear map, at the right.
+    const std::vector<PlacedPicture> placed = layout_figure(figure).pictures;
+    ASSERT_GE(placed.size(), 2u);
+    EXPECT_EQ(placed[0].box.y, placed[1].box.y);
+    EXPECT_GT(placed[1].box.x, placed[0].box.x + placed[0].box.width);
+    const Stack linear = show_depth({{depth, 12.0}}, {}).front();
+    const Image& once = linear.front().picture;
+    ASSERT_EQ(placed[1].picture->texels.size(), once.texels.size());
+    int different = 0;
+    for (std::size_t i = 0; i < once.texels.size(); ++i)
+      different += std::abs(placed[1].picture->texels[i] - once.texels[i]) > 0.01f ? 1 : 0;
+    EXPECT_EQ(different, 0) << curve.reversed << curve.far_over_near;
+  }
+}
+
+TEST(DensityPicture, MoreTexels_AnotherColour_AndSurfacesWithoutAreGrey) {
+  Image density(4, 1, 1);
+  density.texels = {0.1f, 10.0f, 0.0f, -1.0f};
+  const Image drawn = draw_figure({"density", "", {show_density(density)}});
+  EXPECT_EQ(count_color(drawn, 0.62f, 0.62f, 0.62f), 1u);
+  EXPECT_EQ(count_color(drawn, 0.93f, 0.94f, 0.95f), 1u);
+  // The pixels stand in a row, few texels blue, many red.
+  const auto* grey = drawn.texels.data();
+  while (!(grey[0] == 0.62f && grey[1] == 0.62f && grey[2] == 0.62f)) grey += 3;
+  const float* few = grey - 6;
+  const float* many = grey - 3;
+  EXPECT_GT(few[2], few[0]);
+  EXPECT_GT(many[0], many[2]);
+}
+
+/// A white picture, and where the map's texels lie on it.
+struct Wall {
+  Image picture;
+  Image texel;
+  Image density;
+};
+
+Image draw(const Wall& wall) {
+  return draw_figure({"grid", "", {show_texels(wall.picture, wall.texel, wall.density)}});
+}
+
+/// A wall whose texels are `pixels` wide, white.
+Wall make_wall(int side, float pixels) {
+  Wall picture{Image(side, side, 3), Image(side, side, 2), Image(side, side, 1)};
+  for (float& value : picture.picture.texels) value = 1.0f;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      picture.texel.at(x, y)[0] = static_cast<float>(x) / pixels;
+      picture.texel.at(x, y)[1] = static_cast<float>(y) / pixels;
+      *picture.density.at(x, y) = 1.0f / (pixels * pixels);
+    }
+  }
+  return picture;
+}
+
+TEST(TexelGrid, DarkensEveryOtherTexel) {
+  const Image drawn = draw(make_wall(64, 8.0f));
+  EXPECT_EQ(count_color(drawn, 0.55f, 0.55f, 0.55f), 64u * 64u / 2u);
+}
+
+TEST(TexelGrid, SmallTexels_AreGatheredInFieldsThatShow) {
+  EXPECT_EQ(choose_field_texels(make_wall(8, 8.0f).density), 1);
+  EXPECT_EQ(choose_field_texels(make_wall(8, 1.0f).density), 8);
+  EXPECT_EQ(choose_field_texels(Image(4, 4, 1)), 1) << "no receiver";
+  const Image drawn = draw(make_wall(64, 1.0f));
+  EXPECT_EQ(count_color(drawn, 0.55f, 0.55f, 0.55f), 64u * 64u / 2u);
+  // Fields 8 pixels wide: along each of 64 rows 4 of them are dark, and have two sides.
+  std::size_t sides = 0;
+  for (std::size_t i = 3; i < drawn.texels.size(); i += 3) {
+    const auto is_dark = [&](std::size_t at) {
+      return std::abs(drawn.texels[at] - 0.55f) < 1e-5f && drawn.texels[at] == drawn.texels[at + 1];
+    };
+    sides += is_dark(i) != is_dark(i - 3) ? 1u : 0u;
+  }
+  EXPECT_EQ(sides, 64u * 4u * 2u);
+}
+
+TEST(TexelGrid, FieldsFarSmallerThanTheMedian_Fade) {
+  Wall picture = make_wall(64, 8.0f);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 64; ++x) *picture.density.at(x, y) = 1.0f;
+  EXPECT_EQ(count_color(draw(picture), 0.55f, 0.55f, 0.55f), 64u * 48u / 2u);
+}
+
+}  // namespace
+}  // namespace shadowbench::images
