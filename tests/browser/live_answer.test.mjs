@@ -149,8 +149,11 @@ test("AGpu_DrawsThePictureOfTheAnswer_WhenAPointerComes", () => withBrowser(kMes
   await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("maps"));
   assert.ok((compareShots([before, await look()])).share > 0.01);
   // Another filter is drawn with the same light.
-  await page.locator(".picks button:not([aria-pressed=true])").first().click();
+  const shown = () => page.locator(".answer figure.split").innerText(), first = await shown();
+  await page.locator(".answer form").getByLabel("Kernel").selectOption("medium");
+  await page.locator(".picks button").first().click();
   await isLive(page);
+  assert.notEqual(await shown(), first);
   await close();
 }));
 
