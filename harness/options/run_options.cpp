@@ -345,7 +345,7 @@ std::vector<RunOption> list_run_options() {
   t.add_row(
        "--width",
        "kernel width unless a filter names one: sharp, medium, soft, texels, light (what the scene's light needs) or "
-       "own (the filter's default) (default light in the experiment 'default', else own)",
+       "own (the filter's default) (default light)",
        kOwnWidth,
        [](RunOptions& o, const Told& told) {
          const auto& text = std::get<std::string>(told);
@@ -388,7 +388,7 @@ std::vector<RunOption> list_run_options() {
       .rarely();
   t.add_row(
        "--budget",
-       "for --rounds auto: seconds of timing per filter and map (default 0.2 in the experiment 'default', else 0.4)",
+       "for --rounds auto: seconds of timing per filter and map (default 0.2)",
        0.4, [](RunOptions& o, const Told& told) { o.rounds.budget_ms = 1e3 * std::get<double>(told); },
        [](const RunOptions& o) { return o.rounds.budget_ms / 1e3; })
       .in(measure)

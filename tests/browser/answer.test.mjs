@@ -167,17 +167,17 @@ test("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", async () =
 });
 
 test("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven_OrIsHidden", async () => {
-  const { page, close } = await openAnswer("odd"), { scenes } = readResults("odd"), lines = [];
-  for (const button of await page.locator(".picks button").all()) {
-    await button.click();
-    lines.push(splitWords(await readCommand(page, 1)).join("|"));
-  }
+  const { page, close } = await openAnswer("odd"), { scenes } = readResults("odd"), { configurations, places } = await readData(page);
+  const write = async (index, place) => splitWords(await page.evaluate((pick) => shadowbench.answer.writeView(...pick), [index, place])).join("|");
+  const [button] = await page.locator(".picks button").all();
+  await button.click();
+  const lines = [splitWords(await readCommand(page, 1)).join("|")];
+  for (const place of places.keys()) lines.push(await write(0, place));
   assert.ok(existsSync(join(folderOf("odd"), "..", scenes[0].view_words[0])), "the scene was given as a file");
   const [odd, cubes] = scenes.map(({ view_words: words }) => `view|${words.join("|")}|`);
   assert.ok(odd.endsWith("|--ground|") && lines.some((line) => line.startsWith(odd)) && lines.some((line) => line.startsWith(cubes)), lines.join());
-  const { configurations } = await readData(page), mine = configurations.findIndex(({ filter }) => filter === "nine_compares");
-  const own = await page.evaluate((index) => shadowbench.answer.writeView(index, 0), mine);
-  assert.ok(splitWords(own).join("|").includes("|--filter-file|nine_compares.glsl|--left|truth|--right|nine_compares"), own);
+  const own = await write(configurations.findIndex(({ filter }) => filter === "nine_compares"), 0);
+  assert.ok(own.includes("|--filter-file|nine_compares.glsl|--left|truth|--right|nine_compares"), own);
   await close();
   for (const forget of [({ places }) => places.forEach((place) => { place.view = []; }), (data) => data.configurations.forEach(({ filter }) => { data.files[filter] = null; })]) {
     const unknown = await open(changePage("odd", "unknown.html", forget));

@@ -24,7 +24,7 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {"run --colour red", 2, {"--colour"}},
       {"", 2, {"subcommand"}},
       {"rn", 2, {"'shadowbench rn'", "did you mean 'run'"}},
-      {"nosuch", 2, {"'shadowbench nosuch'", "run, list, diff"}},
+      {"nosuch", 2, {"'shadowbench nosuch'", "run, advise, list"}},
       {"submit sweep --engine slurm", 2, {"'shadowbench submit'", "harness/slurm.sh"}},
       {"status big", 2, {"'shadowbench status'", "harness/slurm.sh"}},
       {"merge nosuch", 2, {"--out"}},
