@@ -14,7 +14,9 @@
 #include "harness/gpu/facts_request.h"
 #include "harness/run/merge.h"
 #include "harness/run/run_experiment.h"
+#include "report/analysis/advice.h"
 #include "report/files/folder_lock.h"
+#include "report/pages/advice_text.h"
 #include "report/records/filter_mistakes.h"
 #include "report/records/json_io.h"
 
@@ -82,6 +84,16 @@ void note_filter_mistakes(const RunArguments& arguments, const std::exception& c
   }
 }
 
+/// The run's answer, its sentence bold on a terminal.
+std::string describe_answer(const std::filesystem::path& out) {
+  const records::Results results = records::read_results(out / "results.json");
+  if (analysis::withhold_mixed_times(results.cells)) return "";
+  const analysis::AdviceRequest request{.cheapest = analysis::choose_cost(results.cells)};
+  std::string text = pages::make_answer_text(results.run, analysis::advise(results.cells, request));
+  if (!text.empty() && isatty(STDOUT_FILENO)) text.insert(text.find('\n'), "\x1b[0m").insert(0, "\x1b[1m");
+  return text;
+}
+
 int run_experiment(const CommandLine& line, RunArguments& arguments) {
   const auto is_on = [&](const char* flag) { return options::find_told<bool>(arguments.told, flag); };
   if (!is_on("--truth") && is_on("--attribution") && line.has("--attribution"))
@@ -107,7 +119,8 @@ int run_experiment(const CommandLine& line, RunArguments& arguments) {
         run_engines(options, arguments, progress);
       },
       "what was finished stays, and the same command goes on from there", arguments.every_step);
-  print("report: {}\n", (options.out / "index.html").string());
+  print("{}report: {}\nlimits: shadowbench advise {} --max-rmse 0.03\n", describe_answer(options.out),
+        (options.out / "index.html").string(), options.out.string());
   if (arguments.strict) require_sound_report(options.out);
   return 0;
 }

@@ -181,7 +181,7 @@ std::vector<std::string> list_run_notes(const Advice& advice, const records::GlR
 std::string format_cost(double value, const CostKind& cost, const records::GlRecord& gl) {
   switch (cost.kind) {
     case CostKind::kTime: return fmt::format("{} {}", records::format_number(value), records::time_unit(gl));
-    case CostKind::kBytes: return fmt::format("{} bytes", records::format_number(value));
+    case CostKind::kBytes: return records::format_bytes(value);
     case CostKind::kFetches:
       return fmt::format("{} {}", records::format_number(value), value == 1.0 ? "fetch" : "fetches");
     case CostKind::kGpu: break;

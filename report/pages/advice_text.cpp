@@ -103,6 +103,12 @@ std::optional<analysis::Cost> measure_shown(const records::CellRecord& cell, con
   return analysis::measure_cost({&cell}, is_estimate ? asked : analysis::CostKind::kTime, advice.request.light);
 }
 
+/// A ratio to no filter, and whether its interval is wider than it.
+std::string describe_ratio(const std::optional<records::Ratio>& ratio) {
+  const bool is_imprecise = ratio && ratio->ci95.high - ratio->ci95.low > ratio->median;
+  return records::format_ratio(ratio) + (is_imprecise ? " imprecise" : "");
+}
+
 Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advice) {
   const bool is_estimate = advice.request.cheapest.kind == analysis::CostKind::kGpu;
   const auto cost = measure_shown(cell, advice);
@@ -111,17 +117,16 @@ Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advic
           cost && !is_estimate ? fmt::format("{} .. {}", records::format_number(cost->quartiles.low),
                                              records::format_number(cost->quartiles.high))
                                : records::kNothing,
-          records::format_ratio(analysis::frame_ratio(cell, advice.request.light)),
+          describe_ratio(analysis::frame_ratio(cell, advice.request.light)),
           records::format_number(cell.error.rmse),
-          records::format_number(cell.cost.map_bytes),
-          records::format_number(cell.cost.fetches),
-          cell.key};
+          cell.cost.map_bytes ? records::format_bytes(*cell.cost.map_bytes) : records::kNothing,
+          records::format_number(cell.cost.fetches)};
 }
 
 std::string list_cells(const records::RunRecord& run, const analysis::Advice& advice) {
   const std::string& gpu = advice.request.cheapest.gpu;
   std::vector<Row> rows = {{"scene", gpu.empty() ? records::time_unit(run.gl) : "ms, " + gpu, "quartiles",
-                            "/ none [95 %]", "RMSE", "bytes", "fetches", "cell"}};
+                            "/ none [95 %]", "RMSE", "map", "fetches"}};
   bool timed = false;
   for (const records::CellRecord* cell : advice.keeping.front().configuration.cells) {
     rows.push_back(describe_cell(*cell, advice));
@@ -228,6 +233,10 @@ std::string describe_nearest(const analysis::Advice& advice) {
 }
 
 }  // namespace
+
+std::string make_answer_text(const records::RunRecord& run, const analysis::Advice& advice) {
+  return advice.keeping.empty() ? "" : wrap(analysis::describe_choice(advice)) + list_picks(run, advice);
+}
 
 std::string make_advice_text(const records::RunRecord& run, const analysis::Advice& advice) {
   if (advice.places.empty()) return wrap(fmt::format("Nothing fits: {}.", analysis::describe_failure(advice)));

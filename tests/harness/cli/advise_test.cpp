@@ -44,7 +44,7 @@ class Advise : public ProgramTest {
 TEST_F(Advise, GivesTheCheapestThatKeepsTheLimits) {
   const Outcome outcome = run("advise run --max-rmse 0.03");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, StartsWith("tent3x3: 7.5 ms (CPU) a frame"));
+  EXPECT_THAT(outcome.out, StartsWith("Use tent3x3.\n\ntent3x3: 7.5 ms (CPU) a frame"));
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(run("advise run/results.json --max-rmse 0.03").out, outcome.out);
 }
@@ -52,7 +52,7 @@ TEST_F(Advise, GivesTheCheapestThatKeepsTheLimits) {
 TEST_F(Advise, Options_ReachTheRequest) {
   EXPECT_THAT(run("advise run --light-motion static --max-rmse 1").out, HasSubstr("none: 1 ms (CPU) a frame, static"));
   EXPECT_THAT(run("advise run --cheapest bytes --max-rmse 1").out,
-              HasSubstr(": 4194304 bytes; cheapest of 1 on the front"));
+              HasSubstr(": 4 MiB; cheapest of 1 on the front"));
   EXPECT_THAT(run("advise run --scene cubes --scene stack").out, HasSubstr("on cubes, stack."));
   EXPECT_THAT(run("advise --scene cubes run").out, HasSubstr("judged, on cubes."));
   EXPECT_EQ(run("advise run --size 960x540").exit_code, 0);
@@ -151,7 +151,7 @@ TEST_F(Advise, BadRuns_AreInputErrors) {
 
 TEST_F(Advise, Requires_ReadsTheClaimsOfTheFilters) {
   const Outcome outcome = run("advise --requires contact-hardening run");
-  EXPECT_THAT(outcome.out, StartsWith("tent3x3: ")) << outcome.err;
+  EXPECT_THAT(outcome.out, StartsWith("Use tent3x3.")) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("--requires contact-hardening  shown"));
   EXPECT_THAT(outcome.out, HasSubstr("without --requires contact-hardening  saves 3 ms (CPU)"));
   expect_refusal("advise run --requires temporal", 2,

@@ -90,7 +90,7 @@ TEST_F(OddInput, Strict_TurnsWarningsIntoExitCode1_AndWritesTheReport) {
   const Outcome strict = draw("--strict " + odd);
   EXPECT_EQ(strict.exit_code, 1) << strict.err;
   EXPECT_THAT(strict.err, HasSubstr("shadowbench: --strict: the report has 1 warning: stack: the light shines"));
-  EXPECT_THAT(strict.out, StartsWith("report: "));
+  EXPECT_THAT(strict.out, HasSubstr("report: "));
   EXPECT_THAT(results(), HasSubstr("shines from below"));
   EXPECT_EQ(draw("--strict " + odd).exit_code, 1) << "nothing is left to do, and the warning still holds";
   EXPECT_EQ(draw(odd).exit_code, 0);
