@@ -74,7 +74,7 @@ TEST_F(ProgressOfARun, InALog_TakesTenLinesAtMost_AndTheSummaryStandsThereOnce) 
   EXPECT_NE(log.find("16/32 · "), log.npos);
   EXPECT_THAT(outcome.err, ::testing::ContainsRegex("32/32 · [0-9]+ s · done\n$"));
   EXPECT_EQ(outcome.err.find(" done\n"), outcome.err.rfind(" done\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("report: out/index.html\n"));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("report: out/index.html\n"));
 }
 
 TEST_F(ProgressOfARun, InALog_WarningsStay_HoweverManyThereAre) {
