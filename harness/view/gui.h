@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "harness/view/inspection.h"
 #include "harness/render/picture_passes.h"
+#include "harness/view/inspection.h"
 #include "harness/view/layers.h"
 #include "harness/view/meters.h"
 #include "harness/view/picture_input.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/view/view_state.h"
 #include "harness/render/picture_passes.h"
+#include "harness/view/view_state.h"
 #include "harness/view/workbench.h"
 #include "report/images/color_values.h"
 #include "report/images/image.h"

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "filters/filter_spec.h"
+#include "harness/gl/objects.h"
 #include "harness/view/view_state.h"
 #include "harness/view/window.h"
 #include "harness/view/workbench.h"
-#include "harness/gl/objects.h"
 
 namespace shadowbench::view {
 

@@ -51,8 +51,7 @@ TEST_F(Advise, GivesTheCheapestThatKeepsTheLimits) {
 
 TEST_F(Advise, Options_ReachTheRequest) {
   EXPECT_THAT(run("advise run --light-motion static --max-rmse 1").out, HasSubstr("none: 1 ms (CPU) a frame, static"));
-  EXPECT_THAT(run("advise run --cheapest bytes --max-rmse 1").out,
-              HasSubstr(": 4 MiB; cheapest of 1 on the front"));
+  EXPECT_THAT(run("advise run --cheapest bytes --max-rmse 1").out, HasSubstr(": 4 MiB; cheapest of 1 on the front"));
   EXPECT_THAT(run("advise run --scene cubes --scene stack").out, HasSubstr("on cubes, stack."));
   EXPECT_THAT(run("advise --scene cubes run").out, HasSubstr("judged, on cubes."));
   EXPECT_EQ(run("advise run --size 960x540").exit_code, 0);
