@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
 #include "report/records/records.h"
 
