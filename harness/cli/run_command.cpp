@@ -88,7 +88,8 @@ void note_filter_mistakes(const RunArguments& arguments, const std::exception& c
 std::string describe_answer(const std::filesystem::path& out) {
   const records::Results results = records::read_results(out / "results.json");
   if (analysis::withhold_mixed_times(results.cells)) return "";
-  const analysis::AdviceRequest request{.cheapest = analysis::choose_cost(results.cells)};
+  analysis::AdviceRequest request;
+  request.cheapest = analysis::choose_cost(results.cells);
   std::string text = pages::make_answer_text(results.run, analysis::advise(results.cells, request));
   if (!text.empty() && isatty(STDOUT_FILENO)) text.insert(text.find('\n'), "\x1b[0m").insert(0, "\x1b[1m");
   return text;

@@ -119,7 +119,7 @@ Row describe_cell(const records::CellRecord& cell, const analysis::Advice& advic
                                : records::kNothing,
           describe_ratio(analysis::frame_ratio(cell, advice.request.light)),
           records::format_number(cell.error.rmse),
-          cell.cost.map_bytes ? records::format_bytes(*cell.cost.map_bytes) : records::kNothing,
+          cell.cost.map_bytes ? records::format_bytes(static_cast<double>(*cell.cost.map_bytes)) : records::kNothing,
           records::format_number(cell.cost.fetches)};
 }
 
