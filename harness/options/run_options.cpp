@@ -93,9 +93,16 @@ Texts tell(const std::vector<scene::FitRule>& fits) {
   for (const scene::FitRule& fit : fits) texts.push_back(scene::describe_fit(fit));
   return texts;
 }
-void take(const char*, const Texts& texts, std::vector<scene::FitRule>& fits) {
+void take(const char* name, const Texts& texts, std::vector<scene::FitRule>& fits) {
   fits.clear();
-  for (const std::string& text : texts) fits.push_back(scene::parse_fit_rule(text));
+  for (const std::string& text : texts) {
+    const scene::FitRule fit = scene::parse_fit_rule(text);
+    const auto is_it = [&](const scene::FitRule& other) {
+      return scene::describe_fit(other) == scene::describe_fit(fit);
+    };
+    if (std::ranges::any_of(fits, is_it)) fail(fmt::format("{} names {} twice", name, scene::describe_fit(fit)));
+    fits.push_back(fit);
+  }
 }
 
 std::string tell(const std::optional<scene::SkyAngles>& light) {

@@ -106,7 +106,10 @@ export const readPng = (png) => {
 };
 // How often each colour is in one pane.
 export const colours = async (page, index = 0) => {
-  const { channels, pixels } = readPng(await page.locator(".viewer .panes canvas").nth(index).screenshot()), counts = new Map();
+  const canvas = page.locator(".viewer .panes canvas").nth(index), topOf = (box) => box.getBoundingClientRect().top + scrollY;
+  // At a whole pixel: elsewhere the screenshot mixes rows.
+  await page.locator(".viewer").evaluate((viewer, top) => { Object.assign(viewer.style, { position: "relative", top: `${Math.ceil(top) - top}px` }); }, await canvas.evaluate(topOf));
+  const { channels, pixels } = readPng(await canvas.screenshot()), counts = new Map();
   for (let i = 0; i < pixels.length; i += channels) {
     const colour = (pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2];
     counts.set(colour, (counts.get(colour) ?? 0) + 1);

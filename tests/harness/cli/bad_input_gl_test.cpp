@@ -49,6 +49,7 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {"run --out out --scene cubes --filters none --map-size 1000000", 2, {"1000000", "16384"}},
       {"run --out out --map-size 0", 2, {"--map-size", "'0'"}},
       {"run --out out --map-size 64,64", 2, {"64 twice"}},
+      {small("--fit cascades --fit cascades:count=3 --fit cascades"), 2, {"--fit", "twice"}},
       {"run --out out --size 64", 2, {"--size", "WIDTHxHEIGHT"}},
       {"run --out out --size 100000x10", 2, {"100000"}},
       {small("--map-format d32"), 2, {"'d32'", "d16, d24, d32f"}},

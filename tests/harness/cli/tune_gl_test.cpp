@@ -86,13 +86,14 @@ TEST_F(TuneCommand, OfCascades_FindsSplitAndBlend) {
   EXPECT_EQ(filter["fit"], found);
   EXPECT_THAT(outcome.out, HasSubstr("--fit " + found));
   std::string fits = " --fit " + found + " --fit cascades:count=3";
-  for (const char* each : {"0.3", "0.7", "0.8", "0.9", "1"})
-    fits += fmt::format(" --fit cascades:count=3,split={},blend={}", each, blend["found"].get<double>());
-  ASSERT_EQ(
-      run("run --out report --rounds 1 --phases 1 --no-attribution --pad-texels 1 --no-grids" + fits + same).exit_code,
-      0);
+  for (const double each : {0.3, 0.7, 0.8, 0.9, 1.0})
+    if (each != split["found"].get<double>())  // or one fit is named twice
+      fits += fmt::format(" --fit cascades:count=3,split={},blend={}", each, blend["found"].get<double>());
+  const Outcome scan =
+      run("run --out report --rounds 1 --phases 1 --no-attribution --pad-texels 1 --no-grids" + fits + same);
+  ASSERT_EQ(scan.exit_code, 0) << scan.err;
   const nlohmann::json cells = read_results()["cells"];
-  ASSERT_EQ(cells.size(), 7u);
+  ASSERT_GE(cells.size(), 6u);
   for (const auto& view : filter["views"]) {
     if (view["view"] != "as it is") continue;
     EXPECT_EQ(view["score"]["tuned"], cells[0]["error"]["rmse"]);
