@@ -186,7 +186,9 @@ std::string format_cost(double value, const CostKind& cost, const records::GlRec
       return fmt::format("{} {}", records::format_number(value), value == 1.0 ? "fetch" : "fetches");
     case CostKind::kGpu: break;
   }
-  return fmt::format("{} ms estimated for {}", records::format_number(value), cost.gpu);
+  const bool is_short = value < 1.0;
+  return fmt::format("{} {} estimated for {}", records::format_number(is_short ? 1e3 * value : value),
+                     is_short ? "µs" : "ms", cost.gpu);
 }
 
 std::string format_within(double value, double low, double high) {

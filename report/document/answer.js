@@ -125,7 +125,8 @@ const startAnswer = (holder) => {
     const button = addButton(cell, "", choose, run.configurations[index].full);
     Object.assign(button.dataset, { index, place });
     element(button, "bdi", {}, labelOf(index));
-    const costText = `${format(cost)} ${costChoice().unit}`;
+    const { unit } = costChoice();
+    const costText = unit === "ms" && cost < 1 ? `${format(1000 * cost)} µs` : `${format(cost)} ${unit}`;
     if (scope !== all) {
       element(button, "span", {}, rmse ? format(rmse.value) : costText);
       return cell;

@@ -136,6 +136,7 @@ struct Section {
   std::string heading;  ///< empty: none, as at the top of a page
   std::vector<Block> blocks;
   bool warns = false;  ///< printed so that it is not overlooked
+  bool brief = false;  ///< its unfolded blocks are in the page's summary, too
 };
 
 /// A page: <stem>.html and <stem>.md say the same.

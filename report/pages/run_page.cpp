@@ -225,7 +225,8 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
       "All numbers",
       {document::Mount{"numbers", {document::Table{"RMSE to the area truth", std::move(table)}}}}};
   if (auto widths = analysis::describe_light_widths(cells); !widths.empty())
-    section.blocks.emplace_back(document::Sentences{{}, std::move(widths)});
+    section.blocks.emplace_back(document::Details{"Kernel widths", {document::Sentences{{}, std::move(widths)}}});
+  section.brief = true;
   return section;
 }
 
@@ -317,6 +318,7 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
   if (!is_whole) return section;
   section.blocks.emplace_back(document::Links{"Data:",
                                               {{"summary.md", "summary.md"},
+                                               {"details.md", "details.md"},
                                                {"timings.csv", "timings.csv"},
                                                {"accuracy.csv", "accuracy.csv"},
                                                {"results.json", "results.json"},
@@ -334,10 +336,11 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
   if (!so_far.empty()) add({"so-far", "", {document::Paragraph{so_far}}, true});
   add(make_answer_section(run, cells, request, biases));
+  page.sections.back().brief = true;
   const auto without_external = analysis::leave_out_external(cells);
   const std::vector<records::CellRecord>& own = without_external ? *without_external : cells;
   if (auto causes = make_causes_section(run, own)) add(std::move(*causes));
-  if (!run.warnings.empty()) add({"warnings", "Warnings", {document::Sentences{{}, run.warnings}}, true});
+  if (!run.warnings.empty()) add({"warnings", "Warnings", {document::Sentences{{}, run.warnings}}, true, true});
   if (!cells.empty()) {
     add(make_table_section(cells));
     add({"viewer", "Look closer", {document::Mount{"viewer", {}}}});

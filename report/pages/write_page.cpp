@@ -56,6 +56,17 @@ std::vector<document::Link> list_siblings(const std::filesystem::path& dir, cons
   return siblings;
 }
 
+/// What of a page is brief, without what is folded away, and where the rest is.
+document::Page summarise(document::Page page, const PageFile& own) {
+  std::erase_if(page.sections, [](const document::Section& section) { return !section.brief; });
+  for (document::Section& section : page.sections)
+    std::erase_if(
+        section.blocks, [](const auto& block) { return std::holds_alternative<document::Details>(block); });
+  const auto link = [](std::string_view file) { return document::Link{std::string(file), std::string(file)}; };
+  page.sections.push_back({"more", "", {document::Links{"More:", {link(own.html), link(own.details)}}}});
+  return page;
+}
+
 /// A page that was written earlier does not know yet what lies beside it now.
 void link_back(const std::filesystem::path& path) {
   const auto own = std::ranges::find(list_pages(), path.filename().string(), &PageFile::html);
@@ -69,7 +80,7 @@ void link_back(const std::filesystem::path& path) {
 
 const std::vector<PageFile>& list_pages() {
   static const std::vector<PageFile> pages = {
-      {"run", "", "index.html", "summary.md", "the run: cost, error and trade"},
+      {"run", "", "index.html", "summary.md", "the run: cost, error and trade", "details.md"},
       {"frames", "", "frames.html", "frames.md", "accumulation over frames"},
       {"stress", "stress", "stress.html", "stress.md", "stress: where filters break"},
       {"bias", "bias", "bias.html", "bias.md", "depth bias"},
@@ -82,6 +93,10 @@ void write_page(const std::filesystem::path& dir, std::string_view command, docu
   const PageFile& own = find_page(command);
   page.siblings = list_siblings(dir, own);
   write_text_file(dir / own.html, document::write_html(page));
+  if (!own.details.empty()) {
+    write_text_file(dir / own.details, document::write_markdown(page));
+    page = summarise(std::move(page), own);
+  }
   write_text_file(dir / own.markdown, document::write_markdown(page));
   for (const document::Link& sibling : page.siblings) link_back((dir / sibling.path).lexically_normal());
 }
@@ -89,7 +104,8 @@ void write_page(const std::filesystem::path& dir, std::string_view command, docu
 void write_early_page(const std::filesystem::path& dir, std::string_view command, const document::Page& page) {
   const PageFile& own = find_page(command);
   std::error_code ignored;
-  std::filesystem::remove(dir / own.markdown, ignored);
+  for (const std::string_view name : {own.markdown, own.details})
+    if (!name.empty()) std::filesystem::remove(dir / name, ignored);
   write_text_file(dir / own.html, document::write_html(page));
 }
 
@@ -101,7 +117,8 @@ bool has_page(const std::filesystem::path& dir, std::string_view command) {
 void remove_page(const std::filesystem::path& dir, std::string_view command) {
   const PageFile& own = find_page(command);
   std::error_code ignored;
-  for (const std::string_view name : {own.html, own.markdown}) std::filesystem::remove(dir / name, ignored);
+  for (const std::string_view name : {own.html, own.markdown, own.details})
+    if (!name.empty()) std::filesystem::remove(dir / name, ignored);
 }
 
 std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record) {

@@ -13,11 +13,12 @@ namespace shadowbench::pages {
 
 /// One of the program's pages, and where it lies in a report's folder.
 struct PageFile {
-  std::string_view command;   ///< the command that makes it
-  std::string_view folder;    ///< within the report's folder; empty: that folder itself
-  std::string_view html;      ///< file name
-  std::string_view markdown;  ///< file name
-  std::string_view title;     ///< for links to it
+  std::string_view command;       ///< the command that makes it
+  std::string_view folder;        ///< within the report's folder; empty: that folder itself
+  std::string_view html;          ///< file name
+  std::string_view markdown;      ///< file name
+  std::string_view title;         ///< for links to it
+  std::string_view details = {};  ///< the whole page as Markdown, where `markdown` has a summary of it
 };
 
 /// Lists the program's pages.

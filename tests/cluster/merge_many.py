@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 MAKER = Path(__file__).with_name("many_cells.py")
-REPORT = {".shadowbench-folder", "index.html", "summary.md", "results.json", "results.schema.json", "timings.csv", "accuracy.csv", "fronts.csv"}
+REPORT = {".shadowbench-folder", "index.html", "summary.md", "details.md", "results.json", "results.schema.json", "timings.csv", "accuracy.csv", "fronts.csv"}
 
 
 def list_files(folder):

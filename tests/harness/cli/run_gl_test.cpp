@@ -239,7 +239,7 @@ TEST_F(Command, BiasAmounts_AreStatedInAllUnits) {
   EXPECT_EQ(cell["bias"]["constant_texels"], 2.0);
   EXPECT_GT(cell["map_scale"]["texel_m"], 0.01);
   EXPECT_GT(cell["map_scale"]["depth_range_m"], 1.0);
-  const std::string summary = read_text(folder() / "out" / "summary.md");
+  const std::string summary = read_text(folder() / "out" / "details.md");
   EXPECT_NE(summary.find("2 texels (depth 0.0"), std::string::npos) << summary;
 }
 

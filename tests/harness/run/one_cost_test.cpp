@@ -99,7 +99,7 @@ TEST(OneCost, WhereNoGpuDrew_IsTheEstimateOfAFrame_Everywhere) {
   EXPECT_DOUBLE_EQ(record["static"], still);
   EXPECT_THAT(read_fronts(cells, cell.key), ::testing::Contains(::testing::Pair("gpu.navi21.static", still)));
   EXPECT_THAT(caption_cell(cell, analysis::choose_cost(cells), records::make_run().gl),
-              HasSubstr("0.00922 ms estimated for navi21 · RMSE 0.09"));
+              HasSubstr("9.22 µs estimated for navi21 · RMSE 0.09"));
 }
 
 TEST(OneCost, WhereAGpuDrew_IsItsTime_Everywhere) {

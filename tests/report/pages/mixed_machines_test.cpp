@@ -35,7 +35,7 @@ std::string write_and_read(const std::vector<CellRecord>& cells, const RunRecord
 bool says_milliseconds(const std::string& text) { return std::regex_search(text, std::regex("[0-9] ms")); }
 
 TEST(MixedMachines, NoTimeIsSaid_ButInTheTablesOfMeasurements) {
-  const std::string summary = write_and_read(make_mixed_cells(), make_run(), "summary.md");
+  const std::string summary = write_and_read(make_mixed_cells(), make_run(), "details.md");
   EXPECT_FALSE(says_milliseconds(summary)) << summary;
   EXPECT_THAT(summary, HasSubstr("Nothing fits: none of 3 configurations can be judged"));
   EXPECT_THAT(summary, HasSubstr("A fast CPU, 64 cores, A GPU, GPU time (timer query) (1 cell)"));
@@ -43,7 +43,7 @@ TEST(MixedMachines, NoTimeIsSaid_ButInTheTablesOfMeasurements) {
               HasSubstr("\"A fast CPU, 64 cores, A GPU, GPU time (timer query)\""));
   std::vector<CellRecord> alike = make_mixed_cells();
   for (CellRecord& cell : alike) cell.machine = make_kind("A CPU");
-  const std::string usual = write_and_read(alike, make_run(), "summary.md");
+  const std::string usual = write_and_read(alike, make_run(), "details.md");
   EXPECT_TRUE(says_milliseconds(usual));
   EXPECT_THAT(usual, Not(HasSubstr("Several kinds")));
 }

@@ -188,7 +188,7 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
 
 TEST(TradeSection, Summary_SaysFrontsAndColumns) {
   const TemporaryFolder folder("trade_summary");
-  const std::string summary = write_and_read(folder, make_crossing_cells("cubes"), "summary.md");
+  const std::string summary = write_and_read(folder, make_crossing_cells("cubes"), "details.md");
   for (const char* text : {"## The trade", "**dominated_by**:"}) EXPECT_THAT(summary, HasSubstr(text));
   EXPECT_LT(summary.find("## The trade"), summary.find("What it costs: "));
 }
