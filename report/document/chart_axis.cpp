@@ -74,7 +74,7 @@ ChartAxis choose_axis_from(const std::vector<double>& values, const std::vector<
     axis.low = low / margin;
     axis.high = high * margin;
   } else {
-    if (low >= 0.0 && low < 0.5 * high) low = 0.0;
+    if (low >= 0.0 && low < 0.25 * high) low = 0.0;
     const double span = high > low ? high - low : std::max(std::abs(high), 1e-9);
     axis.low = low - kMargin * span;
     axis.high = high + kMargin * span;

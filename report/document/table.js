@@ -4,8 +4,8 @@ const startTable = (holder) => {
   const kMany = 25;
   const kWorst = { more: "the least value", zero: "the value farthest from 0" };
   const kMarks = {
-    best: [" ★", "the best of its class of width and settings"],
-    tied: [" ≈", "cannot be told from the best of its class and settings"],
+    best: ["best ", "the best of its column"],
+    tied: ["≈ ", "statistically tied with the best of its column"],
   };
   const state = { measure: "error.rmse", sort: "cost", down: false, text: "", wide: "" };
   const measures = run.measures.filter(({ id }) => run.cells.some((cell) => cell.values_of[id] !== null));
@@ -55,25 +55,18 @@ const startTable = (holder) => {
     if (own && least) return own[0] <= least[1];
     return state.measure === "error.rmse" && areErrorsTied(cell.rmse, best.rmse);
   };
-  // In a column: the best of each class of width under the same settings, if there are two to compare, and what cannot
-  // be told from it, whether or not their rows are shown.
+  // In a column of two values or more: the best, and what is tied with it, whether or not their rows are shown.
   const findMarks = ({ place, of }) => {
     const marks = new Map();
-    const groups = new Map();
     if (place === undefined || measureOf().better === "neither") return marks;
-    for (const [i, { class: width, surroundings, teaching }] of run.configurations.entries()) {
-      if (teaching || !width || cellAt(i, place)?.status !== "ok" || of(i) === null) continue;
-      const group = `${width} ${surroundings}`;
-      groups.set(group, [...(groups.get(group) ?? []), i]);
-    }
+    const isJudged = (i) => !run.configurations[i].teaching && cellAt(i, place)?.status === "ok" && of(i) !== null;
+    const judged = [...run.configurations.keys()].filter(isJudged);
+    if (judged.length < 2) return marks;
     const rank = (i) => rankOf(of(i));
-    for (const group of groups.values()) {
-      if (group.length < 2) continue;
-      const best = group.reduce((least, i) => (rank(i) < rank(least) ? i : least));
-      for (const i of group) {
-        if (rank(i) === rank(best)) marks.set(i, kMarks.best);
-        else if (areTied(cellAt(i, place), cellAt(best, place))) marks.set(i, kMarks.tied);
-      }
+    const best = judged.reduce((least, i) => (rank(i) < rank(least) ? i : least));
+    for (const i of judged) {
+      if (rank(i) === rank(best)) marks.set(i, kMarks.best);
+      else if (areTied(cellAt(i, place), cellAt(best, place))) marks.set(i, kMarks.tied);
     }
     return marks;
   };
@@ -118,7 +111,7 @@ const startTable = (holder) => {
     button.addEventListener("focus", () => (note.textContent = `${title}: ${text}.`));
     button.addEventListener("blur", () => (note.textContent = key));
   };
-  const addCell = (row, column, index, heat, mark) => {
+  const addCell = (row, column, index, heat, mark, digits) => {
     const { id, of, unit, place } = column;
     const made = element(row, id === "filter" ? "th" : "td", { className: unit === undefined ? "s" : "n" });
     if (heat !== null) made.classList.add(`heat${heat}`);
@@ -127,13 +120,17 @@ const startTable = (holder) => {
       return element(made, "bdi", {}, of(index));
     }
     const cell = place === undefined ? null : cellAt(index, place);
-    const text = unit === undefined ? of(index) : format(of(index), unit);
+    const number = of(index);
+    const text =
+      unit === undefined ? number : digits && number !== null ? number.toFixed(digits) : format(number, unit);
+    const addMark = ([words, title]) => element(made, "span", { className: "mark", title }, words);
+    if (mark) addMark(mark);
+    made.classList.toggle("best", mark === kMarks.best);
     const title = `${run.configurations[index].label} on ${run.places[place]?.title}: look closer`;
     const open = () => shadowbench.openViewer({ place, left: kTruth, right: index });
     if (cell?.picture) addButton(made, text, open, title);
     else element(made, "span", {}, text);
-    if (mark) element(made, "span", { className: "mark", title: mark[1] }, mark[0]);
-    if (cell && cell.status !== "ok") element(made, "span", { className: "mark", title: cell.status }, " !");
+    if (cell && cell.status !== "ok") addMark([" !", cell.status]);
   };
   // Shades of a column, from its best to its worst value.
   const makeShades = (rows, { id, of, unit }) => {
@@ -143,6 +140,14 @@ const startTable = (holder) => {
     const most = Math.max(...ranks);
     const shade = (value) => Math.round(((rankOf(value) - least) / (most - least)) * (kShades - 1));
     return (value) => (value === null || !(most > least) ? null : shade(value));
+  };
+  // The decimals of a column of fractions below 1, so that its points are aligned; 0: each number has its own.
+  const countDecimals = (rows, { id, of, unit }) => {
+    const numbers = rows.map(of).filter(Number.isFinite);
+    const isOfFractions = unit !== undefined && !["share", "bytes"].includes(unit) && id !== "cost";
+    if (!isOfFractions || numbers.some((number) => Math.abs(number) >= 1)) return 0;
+    const decimals = Math.max(0, ...numbers.map((number) => `${shorten(number)}`.split(".")[1]?.length ?? 0));
+    return decimals > 5 ? 0 : decimals;
   };
   const draw = () => {
     scroll.replaceChildren();
@@ -155,12 +160,15 @@ const startTable = (holder) => {
     const body = element(table, "tbody");
     const marks = columns.map(findMarks);
     const shades = columns.map((column) => makeShades(rows, column));
+    const decimals = columns.map((column) => countDecimals(rows, column));
     for (const [at, index] of rows.entries()) {
       const row = element(body, "tr", { className: at >= kMany ? "beyond" : "" });
-      columns.forEach((column, i) => addCell(row, column, index, shades[i](column.of(index)), marks[i].get(index)));
+      columns.forEach((column, i) =>
+        addCell(row, column, index, shades[i](column.of(index)), marks[i].get(index), decimals[i]),
+      );
     }
     const many = rows.length > kMany ? ` Print has the first ${kMany} of ${rows.length} rows.` : "";
-    const marked = "★ best of its class of width and settings, ≈ cannot be told from it, ! suspect or not finished.";
+    const marked = "Best: of its column. ≈ tied with it, ! suspect or not finished.";
     key = `${rows.length} of ${run.configurations.length} configurations. ${marked}${many}`;
     note.textContent = key;
   };

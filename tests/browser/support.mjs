@@ -106,9 +106,14 @@ export const readPng = (png) => {
 };
 // How often each colour is in one pane.
 export const colours = async (page, index = 0) => {
-  const canvas = page.locator(".viewer .panes canvas").nth(index), topOf = (box) => box.getBoundingClientRect().top + scrollY;
+  const canvas = page.locator(".viewer .panes canvas").nth(index);
   // At a whole pixel: elsewhere the screenshot mixes rows.
-  await page.locator(".viewer").evaluate((viewer, top) => { Object.assign(viewer.style, { position: "relative", top: `${Math.ceil(top) - top}px` }); }, await canvas.evaluate(topOf));
+  await canvas.evaluate((drawn) => {
+    const { style } = drawn.closest(".viewer");
+    Object.assign(style, { position: "relative", top: "0px" });
+    const top = drawn.getBoundingClientRect().top + scrollY;
+    style.top = `${Math.ceil(top) - top}px`;
+  });
   const { channels, pixels } = readPng(await canvas.screenshot()), counts = new Map();
   for (let i = 0; i < pixels.length; i += channels) {
     const colour = (pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2];
