@@ -144,6 +144,7 @@ struct Page {
   std::string title;
   std::vector<Section> sections;
   std::vector<Link> siblings = {};  ///< the program's other pages that lie beside this one
+  std::string of = {};              ///< what it is about, in the browser's tab after the title
   nlohmann::json data = {};         ///< what the scripts that fill mounts read; null: there are none
 };
 

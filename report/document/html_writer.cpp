@@ -357,7 +357,8 @@ std::string replace_siblings(std::string html, const std::vector<Link>& siblings
 
 std::string write_html(const Page& page) {
   HtmlWriter writer;
-  std::string html = html_head(page.title) + fmt::format("<body>\n<main>\n<h1>{}</h1>\n", escape_html(page.title)) +
+  std::string html = html_head(page.of.empty() ? page.title : page.title + ": " + page.of) +
+                     fmt::format("<body>\n<main>\n<h1>{}</h1>\n", escape_html(page.title)) +
                      write_siblings(page.siblings);
   const bool begins = !page.sections.empty() && page.sections.front().heading.empty();  // with what it is about
   if (begins) html += write_section(page.sections.front(), writer);

@@ -334,6 +334,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   const analysis::AdviceRequest request = choose_request(cells);
   document::Page page{"Shadow filters compared", {}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
+  if (!cells.empty()) page.of = describe_setting(cells);
   if (!so_far.empty()) add({"so-far", "", {document::Paragraph{so_far}}, true});
   add(make_answer_section(run, cells, request, biases));
   page.sections.back().brief = true;
