@@ -520,6 +520,7 @@ std::vector<Pick> list_picks(const Advice& advice) {
 
 const std::map<std::string, std::string>& answer_words() {
   static const std::map<std::string, std::string> words = {
+      {"unmeasured", "The cheapest is {fast}; its error was not measured."},
       {"fast", "Use {fast}."},
       {"both", "Use {fast}: the cheapest, with the least error."},
       {"best", "Use {fast}. Where shadows must look right, use {best}."},
@@ -536,7 +537,11 @@ std::string describe_choice(const Advice& advice) {
   const Candidate &fast = advice.keeping.front(), &best = advice.keeping[picks.back().index];
   const bool has_best = picks.back().names.back() == kBest;
   const auto times = compare_with_fast(fast, best, advice.request.cheapest);
-  const char* kind = !has_best ? "fast" : picks.size() == 1 ? "both" : times ? "dearer" : "best";
+  const char* kind = !fast.rmse          ? "unmeasured"
+                     : !has_best         ? "fast"
+                     : picks.size() == 1 ? "both"
+                     : times             ? "dearer"
+                                         : "best";
   return fmt::format(fmt::runtime(answer_words().at(kind)), fmt::arg("fast", fast.configuration.name),
                      fmt::arg("best", best.configuration.name), fmt::arg("times", records::format_number(times)));
 }

@@ -84,7 +84,7 @@ const startAnswer = (holder) => {
     const [fast, best] = [0, 2].map((column) => picks.find(({ columns }) => columns.includes(column)));
     if (!fast) return failing.length > 0 ? fill("fails") : fill("unjudged");
     const [name, other] = [fast, best ?? fast].map(({ index }) => quote(labelOf(index)));
-    const kind = !best ? "fast" : best === fast ? "both" : best.times ? "dearer" : "best";
+    const kind = !fast.rmse ? "unmeasured" : !best ? "fast" : best === fast ? "both" : best.times ? "dearer" : "best";
     return fill(kind, { fast: name, best: other, times: format(best?.times ?? 1) });
   };
 
