@@ -66,8 +66,7 @@ TEST_F(Advise, WhereNoGpuDrew_TheEstimateIsTheCost_AndMillisecondsLimitIt) {
     cell.gpu = {{"navi21", {{}, records::GpuEstimateRecord{.lookup_us = us, .bound_by = "memory"}, {}}}};
   }
   records::write_results(folder() / "cpu", records::make_run(), cells);
-  EXPECT_THAT(run("advise cpu --max-rmse 1").out,
-              HasSubstr("none: 20.7 µs estimated for navi21 of a 1920x1080 frame"));
+  EXPECT_THAT(run("advise cpu --max-rmse 1").out, HasSubstr("none: 20.7 µs estimated for navi21 of a 1920x1080 frame"));
   EXPECT_THAT(run("advise cpu --max-rmse 1 --cheapest time").out, HasSubstr("tent3x3: 4 ms (CPU) a frame"));
   EXPECT_EQ(run("advise cpu --max-rmse 0.05 --max-ms 2").exit_code, 1) << "its estimate is 2.07 ms, its time 4";
   EXPECT_EQ(run("advise cpu --max-rmse 0.05 --max-ms 2.1").exit_code, 0);
