@@ -125,8 +125,7 @@ const startAnswer = (holder) => {
     const button = addButton(cell, "", choose, run.configurations[index].full);
     Object.assign(button.dataset, { index, place });
     element(button, "bdi", {}, labelOf(index));
-    const { unit } = costChoice();
-    const costText = unit === "ms" && cost < 1 ? `${format(1000 * cost)} µs` : `${format(cost)} ${unit}`;
+    const costText = `${format(cost * costScale().factor)} ${costScale().unit}`;
     if (scope !== all) {
       element(button, "span", {}, rmse ? format(rmse.value) : costText);
       return cell;

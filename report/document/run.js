@@ -6,6 +6,12 @@ const kOfTruth = { visibility: "area", uncertainty: "standard_error" };
 const kOtherNames = { uncertainty: "rounding" };
 shadowbench.cost = run.cost; // which of the costs the answer, the table and the charts have
 const costChoice = () => run.costs.find(({ id }) => id === shadowbench.cost);
+// The unit in which all costs of the choice are shown, and how many of them are one of its own.
+const costScale = () => {
+  const { field, unit } = costChoice();
+  const isShort = unit === "ms" && run.configurations.every((each) => !(each[field] >= 1));
+  return isShort ? { unit: "µs", factor: 1000 } : { unit, factor: 1 };
+};
 const showCost = () => {
   shadowbench.drawTable?.();
   shadowbench.drawCharts?.();

@@ -28,6 +28,8 @@ const startTable = (holder) => {
     const filter = "a filter, with the parameters and settings that tell it from the others";
     const width = "class of the kernel's standard deviation: errors are compared within one class";
     const cost = run.measures.find(({ id }) => id === timeOf()).text;
+    const scale = costScale();
+    const costOf = (index) => (of(timeOf())(index) === null ? null : of(timeOf())(index) * scale.factor);
     const places = run.places.map((place, at) => ({
       id: `place${at}`,
       title: place.title,
@@ -39,7 +41,7 @@ const startTable = (holder) => {
     return [
       { id: "filter", title: "filter", text: filter, of: of("label") },
       { id: "class", title: "width", text: width, of: (index) => of("class")(index) || "–", key: of("sigma") },
-      { id: "cost", title: `${costChoice().title}, ${costChoice().unit}`, text: cost, of: of(timeOf()), unit: "" },
+      { id: "cost", title: `${costChoice().title}, ${scale.unit}`, text: cost, of: costOf, unit: "" },
       ...places,
       {
         id: "worst",
