@@ -90,8 +90,7 @@ constexpr double kTellingWeight = 0.01;
 
 std::string warn_of_weight(const records::CellRecord& record, double rmse) {
   return fmt::format(
-      "{}, view {}: the share of the light that is seen and that of its unshadowed light that arrives differ by an "
-      "RMSE of {}; --truth-weight chooses which one counts",
+      "{}, view {}: area-weighted and cosine-weighted truth differ by an RMSE of {}; choose with --truth-weight",
       record.scene, record.view, records::format_number(rmse));
 }
 
