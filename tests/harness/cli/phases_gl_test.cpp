@@ -86,7 +86,7 @@ TEST_F(Phases, TruthWeight_ChoosesWhatVisibilityIsHeldAgainst) {
   const json area = results()["cells"][0], cosine = results("other")["cells"][0];
   EXPECT_GT(area["truth"]["weight_rmse"], 0.01);
   EXPECT_EQ(area["truth"]["weight_rmse"], cosine["truth"]["weight_rmse"]);
-  EXPECT_THAT(area["warnings"].dump(), HasSubstr("--truth-weight chooses"));
+  EXPECT_THAT(area["warnings"].dump(), HasSubstr("choose with --truth-weight"));
   EXPECT_NE(area["error"]["rmse"], cosine["error"]["rmse"]);
   EXPECT_EQ(area["error"]["flip"], cosine["error"]["flip"]);
   const Outcome wrong = run(start + "--truth-weight cosin");
