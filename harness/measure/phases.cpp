@@ -10,7 +10,7 @@ namespace shadowbench::measure {
 namespace {
 
 constexpr std::size_t kFewestOfPairs = 8;
-constexpr const char* kFewPhases = "fewer than eight phases of the map's grid tell too little of flicker; see --phases";
+constexpr const char* kFewPhases = "flicker needs eight sub-texel offsets of the map or more; see --phases";
 constexpr const char* kOnePhase = "one phase of the map's grid tells nothing of the others; see --phases";
 
 double wrap(double shift) { return shift < 0.5 ? shift : shift - 1.0; }

@@ -13,7 +13,7 @@
 
 namespace shadowbench::render {
 
-/// How a depth map holds casters that one sees through.
+/// How a depth map holds transparent casters.
 enum class BlendCasters {
   kOpaque,  ///< as any other
   kHashed,  ///< in texels by a hash of the place on the surface: lib/blend_casters.glsl

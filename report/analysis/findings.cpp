@@ -49,8 +49,9 @@ std::string describe_power(const std::vector<records::CellRecord>& cells) {
     return records::format_number(differences[place]);
   };
   return fmt::format(
-      "With {} phases of the map's grid, four of five runs tell RMSEs of one class and scene apart that differ by {} "
-      "(half of the {} pairs) or {} (nine tenths).",
+      "Smallest detectable RMSE difference (80 % power, {} sub-texel offsets of the map): {} in half of the {} pairs "
+      "of "
+      "one class and scene, {} in nine of ten.",
       std::ranges::find_if(cells, has_replicates)->phases.value_or(0), at(0.5), differences.size(), at(0.9));
 }
 

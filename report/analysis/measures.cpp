@@ -277,7 +277,7 @@ Estimate mean_over_scenes(const std::vector<Estimate>& estimates) {
 const std::array<Quantity, kErrorMeasures>& list_error_measures() {
   static const char* const kRootMeanSquare = "root mean square over the scenes";
   static const std::array<Quantity, kErrorMeasures> kMeasures = {
-      make_measure(kRmse, "interval: 95 %, over the phases of the map's grid", kRootMeanSquare, root_mean_square),
+      make_measure(kRmse, "interval: 95 %, over sub-texel offsets of the map", kRootMeanSquare, root_mean_square),
       make_measure("error.kernel_rmse", "no interval", kRootMeanSquare, root_mean_square),
       make_measure("artefact.leak", "no interval", "the worst scene", worst_of),
       make_measure("error.flip", "no interval", kMean, mean_over_scenes)};

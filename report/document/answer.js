@@ -192,7 +192,7 @@ const startAnswer = (holder) => {
   const listSteps = (field) => {
     const { order } = all.advice[shadowbench.cost][""];
     const known = order.map(({ index }) => worstOf(index, field).limit).filter((limit) => limit !== undefined);
-    const values = known.map((limit) => Math.max(0, limit)); // a time that is a difference may be below nought
+    const values = known.map((limit) => Math.max(0, limit)); // a time that is a difference may be below zero
     if (field in state.limits) values.push(state.limits[field]);
     const steps = [...new Set(values)].sort((a, b) => a - b);
     const every = Math.ceil(steps.length / kSteps);

@@ -25,7 +25,7 @@ std::string format_own(const std::optional<records::OwnTime>& time) {
   return time ? records::format_interval(time->median, time->ci95) : records::kNothing;
 }
 
-constexpr const char* kKernelColumn = "kernel's width (class)";
+constexpr const char* kKernelColumn = "kernel width (class)";
 
 using Metrics = std::vector<const metrics::Metric*>;
 
@@ -224,7 +224,7 @@ std::vector<records::CsvColumn> list_front_columns() {
           {"cost_high", "upper end likewise"},
           {"on_front", "1: on the front, 0: not, empty: left out"},
           {"dominated_by", "the cheapest cell of the front that beats it"},
-          {"tie_with", "the cell of the front from which it cannot be told apart"},
+          {"tie_with", "the cell of the front with which it is statistically tied"},
           {"left_out", "why it has no place on this front"},
           {"renderer", "the GPU that a browser timed the cost on; empty: the run's own"}};
 }

@@ -344,7 +344,7 @@ std::vector<std::string> explain_fronts(const std::vector<analysis::Quantity>& c
   std::vector<std::string> sentences = {
       fmt::format(
           "Only filters whose kernels are about equally wide are compared: a wider kernel makes a softer shadow, "
-          "and is no worse filter. A kernel's width is its standard deviation along an axis, in texels; each "
+          "and is no worse filter. Kernel width is the standard deviation along an axis, in texels; each "
           "class has a front of its own: {}.",
           filters::describe_classes()),
       "A cell of the front beats another of its class, which is then dominated, where it costs no more, its error is "

@@ -306,7 +306,7 @@ void visit_settings(Is<CellRecord> auto& cell, auto&& visit) {
         {.text = "texels along a side", .least = 1, .column = "shadow map, texels along a side"});
   visit("map_format", cell.map_format,
         {.text = "how the map stores depth; perspective: as a projection whose far plane is so many times as far as "
-                 "its near plane; reversed: 1 - depth; hashed, dither: how it holds casters that one sees through",
+                 "its near plane; reversed: 1 - depth; hashed, dither: how it holds transparent casters",
          .pattern = R"(^d(16|24|32f)( perspective [0-9.]+(e\+?[0-9]+)?)?( reversed)?( hashed| dither)?$)",
          .column = "the shadow map's format"});
   visit("fit", cell.fit,

@@ -46,7 +46,7 @@ TEST(AccuracyTable, HoldsErrorsPartsAndArtefacts) {
   cell.rmse_ci95 = records::Interval{0.03, 0.05};
   const records::TextTable table = make_accuracy_table({"cubes", {cell}});
   EXPECT_EQ(field(table, 0, "RMSE to the area truth [95 % over phases]"), "0.04 [0.03, 0.05]");
-  EXPECT_EQ(field(table, 0, "kernel's width (class)"), "0.65 texels (medium)");
+  EXPECT_EQ(field(table, 0, "kernel width (class)"), "0.65 texels (medium)");
   EXPECT_EQ(field(table, 0, "mean signed error"), "-0.005");
   EXPECT_EQ(field(table, 0, "RMSE to the kernel truth, first phase"), "0.02");
   EXPECT_EQ(field(table, 0, "dominating part, first phase"), "estimator 71 %");
