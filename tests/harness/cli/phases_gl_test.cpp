@@ -62,7 +62,7 @@ TEST_F(Phases, EveryCellHasItsGroups_AndThePageSaysWhatTheyCanTell) {
       EXPECT_LE(value, interval[1]) << name;
     }
   }
-  EXPECT_THAT(read_text(folder() / "out" / "index.html"), HasSubstr("RMSEs of one class and scene apart"));
+  EXPECT_THAT(read_text(folder() / "out" / "index.html"), HasSubstr("Smallest detectable RMSE difference"));
 }
 
 TEST_F(Phases, OfOne_SayThatNothingIsKnownOfTheOthers) {
@@ -72,7 +72,7 @@ TEST_F(Phases, OfOne_SayThatNothingIsKnownOfTheOthers) {
   EXPECT_TRUE(cell["error"]["flicker"].is_null());
   for (const char* field : {"error.rmse_ci95", "error.rmse_replicates", "error.flicker", "error.flicker_ci95"})
     EXPECT_THAT(cell["absent"][field].get<std::string>(), HasSubstr("--phases")) << field;
-  EXPECT_THAT(read_text(folder() / "out" / "index.html"), Not(HasSubstr("RMSEs of one class and scene apart")));
+  EXPECT_THAT(read_text(folder() / "out" / "index.html"), Not(HasSubstr("Smallest detectable RMSE difference")));
 }
 
 /// The weights differ under such a lamp: the run says so, errors follow the option, and pictures are held against the
