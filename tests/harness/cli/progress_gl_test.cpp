@@ -74,7 +74,7 @@ TEST_F(ProgressOfARun, InALog_TakesTwelveLinesAtMost_AndTheSummaryStandsThereOnc
   EXPECT_NE(log.find("16/32 · "), log.npos);
   EXPECT_THAT(outcome.err, ::testing::ContainsRegex("32/32 · [0-9]+ s · done\n$"));
   EXPECT_EQ(outcome.err.find(" done\n"), outcome.err.rfind(" done\n"));
-  EXPECT_THAT(outcome.out, ::testing::StartsWith("The cheapest is none, map 64; its error was not measured.\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("^The cheapest is [^\n]+; its error was not measured[.]\n"));
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("report: out/index.html\n"));
 }
 
