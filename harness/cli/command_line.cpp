@@ -21,20 +21,20 @@ namespace {
 
 constexpr std::size_t kColumns = 100, kIndent = 26;
 
-/// Breaks paragraphs into lines of kColumns, all but the first indented; `used` columns of the first are taken.
-std::string wrap(const std::string& text, std::size_t indent = 0, std::size_t used = 0) {
+/// Breaks paragraphs into lines of kColumns, all but the first indented, which begins there.
+std::string wrap(const std::string& text, std::size_t indent = 0) {
   std::string lines;
   std::istringstream paragraphs(text);
-  for (std::string paragraph; std::getline(paragraphs, paragraph); used = 0) {
+  for (std::string paragraph; std::getline(paragraphs, paragraph);) {
     if (!lines.empty()) lines += '\n' + std::string(indent, ' ');
     if (paragraph.starts_with(' ')) {
       lines += paragraph;
       continue;
     }
     std::istringstream words(paragraph);
-    std::size_t column = std::max(used, indent);
+    std::size_t column = indent;
     for (std::string word; words >> word; column += word.size() + 1) {
-      const bool first = column == std::max(used, indent), full = !first && column + word.size() > kColumns;
+      const bool first = column == indent, full = !first && column + word.size() > kColumns;
       if (full) lines += '\n' + std::string(indent, ' ');
       if (!first && !full) lines += ' ';
       if (full) column = indent;

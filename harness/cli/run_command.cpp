@@ -14,9 +14,9 @@
 #include "harness/gpu/facts_request.h"
 #include "harness/run/merge.h"
 #include "harness/run/run_experiment.h"
-#include "report/analysis/advice.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/advice_text.h"
+#include "report/pages/answer.h"
 #include "report/records/filter_mistakes.h"
 #include "report/records/json_io.h"
 
@@ -87,10 +87,9 @@ void note_filter_mistakes(const RunArguments& arguments, const std::exception& c
 /// The run's answer, its sentence bold on a terminal.
 std::string describe_answer(const std::filesystem::path& out) {
   const records::Results results = records::read_results(out / "results.json");
-  if (analysis::withhold_mixed_times(results.cells)) return "";
-  analysis::AdviceRequest request;
-  request.cheapest = analysis::choose_cost(results.cells);
-  std::string text = pages::make_answer_text(results.run, analysis::advise(results.cells, request));
+  std::string text;
+  pages::with_first_advice(
+      results.cells, [&](const analysis::Advice& advice) { text = pages::make_answer_text(results.run, advice); });
   if (!text.empty() && isatty(STDOUT_FILENO)) text.insert(text.find('\n'), "\x1b[0m").insert(0, "\x1b[1m");
   return text;
 }
@@ -139,7 +138,7 @@ int run(const CommandLine& line, RunArguments& arguments) {
 
 Command make_run_command() {
   Command command{"run", "Render scenes with filters and write a report"};
-  command.examples = {"shadowbench run --out report/mine                           # eight filters, five scenes, 40 s",
+  command.examples = {"shadowbench run --out report/mine                           # eight filters, five scenes",
                       "shadowbench run --scene model.glb --filters all             # your scene, every filter",
                       "shadowbench run --scene fence --map-size 512,1024,2048      # which map size pays"};
   auto a = std::make_shared<RunArguments>();

@@ -26,7 +26,7 @@ const startTable = (holder) => {
     const { title, text, unit, better } = measureOf();
     const of = (name) => (index) => run.configurations[index][name];
     const filter = "a filter, with the parameters and settings that tell it from the others";
-    const width = "class of the kernel's standard deviation: errors are compared within one class";
+    const width = "class of the kernel's standard deviation: fronts are found within one class";
     const cost = run.measures.find(({ id }) => id === timeOf()).text;
     const scale = costScale();
     const costOf = (index) => (of(timeOf())(index) === null ? null : of(timeOf())(index) * scale.factor);

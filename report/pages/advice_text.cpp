@@ -235,7 +235,7 @@ std::string describe_nearest(const analysis::Advice& advice) {
 }  // namespace
 
 std::string make_answer_text(const records::RunRecord& run, const analysis::Advice& advice) {
-  return advice.keeping.empty() ? "" : wrap(analysis::describe_choice(advice)) + list_picks(run, advice);
+  return wrap(analysis::describe_choice(advice)) + list_picks(run, advice);
 }
 
 std::string make_advice_text(const records::RunRecord& run, const analysis::Advice& advice) {

@@ -11,7 +11,7 @@ namespace shadowbench::pages {
 /// names allow.
 std::string make_advice_text(const records::RunRecord& run, const analysis::Advice& advice);
 
-/// The answer alone: the sentence, then fast, balanced and best, a line each; nothing where no configuration is left.
+/// The answer alone: the sentence, then fast, balanced and best, a line each. Some configuration must be left.
 std::string make_answer_text(const records::RunRecord& run, const analysis::Advice& advice);
 
 /// Writes an advice as JSON. The same fields every time: a value that does not exist is null, and `absent` beside it

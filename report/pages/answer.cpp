@@ -112,16 +112,22 @@ analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& c
   return request;
 }
 
-std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRecord>& measured) {
+void with_first_advice(const std::vector<records::CellRecord>& measured,
+                       const std::function<void(const analysis::Advice&)>& use) {
   const auto withheld = analysis::withhold_mixed_times(measured);
   const std::vector<records::CellRecord>& cells = withheld ? *withheld : measured;
-  std::vector<FirstPicture> pictures;
-  if (!can_advise(cells)) return pictures;
+  if (!can_advise(cells)) return;
   const analysis::Advice advice = analysis::advise(cells, choose_request(cells));
-  if (advice.keeping.empty()) return pictures;
-  for (const analysis::Pick& pick : analysis::list_picks(advice))
-    if (const auto* cell = find_worst_picture(advice.keeping[pick.index].configuration))
-      pictures.push_back({cell->key, choose_part(*cell)});
+  if (!advice.keeping.empty()) use(advice);
+}
+
+std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRecord>& measured) {
+  std::vector<FirstPicture> pictures;
+  with_first_advice(measured, [&](const analysis::Advice& advice) {
+    for (const analysis::Pick& pick : analysis::list_picks(advice))
+      if (const auto* cell = find_worst_picture(advice.keeping[pick.index].configuration))
+        pictures.push_back({cell->key, choose_part(*cell)});
+  });
   return pictures;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,11 @@ namespace shadowbench::pages {
 
 /// What a run's page asks first: no limit, a moving light, and analysis::choose_cost().
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells);
+
+/// Calls `use` with what the page of these cells advises first; not where it advises nothing, as of filters for
+/// teaching alone.
+void with_first_advice(const std::vector<records::CellRecord>& measured,
+                       const std::function<void(const analysis::Advice&)>& use);
 
 /// A cell whose picture a page shows first, and the part of it that is seen: left, top, width, height; pixels.
 struct FirstPicture {

@@ -33,12 +33,12 @@ using ImagesByName = std::map<std::string, images::Image>;
 /// The keys of what is advised, with the names of the answers that they are.
 std::map<std::string, std::string> list_roles(const std::vector<records::CellRecord>& cells) {
   std::map<std::string, std::string> roles;
-  if (std::ranges::none_of(cells, records::is_advised)) return roles;
-  const analysis::Advice advice = analysis::advise(cells, choose_request(cells));
-  if (advice.keeping.size() + advice.beaten.size() + advice.no_gain.size() < 2) return roles;
-  for (const analysis::Pick& pick : analysis::list_picks(advice))
-    for (const records::CellRecord* cell : advice.keeping[pick.index].configuration.cells)
-      roles[cell->key] = fmt::format("{}", fmt::join(pick.names, " and "));
+  with_first_advice(cells, [&](const analysis::Advice& advice) {
+    if (advice.keeping.size() + advice.beaten.size() + advice.no_gain.size() < 2) return;
+    for (const analysis::Pick& pick : analysis::list_picks(advice))
+      for (const records::CellRecord* cell : advice.keeping[pick.index].configuration.cells)
+        roles[cell->key] = fmt::format("{}", fmt::join(pick.names, " and "));
+  });
   return roles;
 }
 

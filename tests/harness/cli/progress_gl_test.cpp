@@ -78,6 +78,13 @@ TEST_F(ProgressOfARun, InALog_TakesTwelveLinesAtMost_AndTheSummaryStandsThereOnc
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("report: out/index.html\n"));
 }
 
+TEST_F(ProgressOfARun, OfFiltersForTeaching_EndsWithoutAnAnswer) {
+  const Outcome outcome =
+      run("run --out out --gl software --scene cubes --filters teach4x4 --size 64x36 --map-size 64 --rounds 1");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("report: out/index.html\n"), 0u) << outcome.out;
+}
+
 TEST_F(ProgressOfARun, InALog_WarningsStay_HoweverManyThereAre) {
   std::string scenes;
   for (int i = 0; i < 12; ++i)
