@@ -10,38 +10,23 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <sstream>
 #include <type_traits>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "report/document/markdown.h"
 
 namespace shadowbench::cli {
 namespace {
 
 constexpr std::size_t kColumns = 100, kIndent = 26;
 
-/// Breaks paragraphs into lines of kColumns, all but the first indented, which begins there.
+/// Breaks paragraphs into lines of kColumns, which begin after the indent; those that begin with a space stay.
 std::string wrap(const std::string& text, std::size_t indent = 0) {
-  std::string lines;
-  std::istringstream paragraphs(text);
-  for (std::string paragraph; std::getline(paragraphs, paragraph);) {
-    if (!lines.empty()) lines += '\n' + std::string(indent, ' ');
-    if (paragraph.starts_with(' ')) {
-      lines += paragraph;
-      continue;
-    }
-    std::istringstream words(paragraph);
-    std::size_t column = indent;
-    for (std::string word; words >> word; column += word.size() + 1) {
-      const bool first = column == indent, full = !first && column + word.size() > kColumns;
-      if (full) lines += '\n' + std::string(indent, ' ');
-      if (!first && !full) lines += ' ';
-      if (full) column = indent;
-      lines += word;
-    }
-  }
-  return lines;
+  std::vector<std::string> lines;
+  for (const std::string& paragraph : split_list(text, "\n"))
+    lines.push_back(paragraph.starts_with(' ') ? paragraph : document::wrap(paragraph, kColumns, indent, indent));
+  return fmt::format("{}", fmt::join(lines, "\n" + std::string(indent, ' ')));
 }
 
 /// Lays out the help: examples first, descriptions beside the options.

@@ -123,6 +123,24 @@ std::size_t count_shown(std::string_view text) {
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
 }
 
+std::string wrap(std::string_view paragraph, std::size_t columns, std::size_t indent, std::size_t begin) {
+  std::string text;
+  std::size_t column = begin;
+  for (const std::string& word : split_list(paragraph, " ")) {
+    const std::size_t width = count_shown(word);
+    if (!text.empty() && column + 1 + width > columns) {
+      text += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (!text.empty()) {
+      text += ' ';
+      ++column;
+    }
+    text += word;
+    column += width;
+  }
+  return text;
+}
+
 std::string write_markdown_table(const records::TextTable& table) {
   std::vector<std::vector<std::string>> rows = {table.header};
   rows.insert(rows.end(), table.rows.begin(), table.rows.end());

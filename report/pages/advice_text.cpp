@@ -40,23 +40,7 @@ std::string align(const std::vector<Row>& rows) {
   return text;
 }
 
-// Breaks a paragraph at spaces; all lines but the first are indented.
-std::string wrap(const std::string& text) {
-  std::string result, line;
-  std::size_t begin = 0;
-  while (begin < text.size()) {
-    const std::size_t end = std::min(text.find(' ', begin), text.size());
-    const std::string word = text.substr(begin, end - begin);
-    if (!line.empty() && document::count_shown(line) + 1 + document::count_shown(word) > kColumns) {
-      result += line + "\n";
-      line.assign(1, ' ');
-    }
-    if (!line.empty()) line += ' ';
-    line += word;
-    begin = end + 1;
-  }
-  return result + line + "\n";
-}
+std::string wrap(const std::string& text) { return document::wrap(text, kColumns, 2) + "\n"; }
 
 std::string place_name(const records::CellRecord& cell, const analysis::Advice& advice) {
   return analysis::describe_place(analysis::place_of(cell), advice.places);
