@@ -1,6 +1,7 @@
 #include "harness/run/task_run.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <tbb/parallel_for_each.h>
 #include <tbb/task_group.h>
 
@@ -151,6 +152,7 @@ class TaskRun {
     for (measure::MeasuredCell& cell : measured.cells)
       *cell.record.measured_s += shared_s / static_cast<double>(measured.cells.size());
     write_cells(measured);
+    malloc_trim(0);  // else the next task's memory comes on top of what is free
   }
 
   images::Image draw_ambient() {
@@ -194,6 +196,7 @@ class TaskRun {
     measured.masks = analyser_->masks();
     assets_.gbuffer(*task_.camera).forget_receivers();
     if (options_.grids) analyser_.reset();  // no other group needs it
+    malloc_trim(0);                         // of rays, before the pictures
   }
 
   /// Accumulates the first cells over frames: those that are drawn in this process.
