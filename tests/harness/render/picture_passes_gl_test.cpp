@@ -59,7 +59,7 @@ scene::Scene make_cookie_scene(const glm::vec3& position, const glm::vec3& targe
 class CookieLight {
  public:
   explicit CookieLight(const scene::Scene& scene, const filters::RangeRule& range = {})
-      : scene_(scene), range_(range), bench_(shared_context(), scene, 64, kSide, kSide) {
+      : scene_(scene), range_(range), bench_(shared_context(), scene_, 64, kSide, kSide) {
     bench_.set_range(range);
   }
 
