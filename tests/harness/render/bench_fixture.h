@@ -123,7 +123,7 @@ class Bench {
 
  private:
   gl::Context& context_;
-  const scene::Scene& scene_;
+  scene::Scene scene_;
   render::ShaderLibrary& shaders_ = shared_shaders();
   render::Geometry geometry_;
   std::vector<scene::LightFrustum> layers_;
