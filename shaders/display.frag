@@ -14,6 +14,7 @@ uniform float pixels_per_target;
 layout(location = 0) out vec4 out_color;
 
 const vec3 broken = vec3(1.0, 0.0, 1.0);
+const vec3 endless = vec3(1.0);
 const vec3 outside = vec3(0.12, 0.12, 0.13);
 
 vec3 encode_srgb(vec3 linear) {
@@ -29,6 +30,7 @@ vec3 show(ivec2 pixel) {
   float value = texel[channel];
   if (has_less != 0) value -= texelFetch(less, pixel, 0).x;
   if (isnan(value)) return broken;
+  if (isinf(value)) return endless;
   int last = textureSize(colors, 0).x - 1;
   float place = clamp((value - range.x) / (range.y - range.x), 0.0, 1.0) * float(last);
   int below = int(place);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/toml.h"
 #include "filters/catalogue.h"
 #include "filters/kernel.h"
 #include "filters/model.h"
@@ -175,6 +176,17 @@ int list_scenes(const ListArguments& arguments) {
   return 0;
 }
 
+int list_lessons(const ListArguments& arguments) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const TomlTable& lesson : read_toml(options::find_resources().lessons, "the lessons").tables("lesson"))
+    if (arguments.json)
+      json.push_back({{"name", lesson.string("name")}, {"title", lesson.string("title")}});
+    else
+      print("{:<14} {}\n", lesson.string("name"), lesson.string("title"));
+  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  return 0;
+}
+
 int list_metrics(const ListArguments& arguments) {
   fmt::print("{}", arguments.json ? records::make_metric_json() : records::make_metric_text());
   return 0;
@@ -219,7 +231,7 @@ int list_gl(const ListArguments& arguments) {
 }  // namespace
 
 Command make_list_command() {
-  Command command{"list", "List filters, engine presets, scenes, metrics, GPUs, or the OpenGL context"};
+  Command command{"list", "List filters, engine presets, scenes, lessons, metrics, GPUs, or the OpenGL context"};
   auto a = std::make_shared<ListArguments>();
   const auto add = [&](const char* name, const char* title, int (*show)(const ListArguments&)) {
     Command& sub = command.commands.emplace_back(Command{name, title});
@@ -229,6 +241,7 @@ Command make_list_command() {
   add("filters", "Filters with parameters, ranges, units and source", list_filters);
   add("presets", "Filters as engines ship them, with bias and known differences", list_presets);
   add("scenes", "Built-in scenes", list_scenes);
+  add("lessons", "Lessons of 'view --lesson': faults, in a state that shows them", list_lessons);
   add("metrics", "Metrics with unit, range and definition", list_metrics);
   add("gpus", "GPUs whose costs a run can estimate", list_gpus);
   command.commands.back().add("--check", &a->check, "also ask this machine's Vulkan driver which it compiles for");

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLargestScale = 4.0;
 
 struct ViewArguments : DrawingArguments {
-  std::string scene = "cubes", light_name;
+  std::string scene = "cubes", lesson, light_name;
   bool ground = false;
   std::string left, right = view::kTruthName;
   std::vector<std::string> filter_files;
@@ -24,11 +24,14 @@ struct ViewArguments : DrawingArguments {
   double close_after_s = 0.0;
 };
 
-int view_scene(const ViewArguments& arguments) {
+int view_scene(const ViewArguments& arguments, const CommandLine& line) {
+  for (const char* other : {"scene", "--left", "--right", "--light-name", "--map-size"})
+    if (!arguments.lesson.empty() && line.has(other)) fail(fmt::format("--lesson sets {} itself: leave it out", other));
   view::ViewOptions options;
   take_drawing_options(arguments, options.run);
   options::read_run_options(options::list_run_options(), options.run);
   options.scene = arguments.scene;
+  options.lesson = arguments.lesson;
   options.light_name = arguments.light_name;
   options.run.ground = arguments.ground;
   options.run.map_sizes = {parse_count(arguments.map_size, "--map-size")};
@@ -64,6 +67,7 @@ Command make_view_command() {
   a->out = "report/out/view";
   command.add("scene", &a->scene, "a built-in scene by name, or a .toml, .gltf, .glb or .obj file")
       .names(ValueKind::kScene);
+  command.add("--lesson", &a->lesson, "begin with a lesson of 'list lessons', in place of a scene");
   command.add("--ground", &a->ground, "put a floor under a bare model");
   command.add("--light-name", &a->light_name, "the scene's light of this name");
   command
@@ -78,7 +82,7 @@ Command make_view_command() {
   command.add("--out", &a->out, "folder for saved images");
   command.add("--log", &a->log, "").hide();
   command.add("--close-after", &a->close_after_s, "").hide();
-  command.action = [a](const CommandLine&) { return view_scene(*a); };
+  command.action = [a](const CommandLine& line) { return view_scene(*a, line); };
   return command;
 }
 

@@ -24,7 +24,8 @@ namespace {
 constexpr float kPanelWidth = 380.0f;
 constexpr float kStatusHeight = 24.0f;
 constexpr double kSecondsBeforeFull = 0.12;  ///< before what was dragged is drawn in full again, while it is still held
-constexpr double kShareOfNewest = 0.25;      ///< in what a frame is said to take
+constexpr int kLinesOfFault = 4;
+constexpr double kShareOfNewest = 0.25;  ///< in what a frame is said to take
 constexpr const char* kHowToUseScene = ".toml, for 'shadowbench view' and 'run --scene'";
 constexpr ImU32 kDividerColor = IM_COL32(255, 200, 40, 255);
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
@@ -52,6 +53,15 @@ std::filesystem::path find_free_stem(const std::filesystem::path& folder, const 
   int number = 1;
   while (is_taken(fmt::format("{}-{}", name, number))) ++number;
   return folder / fmt::format("{}-{}", name, number);
+}
+
+/// A driver lists every overload of a function that is called wrongly: the mistake and a little of that are enough.
+std::string first_lines(const std::string& text) {
+  std::size_t end = 0;
+  for (int line = 0; line < kLinesOfFault && end != std::string::npos; ++line) end = text.find('\n', end + (line > 0));
+  if (end == std::string::npos) return text;
+  return fmt::format("{}\n{} more", text.substr(0, end),
+                     std::count(text.begin() + static_cast<std::ptrdiff_t>(end), text.end(), '\n'));
 }
 
 }  // namespace
@@ -152,6 +162,10 @@ void Gui::lay_out(double now_s) {
   if (look_.help) lay_out_help();
   fit_picture(now_s);
   window_.set_title("shadowbench: " + bench_.state().scene.name);
+}
+
+void Gui::start(const std::string& lesson) {
+  if (const Lesson* started = scenes_.start(lesson)) start(*started);
 }
 
 /// Shows what a lesson is about; its state is there already.
@@ -265,6 +279,7 @@ void Gui::draw_divider() {
 /// Says what a side is, how far from the truth, and what keeps a layer from being shown.
 std::string Gui::make_caption(std::size_t side) const {
   const Side& named = bench_.state().sides[side];
+  if (named.truth && bench_.stage().truth() == nullptr) return "no truth yet, lit everywhere: " + shown_[side].absent;
   std::string text = named.truth ? "ray-traced truth" : named.label();
   if (const std::string error = errors_.describe(side); !error.empty()) text += ", " + error;
   return shown_[side].absent.empty() ? text : text + ": " + shown_[side].absent;
@@ -321,7 +336,7 @@ void Gui::lay_out_faults() {
   std::string text = bench_.message();
   for (std::size_t side = 0; side < kSides; ++side)
     if (const std::string& fault = bench_.stage().fault(side); !fault.empty())
-      text += (text.empty() ? "" : "\n") + fault;
+      text += (text.empty() ? "" : "\n") + first_lines(fault);
   if (text.empty()) return;
   const PicturePlace at = place();
   ImGui::SetNextWindowPos({at.corner.x + 8.0f, at.corner.y + at.size().y - 2.4f * ImGui::GetFontSize()},

@@ -41,6 +41,9 @@ class Gui {
   PicturePlace place() const;
   const Look& look() const { return look_; }
   const ErrorMeter& errors() const { return errors_; }
+  /// Begins a lesson by name.
+  void start(const std::string& lesson);
+
   std::string lesson() const { return scenes_.lesson(); }
 
   /// What the panels take of the window's size, in pixels.

@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <span>
 
@@ -35,7 +36,8 @@ void Magnifier::lay_out(Look& look, const Layer& layer, const std::array<ShownLa
                         const std::optional<glm::ivec2>& pixel, const glm::vec2& corner, float scale) {
   last_pixel_ = glm::clamp(pixel.value_or(last_pixel_), glm::ivec2(0),
                            glm::ivec2(bench_.state().options.width - 1, bench_.state().options.height - 1));
-  ImGui::SetNextWindowPos({corner.x, corner.y}, ImGuiCond_Appearing, {1.0f, 0.0f});
+  const float width = static_cast<float>(2 * kPixels * kPixelSide + 3 * kGap) * scale;
+  ImGui::SetNextWindowPos({std::max(corner.x, width), corner.y}, ImGuiCond_Appearing, {1.0f, 0.0f});
   ImGui::Begin("Magnifier", &look.magnifier, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
   show_pixels(shown, static_cast<int>(static_cast<float>(kPixelSide) * scale));
   show_values(layer, shown);
@@ -112,12 +114,10 @@ void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::
   ImGui::SetNextWindowPos({20.0f * scale, 60.0f * scale}, ImGuiCond_Appearing);
   ImGui::Begin("Shadow map", &look.map, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
   footprint_ = footprints_.find(last_side_, glm::clamp(last_place_ * pixels, glm::vec2(0.0f), pixels - 1.0f));
-  std::vector<std::string> contents = {"depth, linear"};
-  if (const render::FilterPasses* passes = bench_.stage().passes(last_side_); passes && passes->encoded_format())
-    for (int channel = 0; channel < gl::pixel_format(*passes->encoded_format()).channels; ++channel)
-      contents.push_back(fmt::format("{} stores: channel {}", passes->request().spec.id, channel + 1));
-  content_ = std::min(content_, contents.size() - 1);
-  widgets_.choose("map.content", "content", contents, content_);
+  const std::vector<std::string> contents = list_contents();
+  auto chosen = static_cast<std::size_t>(std::ranges::find(contents, content_) - contents.begin()) % contents.size();
+  widgets_.choose("map.content", "content", contents, chosen, "Linear depth, or what the side's filter stores.");
+  content_ = contents[chosen];
   widgets_.slide("map.zoom", "zoom", {.min = 1.0, .max = 128.0, .logarithmic = true}, zoom_,
                  "Around the receiver under the pointer.");
   // What stands above and below the map takes ten lines.
@@ -135,11 +135,24 @@ void MapPanel::look_at(const MapReading& reading) {
   content_ = reading.content;
 }
 
-images::Image MapPanel::read_content(int layer) const {
+/// Variance only where the filter's own passes leave its moments as they were encoded.
+std::vector<std::string> MapPanel::list_contents() const {
+  std::vector<std::string> contents = {"depth"};
+  const render::FilterPasses* passes = bench_.stage().passes(last_side_);
+  if (!passes || !passes->encoded_format()) return contents;
+  for (int channel = 1; channel <= gl::pixel_format(*passes->encoded_format()).channels; ++channel)
+    contents.push_back(fmt::format("channel {}", channel));
+  const filters::FilterSpec& spec = passes->request().spec;
+  if (spec.holds_moments && spec.passes.empty()) contents.emplace_back("variance");
+  return contents;
+}
+
+images::Image MapPanel::read_content(int layer) {
   const render::ShadowMap& map = bench_.stage().light_map().map;
   const int size = map.size();
   images::Image image(size, size, 1);
-  if (content_ == 0) {
+  infinite_ = 0;
+  if (content_ == "depth") {
     const filters::DepthMap depth = map.read(layer);
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x)
@@ -148,9 +161,12 @@ images::Image MapPanel::read_content(int layer) const {
   }
   const render::EncodedTexels stored = bench_.stage().passes(last_side_)->encoded_map(layer)->read();
   for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x)
-      *image.at(x, size - 1 - y) =
-          stored.values[static_cast<std::size_t>((y * size + x) * stored.channels) + content_ - 1];
+    for (int x = 0; x < size; ++x) {
+      const auto* texel = &stored.values[static_cast<std::size_t>((y * size + x) * stored.channels)];
+      const auto value = content_ == "variance" ? texel[1] - texel[0] * texel[0] : texel[content_.back() - '1'];
+      *image.at(x, size - 1 - y) = value;
+      infinite_ += std::isinf(value);
+    }
   return image;
 }
 
@@ -169,6 +185,7 @@ void MapPanel::show_map(int side_pixels, int layer) {
   widgets_.show("map.image", target_->texture());
   draw_footprint({corner.x, corner.y}, side_pixels, first);
   ImGui::Text("%.4g (dark) .. %.4g", static_cast<double>(values.low), static_cast<double>(values.high));
+  if (infinite_ > 0) ImGui::Text("%zu texels hold infinity, shown white", infinite_);
   if (!footprint_) return ImGui::TextDisabled("No receiver in the map under the pointer.");
   ImGui::Text("texel %.2f, %.2f of layer %d, depth %.6f", footprint_->place_texels.x, footprint_->place_texels.y,
               footprint_->receiver.layer, static_cast<double>(footprint_->receiver.depth));

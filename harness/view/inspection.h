@@ -102,13 +102,15 @@ class MapPanel {
   Widgets widgets_;
   FootprintFinder footprints_;
   std::optional<render::ImageTarget> target_;
-  std::size_t content_ = 0;  ///< 0: depth; else a channel of the stored map, from 1 on
+  std::string content_ = "depth";  ///< as MapReading has it
+  std::size_t infinite_ = 0;       ///< texels of what is shown
   double zoom_ = 1.0;
   glm::vec2 last_place_{0.0f};  ///< in parts of the picture
   std::size_t last_side_ = 0;
   std::optional<Footprint> footprint_;
 
-  images::Image read_content(int layer) const;
+  std::vector<std::string> list_contents() const;
+  images::Image read_content(int layer);
   void show_map(int side_pixels, int layer);
   void draw_footprint(const glm::vec2& corner, int side_pixels, const glm::dvec2& first_texel) const;
 };

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "filters/kernel.h"
 #include "harness/gl/survey.h"
 #include "harness/view/gui.h"
@@ -14,6 +15,7 @@ namespace shadowbench::view {
 namespace {
 
 constexpr double kSecondsOfRest = 0.1;             ///< between frames in which nothing moves
+constexpr int kLeastHeight = 560;                  ///< of a window: its panels need as much
 constexpr glm::ivec2 kLargestPicture(1920, 1080);  ///< that a window opens with: a software rasteriser draws it
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -29,10 +31,19 @@ std::string choose_usual(const filters::Catalogue& catalogue, const ViewOptions&
   return usual != catalogue.filters().end() ? usual->id : catalogue.filters().front().id;
 }
 
+void require_lesson(const ViewOptions& options) {
+  std::vector<std::string> names;
+  for (const Lesson& lesson : read_lessons(options.run.resources.lessons)) names.push_back(lesson.name);
+  if (!options.lesson.empty() && std::ranges::count(names, options.lesson) == 0)
+    throw Error(ErrorKind::kUsage, fmt::format("--lesson: '{}' is no lesson{}", options.lesson,
+                                               did_you_mean_or_known(options.lesson, names)));
+}
+
 /// As large as the screen allows, but for a picture that keeps its size: then no larger than it and the panels are.
 glm::ivec2 choose_window_size(const ViewOptions& options, const glm::ivec2& picture) {
   const glm::ivec2 panels = Gui::panel_size(options.scale > 0.0f ? options.scale : 1.0f), room = Window::find_room();
-  const glm::ivec2 wanted = options.keeps_size || room.x <= 0 ? picture + panels : kLargestPicture + panels;
+  const glm::ivec2 wanted = options.keeps_size || room.x <= 0 ? glm::max(picture + panels, glm::ivec2(0, kLeastHeight))
+                                                              : kLargestPicture + panels;
   return room.x > 0 ? glm::min(wanted, room) : wanted;
 }
 
@@ -66,6 +77,7 @@ void run_view(const ViewOptions& options) {
   const auto make = [&](const std::string& text) {
     return make_side(catalogue, text.empty() ? choose_usual(catalogue, options) : text);
   };
+  require_lesson(options);
   ViewState state = make_view_state(std::move(run), options.scene, {make(options.sides[0]), make(options.sides[1])});
   if (!options.light_name.empty()) choose_light(state, options.light_name);
   check(state);
@@ -80,6 +92,7 @@ void run_view(const ViewOptions& options) {
   Workbench bench(renderer, std::move(state), std::move(catalogue), options.filter_files);
   bench.draw();
   Gui gui(window, bench, log, options.run.out, options.keeps_size);
+  if (!options.lesson.empty()) gui.start(options.lesson);
   const double opened = now_s();
   while (!window.is_closing()) {
     window.wait(gui.is_moving() ? 0.0 : kSecondsOfRest);

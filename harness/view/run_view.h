@@ -12,6 +12,7 @@ namespace shadowbench::view {
 struct ViewOptions {
   options::RunOptions run;  ///< its `out` is where files are saved
   std::string scene;
+  std::string lesson;                     ///< by name, in place of scene, sides and map; empty: none
   std::string light_name;                 ///< of the one that shines; empty: the first
   std::array<std::string, kSides> sides;  ///< filters as `--filters` names them, or "truth"; empty: a usual one
   std::vector<std::filesystem::path> filter_files;

@@ -187,6 +187,11 @@ void ScenePanel::choose_scene() {
   }
 }
 
+const Lesson* ScenePanel::start(const std::string& name) {
+  lesson_ = static_cast<std::size_t>(std::ranges::find(lessons_, name, &Lesson::name) - lessons_.begin()) + 1;
+  return start_lesson();
+}
+
 const Lesson* ScenePanel::start_lesson() {
   is_instead_ = false;
   if (lesson_ == 0) return nullptr;

@@ -69,6 +69,9 @@ class ScenePanel {
   /// Lays out the widgets in the current ImGui window. The lesson whose state is shown from now on; null: as before.
   const Lesson* lay_out();
 
+  /// Begins the lesson of that name. The lesson whose state is shown; null: it cannot be, and the bench says why.
+  const Lesson* start(const std::string& name);
+
   /// The title of the lesson that is shown; empty: none.
   std::string lesson() const { return lesson_ == 0 ? "" : lessons_[lesson_ - 1].title; }
 

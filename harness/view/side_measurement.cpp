@@ -58,12 +58,13 @@ std::vector<std::string> list_arguments(const options::RunOptions& options, cons
   return words;
 }
 
-/// The last line that was written to its end, as far as the process tells what it does.
-std::string find_last_line(const std::string& text) {
-  const std::size_t end = text.rfind('\n');
-  if (end == std::string::npos) return {};
-  const std::size_t begin = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
-  return text.substr(begin + 1, end - begin - 1);
+/// What the process does: the end of its last line of progress, after the scene and the map. Empty: not known yet.
+std::string find_step(const std::string& text) {
+  constexpr std::string_view kBefore = " \u00b7 ";
+  const std::size_t begin = text.rfind(kBefore);
+  if (begin == std::string::npos) return {};
+  const std::string step = text.substr(begin + kBefore.size());
+  return step.substr(0, step.find('\n'));
 }
 
 /// The cells of a state's filters, in the order of its run, still without records.
@@ -144,7 +145,7 @@ void SideMeasurement::start(const ViewState& state, Measurand measurand) {
 SideMeasurement::State SideMeasurement::poll() {
   if (worker_ && worker_->listen({})) end_worker();
   if (worker_) {
-    if (std::string line = find_last_line(worker_->error_text()); !line.empty()) text_ = std::move(line);
+    if (std::string step = find_step(worker_->error_text()); !step.empty()) text_ = std::move(step);
   }
   if (reading_.valid() && reading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) finish_reading();
   return state_;

@@ -182,17 +182,17 @@ void save_experiment(const ViewState& state, const fs::path& file) {
 namespace {
 
 constexpr std::size_t kSentences = 3;
-constexpr Range kMapSizes{16, 16384}, kZooms{1.0, 128.0}, kChannels{0, 4};
+constexpr Range kMapSizes{16, 16384}, kZooms{1.0, 128.0};
 
 SharedSettings read_shared(const TomlTable& table) {
   return {table.strings("bias", std::vector<std::string>{}), table.string("fit", "tight")};
 }
 
 MapReading read_reading(const TomlTable& table) {
-  table.require_known_keys({"place", "side", "zoom", "channel"});
+  table.require_known_keys({"place", "side", "zoom", "content"});
   return {glm::vec3(table.vec3("place", kAnyNumber)),
           table.choose<std::size_t>("side", {{kSideNames[0], 0}, {kSideNames[1], 1}}, kSideNames[0]),
-          table.number("zoom", kZooms, 1.0), static_cast<std::size_t>(table.integer("channel", kChannels, 0))};
+          table.number("zoom", kZooms, 1.0), table.string("content", "depth")};
 }
 
 TomlTable require_table(const TomlTable& table, const std::string& key) {
@@ -201,11 +201,12 @@ TomlTable require_table(const TomlTable& table, const std::string& key) {
 }
 
 Lesson read_lesson(const TomlTable& table) {
-  table.require_known_keys({"title", "text", "scene", "left", "right", "map_size", "bias", "fit", "layer", "divider",
-                            "camera", "reading", "instead"});
+  table.require_known_keys({"name", "title", "text", "scene", "left", "right", "map_size", "bias", "fit", "layer",
+                            "divider", "camera", "reading", "instead"});
   std::vector<std::string> layers;
   for (const Layer& layer : Layers::list()) layers.push_back(layer.id);
   Lesson lesson;
+  lesson.name = table.string("name");
   lesson.title = table.string("title");
   lesson.sentences = table.strings("text");
   if (lesson.sentences.size() != kSentences) throw table.error("text", "a lesson has three sentences");

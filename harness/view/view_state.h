@@ -146,7 +146,7 @@ struct MapReading {
   glm::vec3 place_ws{0.0f};  ///< of the receiver
   std::size_t side = 0;
   double zoom = 1.0;
-  std::size_t content = 0;  ///< 0: depth; else a channel of what the side's filter stores, from 1 on
+  std::string content = "depth";  ///< or "channel 1" to "channel 4" of what the side's filter stores, or "variance"
 };
 
 /// The bias and the fit, which both sides share.
@@ -157,6 +157,7 @@ struct SharedSettings {
 
 /// A fault that a filter has, in a state that shows it.
 struct Lesson {
+  std::string name;  ///< as `view --lesson` takes it
   std::string title;
   std::vector<std::string> sentences;  ///< what is seen, why, and what helps
   std::string scene;

@@ -139,7 +139,7 @@ void Workbench::start(SideMeasurement& measurement, SideMeasurement::State& stat
 
 std::string Workbench::explain_no_measurement() const {
   if (measured_ == SideMeasurement::State::kFailed) return "cannot be measured: " + measurement_.text();
-  return measurement_.text().empty() ? "waits to be measured" : "is measured: " + measurement_.text();
+  return measurement_.text().empty() ? "waits to be measured" : "being measured: " + measurement_.text();
 }
 
 void Workbench::reload_filters() {

@@ -51,7 +51,7 @@ def test_no_display_is_code_4(program, folder):
 
 
 def test_bad_input_is_refused_before_a_window_opens(program, folder):
-    for arguments, code in ((["nowhere"], 2), (["cubes", "--left", "vsn"], 2), (["cubes", "--left", "none,vsm"], 2), (["cubes", "--size", "12"], 2), (["three_lights", "--light-name", "sum"], 2),
+    for arguments, code in ((["nowhere"], 2), (["cubes", "--left", "vsn"], 2), (["cubes", "--left", "none,vsm"], 2), (["cubes", "--size", "12"], 2), (["--lesson", "acme"], 2), (["cubes", "--lesson", "acne"], 2), (["three_lights", "--light-name", "sum"], 2),
                             (["cubes", "--filter-file", str(folder / "none.glsl")], 5), (["missing.toml"], 3)):
         done = subprocess.run([program, "view", *arguments], capture_output=True, text=True, timeout=60)
         assert done.returncode == code, (arguments, done)
@@ -224,6 +224,13 @@ def test_scenes_and_lessons_are_chosen(program, folder):
     own.unlink()
     window.choose("scene", str(own))
     window.wait("a message", lambda frame: own.name in frame["message"] and frame["scene"] == "cubes")
+    window.close()
+
+
+def test_lesson_opens_by_name(program, folder):
+    window = Window(program, folder, ["--lesson", "esm-overflow", *FIXED[:2]])
+    frame = window.wait("the lesson", lambda frame: frame["lesson"] == "ESM overflows" and frame["scene"] == "cubes")
+    assert frame["left"] == "esm" and abs(frame["divider"] - 0.85) < 1e-6 and "map.image" in window.widgets, frame
     window.close()
 
 
