@@ -37,8 +37,8 @@ const makeEngine = (gl) => {
       motions.set(key, { ...makeMotion(player, graph, blobs, frame.picture, settings.fit), turn: 0 });
     const steps = [...player.listSteps(frame.picture)];
     const stepsWith = (name) => steps.filter((index) => graph.steps[index].uniforms?.[name]);
-    const constants = frame.parameters.filter((each) => each.constant);
     const parameters = frame.parameters.map((each) => ({ ...each, steps: stepsWith(each.name) }));
+    const constants = parameters.filter((each) => each.steps.length === 0);
     return {
       ...frame,
       settings,

@@ -138,7 +138,7 @@ const fillMapControls = (box, frame, view, most, changed) => {
     normal: largest("bias_normal_texels"),
   };
   for (const { id, ...each } of kBiases) {
-    const bounds = { ...each, min: 0, value: view.map[id] ?? values[id] };
+    const bounds = { ...each, min: 0, own: values[id], value: view.map[id] ?? values[id] };
     addSlider(row, bounds, (chosen) => choose(id, chosen, false)).disabled = Boolean(fixed[id]);
   }
   const title = (id) => kBiases.find((each) => each.id === id)?.name ?? `map's ${id}`;

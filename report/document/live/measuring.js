@@ -77,7 +77,7 @@ const makeMeasuring = (engine) => {
   const time = makeTimer(gl);
   const found = new Map(); // by a cell's key
   const samplings = new Map(); // by a map's size
-  const references = new Map(); // by place: how far the mean of many maps is from the truth, in words
+  const references = new Map(); // by place: the RMSE of the mean of many maps to the truth; undefined: there is none
   let whyStopped = "";
   const isStopped = () => whyStopped !== "";
 
@@ -113,13 +113,14 @@ const makeMeasuring = (engine) => {
   // How far the reference is from the traced truth.
   const checkReference = async (place) => {
     const reference = await engine.findReference(kAsRun, place);
-    if (!reference || isStopped() || !run.truths[place]) return;
+    references.set(place, references.get(place));
+    if (!reference || !run.truths[place]) return;
     while (engine.refine(reference, kAsRun) && !isStopped()) await pause();
+    if (isStopped()) return;
     const [plane, mask] = [await getPlane(kTruth, place, "visibility"), await getMask(place)];
     const { width, height } = await loadFile(kTruth, place);
     const { rmse } = compareValues(reference.read(), plane, mask, width, { x: 0, y: 0, width, height }, 0);
-    const maps = `The mean of ${reference.count()} maps from points of the light`;
-    references.set(place, ` ${maps} has an RMSE of ${format(rmse)} to the traced truth.`);
+    references.set(place, rmse);
   };
   // Times the filters of a place that draw as the run did; what they share is timed once.
   const timePlace = async (place, onRound) => {
@@ -164,7 +165,8 @@ const makeMeasuring = (engine) => {
   return {
     found,
     samplingAt,
-    sayReference: (place) => references.get(place) ?? "",
+    knowsReference: (place) => references.has(place),
+    errorOfReference: (place) => references.get(place),
     begin: () => (whyStopped = ""),
     stop: (why) => (whyStopped ||= why),
     isStopped,
@@ -196,7 +198,7 @@ const sayQueries = (times, isSoftware) => {
   return ` Timer queries differ from ${apart} of ${asked.length} times by more than both intervals (\u2260).${cpu}`;
 };
 // Shows what is known of the filters of a place.
-const fillResults = (box, place, { found, samplingAt, sayReference }, isSoftware) => {
+const fillResults = (box, place, { found, samplingAt, errorOfReference }, isSoftware) => {
   const whos = listFiltersAt(place);
   const rows = whos.map((who) => [who, found.get(cellAt(who, place).key) ?? {}]);
   box.replaceChildren();
@@ -212,8 +214,13 @@ const fillResults = (box, place, { found, samplingAt, sayReference }, isSoftware
   const title = `What this GPU draws on ${run.places[place].title}.`;
   const times = rows.flatMap(([, { filter, prefilter }]) => [filter, prefilter]);
   const ofQueries = sayQueries(map ? [map, ...times] : times, isSoftware);
+  const off = errorOfReference(place);
+  const ofMaps =
+    off === undefined
+      ? ""
+      : ` The mean of ${kReferenceMaps} maps from points of the light has an RMSE of ${format(off)} to the traced truth.`;
   // As a caption it would be as wide as the table, and be cut where the table is.
-  element(box, "p", { className: "note results" }, `${title} ${sampling}${ofMap}${ofQueries}${sayReference(place)}`);
+  element(box, "p", { className: "note results" }, `${title} ${sampling}${ofMap}${ofQueries}${ofMaps}`);
   const table = element(element(box, "div", { className: "scroll", tabIndex: 0 }), "table", { ariaLabel: title });
   const head = element(element(table, "thead"), "tr");
   const columns = [...kResultColumns, ...(times.some((time) => time?.queries) ? kQueryColumns : [])];

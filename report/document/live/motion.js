@@ -1,6 +1,6 @@
 // Moves a light: its map is drawn by the run's own steps, with other matrices for each of its layers. A sun turns about
-// the scene's middle, and its windows become as large as they must be: around the scene, or around what the camera sees of
-// it where the run's windows follow that. A spot light goes round the middle and keeps looking at what it looked at; a
+// the scene's middle, and its windows become as large as they must be: fitted to the scene as the program fits them, or
+// around what the camera sees of it where the run's windows follow that. A spot light goes round the middle and keeps looking at what it looked at; a
 // point light goes round it too, and the faces of its cube stay parallel to the axes.
 const kOfLight = [
   ...["clip_from_world", "uv_depth_from_world", "light_direction_ws", "light_right_ws", "light_up_ws"],
@@ -21,6 +21,72 @@ const findSlice = ({ clip, position, forward }, from, to) => {
   const at = isPerspective ? Math.min(to, ((from + to) / 2) * (1 + half * half)) : (from + to) / 2;
   const reachTo = (depth) => Math.hypot(depth - at, half * (isPerspective ? depth : 1));
   return { middle: add(position, forward, at), radius: Math.max(reachTo(from), reachTo(to)) };
+};
+
+const axisLeastParallel = (direction) => {
+  const [x, y, z] = direction.map(Math.abs);
+  if (z <= x && z <= y) return [0, 0, 1];
+  return x <= y ? [1, 0, 0] : [0, 1, 0];
+};
+// A sun's axes, which depend on its direction alone, and its scene's extent along them, from the scene's middle.
+const fitScene = ({ middle, radius, farthest, forEach }, direction, fit) => {
+  const back = direction.map((value) => -value);
+  const right = normalise(cross(axisLeastParallel(direction), back));
+  const axes = [right, cross(back, right), back];
+  let [low, high] = [axes.map(() => Infinity), axes.map(() => -Infinity)];
+  let reach = 0;
+  forEach((x, y, z) => {
+    const from = [x - middle[0], y - middle[1], z - middle[2]];
+    reach = Math.max(reach, dot(from, from));
+    for (let i = 0; i < 3; ++i) {
+      const along = axes[i][0] * from[0] + axes[i][1] * from[1] + axes[i][2] * from[2];
+      if (along < low[i]) low[i] = along;
+      if (along > high[i]) high[i] = along;
+    }
+  });
+  if (fit === "sphere") [low, high] = [-1, 1].map((side) => axes.map(() => side * Math.sqrt(reach)));
+  const [wide, tall, deep] = low.map((value, i) => high[i] - value);
+  const side = Math.max(wide, tall, 1e-3 * deep);
+  // Depth is computed in single precision.
+  const padding = Math.max(1e-4 * deep, deep < 1e-3 * side ? 5e-4 * side : 0, 8 * 2 ** -23 * farthest);
+  return { axes, side, low, high: [high[0], high[1], high[2] + padding], deep: deep + 2 * padding };
+};
+// What a sun's layer becomes over a whole scene; `own` is what the scene's extent is in the run's own window.
+const frameScene = (uv, { middle }, { axes, side, low, high, deep }, own) => {
+  const width = side / own.side / lengthOfRow(uv, 0);
+  const row = (axis, share, at) => [...axis.map((value) => value * share), at - share * dot(axis, middle)];
+  const centre = (i) => 0.5 - (low[i] + high[i]) / (2 * width);
+  const rows = [
+    row(axes[0], 1 / width, centre(0)),
+    row(axes[1], 1 / width, centre(1)),
+    row(axes[2], -1 / deep, high[2] / deep),
+    [0, 0, 0, 1],
+  ];
+  const fitted = Array.from({ length: 16 }, (_, i) => rows[i & 3][i >> 2]);
+  // Rows of clip space are multiples of those of the map's, with something added.
+  const clipOf = (clip) =>
+    [0, 1, 2].reduce(
+      (matrix, r) => {
+        const along = [0, 4, 8].map((i) => clip[i + r]);
+        const factor =
+          dot(
+            along,
+            [0, 4, 8].map((i) => uv[i + r]),
+          ) /
+          lengthOfRow(uv, r) ** 2;
+        const added = [0, 0, 0, clip[12 + r] - factor * uv[12 + r]];
+        return setRow(
+          matrix,
+          r,
+          add(
+            rows[r].map((value) => factor * value),
+            added,
+          ),
+        );
+      },
+      [...fitted],
+    );
+  return { wide: side / own.side, deep: deep * lengthOfRow(uv, 2), uv: fitted, clipOf, axes };
 };
 
 // What a sun's layer becomes that covers a sphere of a scene; `back` takes the world to where the sun was.
@@ -89,6 +155,8 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
     const seen = followsView && from < to ? findSlice(camera, from, to) : bounds;
     return seen.radius < radius ? { ...seen, radius: kWindowMargin * seen.radius } : bounds;
   };
+  const isOfScene = !lamp && /^(tight|sphere)$/.test(fit);
+  const ofScene = isOfScene && direction && fitScene(bounds, direction, fit);
   const restore = () => {
     for (const index of steps)
       if (!uniformsOf(index).camera_forward_ws || !uniformsOf(index).clip_from_world)
@@ -112,14 +180,24 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
     const turned = (vector) => (isCube ? vector : transform(turn.forth, transform(about(tilt), vector, 0), 0));
     const distance = lamp && Math.hypot(...add(middle, lamp, -1));
     const own = ({ uv }) => ({ wide: 1, deep: 1, uv: multiply(uv, back), clipOf: (clip) => multiply(clip, back) });
+    const tilted = (sign) => multiply(turn.forth, multiply(about(sign * tilt), turn.back));
+    const refit = ({ uv }) => {
+      const fitted = frameScene(uv, bounds, fitScene(bounds, transform(turn.forth, direction, 0), fit), ofScene);
+      if (off === 0) return fitted;
+      const clipOf = (clip) => multiply(fitted.clipOf(clip), tilted(-1));
+      const axes = fitted.axes.map((axis) => transform(tilted(1), axis, 0));
+      return { ...fitted, uv: multiply(fitted.uv, tilted(-1)), clipOf, axes };
+    };
     const frame = (layer) =>
       lamp
         ? frameLamp(layer.uv, back, find("depth_range_ws")[0], distance, { radius: bounds.radius + off })
-        : frameSun(layer.uv, back, coverOf(layer), bounds);
+        : isOfScene
+          ? refit(layer)
+          : frameSun(layer.uv, back, coverOf(layer), bounds);
     const framed = new Map(layers.map((layer) => [layer, isMoved ? frame(layer) : own(layer)]));
     for (const index of steps) {
       const base = uniformsOf(index);
-      const { wide, deep, uv, clipOf, farOverNear } = framed.get(layerOf.get(index) ?? layers[0]);
+      const { wide, deep, uv, clipOf, farOverNear, axes } = framed.get(layerOf.get(index) ?? layers[0]);
       const changes = {};
       if (base.uv_depth_from_world) changes.uv_depth_from_world = uv;
       if (casters.includes(index)) changes.clip_from_world = clipOf(base.clip_from_world);
@@ -127,6 +205,7 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
       if (base.far_over_near && farOverNear) changes.far_over_near = [farOverNear];
       for (const name of ["light_direction_ws", "light_right_ws", "light_up_ws"])
         if (base[name]) changes[name] = turned(base[name]);
+      if (axes && base.light_right_ws) [changes.light_right_ws, changes.light_up_ws] = axes;
       const factors = { texel_size_ws: wide, depth_range_ws: deep, bias_constant: 1 / deep, bias_slope: wide / deep };
       for (const [name, factor] of Object.entries(factors)) if (base[name]) changes[name] = [base[name][0] * factor];
       player.setUniforms(index, changes);
@@ -134,6 +213,7 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
   };
   return {
     isSun: !stays && !lamp,
+    isFitted: isOfScene,
     stays,
     moveLight: stays ? () => {} : move,
     directionOf: ([yaw, pitch]) => transform(turnAround(middle, direction, yaw, pitch).forth, direction, 0),
@@ -175,26 +255,33 @@ const turnAround = (pivot, direction, yaw, pitch) => {
   };
 };
 
-// Middle and radius of the vertices of a frame.
+// The vertices of a frame: middle and radius of their box, the largest coordinate, and a visit of each.
 const findBounds = (frames, blobs, steps) => {
+  const used = new Set(
+    steps.map((index) => frames.steps[index].vertices?.blob).filter((each) => (each ?? null) !== null),
+  );
+  const forEach = (visit) => {
+    for (const blob of used) {
+      const stride = frames.blobs[blob].columns;
+      const vertices = blobs[blob];
+      // The first two vertices belong to no triangle.
+      for (let i = 2 * stride; i + 2 < vertices.length; i += stride)
+        visit(vertices[i], vertices[i + 1], vertices[i + 2]);
+    }
+  };
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
-  for (const blob of new Set(
-    steps.map((index) => frames.steps[index].vertices?.blob).filter((each) => each !== undefined && each !== null),
-  )) {
-    const stride = frames.blobs[blob].columns;
-    const vertices = blobs[blob];
-    for (let i = 2 * stride; i + 2 < vertices.length; i += stride) {
-      // the first two vertices belong to no triangle
-      for (let axis = 0; axis < 3; ++axis) {
-        low[axis] = Math.min(low[axis], vertices[i + axis]);
-        high[axis] = Math.max(high[axis], vertices[i + axis]);
-      }
+  forEach((...place) => {
+    for (let axis = 0; axis < 3; ++axis) {
+      low[axis] = Math.min(low[axis], place[axis]);
+      high[axis] = Math.max(high[axis], place[axis]);
     }
-  }
+  });
   return {
     middle: low.map((value, i) => (value + high[i]) / 2),
     radius: Math.hypot(...low.map((value, i) => high[i] - value)) / 2,
+    farthest: Math.max(...low.map(Math.abs), ...high.map(Math.abs)),
+    forEach,
   };
 };
 

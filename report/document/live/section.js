@@ -48,7 +48,7 @@ const writeChanges = (request, changes) =>
   );
 // Azimuth and elevation, degrees, of a sun whose light travels so: azimuth 0 is +z, 90 is +x.
 const findSkyAngles = ([x, y, z]) =>
-  [Math.atan2(-x, -z), Math.asin(clamp(-y, -1, 1))].map((angle) => Number(((180 / Math.PI) * angle).toFixed(2)));
+  [Math.atan2(-x, -z), Math.asin(clamp(-y, -1, 1))].map((angle) => Number(((180 / Math.PI) * angle).toFixed(4)));
 // A map's format in the program's words, "d16 perspective 30.5 reversed hashed", as the options that it stands for.
 const writeFormat = (text) =>
   text
@@ -81,6 +81,9 @@ const listUnsaid = ({ place, camera, light }, { motion } = {}) => {
     ...(isTurned(camera) ? ["The camera that was turned is not in it: the program has the scene's own."] : []),
     ...(isTurned(light) && motion && !motion.isSun && !motion.stays
       ? ["The lamp that was moved is not in it: the program has the scene's own."]
+      : []),
+    ...(isTurned(light) && motion?.isSun && !motion.isFitted
+      ? ["The map's window, which follows the view, is a little wider here than the program's."]
       : []),
     ...(isTurned(light) && isModel ? ["A model's camera and floor, where it has none, follow its light."] : []),
   ];
@@ -119,30 +122,48 @@ const turnView = (view, drags, yaw, pitch) => {
   const [oldYaw, oldPitch] = view[drags];
   view[drags] = [oldYaw + yaw, clamp(oldPitch + pitch, -1, 1)].map((angle) => Number(angle.toFixed(4)));
 };
-const addSlider = (parent, { name, value, min, max, step, unit, text }, onChoose) => {
+// The places of a slider, 0 to 1, of a range that spans decades; where it begins at 0, the run's own value is halfway.
+const kRatiosForLog = [100, 10]; // of the largest value to the least, and to the run's own where the least is 0
+const makeLogScale = ({ own, min, max, whole }) => {
+  if (whole || !(max > 0)) return null;
+  if (min > 0 && max / min >= kRatiosForLog[0])
+    return { toPlace: (v) => Math.log(v / min) / Math.log(max / min), toValue: (p) => min * (max / min) ** p };
+  if (min !== 0 || !(own > 0) || max / own < kRatiosForLog[1]) return null;
+  const floor = own ** 2 / max;
+  const span = Math.log1p(max / floor);
+  return { toPlace: (v) => Math.log1p(v / floor) / span, toValue: (p) => floor * Math.expm1(p * span) };
+};
+// `own` is the run's value, which the slider gives back to the last digit.
+const addSlider = (parent, { name, value, own = value, min, max, step, unit, text, whole }, onChoose) => {
   const title = element(parent, "label", { title: text }, `${name}${unit ? `, ${unit}` : ""} `);
-  const input = element(title, "input", { type: "range", min, max, step });
-  input.value = value;
+  const scale = makeLogScale({ own, min, max, whole });
+  const range = scale ? { min: 0, max: 1, step: "any" } : { min, max, step };
+  const input = element(title, "input", { type: "range", ...range });
+  input.value = scale ? scale.toPlace(value) : value;
   const shown = element(title, "output", {}, format(Number(value)));
+  const read = () => {
+    if (!scale) return Number(Number(input.value).toPrecision(6));
+    if (Math.abs(input.value - scale.toPlace(own)) < 0.01) return own;
+    return clamp(Number(scale.toValue(Number(input.value)).toPrecision(4)), min, max);
+  };
   input.addEventListener("input", () => {
-    shown.textContent = format(Number(input.value));
-    onChoose(Number(Number(input.value).toPrecision(6)));
+    shown.textContent = format(read());
+    onChoose(read());
   });
   return input;
 };
-// What a filter's shaders were built with cannot be changed here: another value is another text.
+// What a filter's shaders or their weights were built with cannot be changed here.
 const fillConstants = (box, { constants }) => {
   box.replaceChildren();
   if (constants.length === 0) return;
   const details = element(box, "details");
-  element(details, "summary", {}, "Constants");
+  element(details, "summary", {}, "What stays");
   const row = element(details, "div", { className: "controls" });
   for (const { name, value, min, max, unit, text } of constants) {
     if (min !== undefined) addSlider(row, { name, value, min, max, step: "any", unit, text }, () => {}).disabled = true;
     else addSelect(row, name, [[value, value]], { disabled: true, title: text }, () => {});
   }
-  const why =
-    "They are built into its shaders, which were translated with the report; loops and tables are made of them.";
+  const why = "The run made loops, tables and weights of them, which go with the report.";
   element(details, "p", { className: "note" }, `${why} For another value, change it in the command below.`);
 };
 const openLive = (holder) => {
@@ -185,6 +206,18 @@ const openLive = (holder) => {
     ...{ camera: [0, 0], light: [0, 0], parameters: new Map(), map: {}, drags: "camera", layer: "picture" },
   };
 
+  // What stands in for the truth is no better than it is where rays were traced.
+  const sayStandIn = (maps) => {
+    const said = `No rays were traced there: instead of the truth this is the mean of ${maps} maps`;
+    const off = measuring.errorOfReference(state.place);
+    const error = findEntry(state.right, state.place)?.rmse?.value;
+    if (off === undefined) return [`${said}.`];
+    const isVague = off >= error;
+    return [
+      `${said}, whose RMSE to the traced truth is ${format(off)} under the run's own light.`,
+      ...(isVague ? ["That is as much as this filter's own error: nothing here tells how wrong it is."] : []),
+    ];
+  };
   let shows = 0;
   const show = async () => {
     if (engine.isBusy) return;
@@ -208,7 +241,7 @@ const openLive = (holder) => {
     const isUnfinished = drawn.some((each) => each.isUnfinished);
     if (isUnfinished) requestAnimationFrame(show);
     const maps = drawn.findLast((each) => each.maps)?.maps;
-    if (maps) messages.push(`No rays were traced there: instead of the truth this is the mean of ${maps} maps.`);
+    if (maps) messages.push(...sayStandIn(maps));
     const { value: frame } = await attempt(engine.load(state.right, state.place));
     if (frame?.frames.check.whole && isMoved(state)) messages.push(`Camera and light stay: ${kTooLarge}.`);
     else if (frame?.motion.stays && isTurned(state.light)) messages.push(`This light stays: ${frame.motion.stays}.`);
@@ -221,6 +254,8 @@ const openLive = (holder) => {
       "aria-label",
       `Left ${nameOf(state.left)}, right ${nameOf(state.right)}, on ${run.places[state.place].title}`,
     );
+    if (maps && !isUnfinished && !measuring.knowsReference(state.place))
+      await attempt(measuring.checkReference(state.place)).then(show);
     holder.ariaBusy = --shows > 0 || isUnfinished;
   };
   const showCommand = async () => {
@@ -305,10 +340,10 @@ const openLive = (holder) => {
     if (frame) state.map = dropFixed(frame, state.map);
     showCommand();
     if (!frame || right === kTruth) return [mapBox, constantBox].forEach((box) => box.replaceChildren());
-    for (const { value, ...each } of frame.parameters) {
-      const now = state.parameters.get(right)?.[each.name] ?? value;
+    for (const { value: own, ...each } of frame.parameters) {
+      const value = state.parameters.get(right)?.[each.name] ?? own;
       const step = each.whole ? 1 : (each.max - each.min) / 200;
-      addSlider(parameters, { ...each, step, value: now }, (chosen) => {
+      addSlider(parameters, { ...each, step, own, value }, (chosen) => {
         state.parameters.set(right, { ...state.parameters.get(right), [each.name]: chosen });
         changed();
       });
