@@ -108,6 +108,7 @@ test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () 
   const before = await look();
   await turn();
   const turned = await look();
+  await page.waitForFunction(() => /RMSE to the traced truth is 0\.\d+ under/.test(document.querySelector(".live").textContent), null, { timeout: 60000 });
   await shoot("live.turned");
   await pick(page, "A drag turns", "light", ".live");
   await turn();
