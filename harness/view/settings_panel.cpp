@@ -29,7 +29,7 @@ void begin_widget() { ImGui::SetNextItemWidth(kWidgetWidth * ImGui::GetContentRe
 
 /// A unit as a format shows it: a percent sign would begin a number.
 std::string format_of(const Widgets::SliderLimits& limits) {
-  std::string unit = limits.unit.empty() ? "" : " " + limits.unit;
+  std::string unit = limits.unit.empty() || limits.unit == "1" ? "" : " " + limits.unit;
   for (std::size_t i = unit.find('%'); i != std::string::npos; i = unit.find('%', i + 2)) unit.insert(i, "%");
   return (limits.integer ? "%.0f" : "%.4g") + unit;
 }

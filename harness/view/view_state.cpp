@@ -192,7 +192,8 @@ MapReading read_reading(const TomlTable& table) {
   table.require_known_keys({"place", "side", "zoom", "content"});
   return {glm::vec3(table.vec3("place", kAnyNumber)),
           table.choose<std::size_t>("side", {{kSideNames[0], 0}, {kSideNames[1], 1}}, kSideNames[0]),
-          table.number("zoom", kZooms, 1.0), table.string("content", "depth")};
+          table.number("zoom", kZooms, 1.0),
+          table.choice("content", {"depth", "channel 1", "channel 2", "channel 3", "channel 4", "variance"}, "depth")};
 }
 
 TomlTable require_table(const TomlTable& table, const std::string& key) {

@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kGood =
     "[[lesson]]\n"
+    "name = 'a'\n"
     "title = 'A'\n"
     "text = ['One.', 'Two.', 'Three.']\n"
     "scene = 'cubes'\n"
@@ -21,7 +22,7 @@ constexpr const char* kGood =
     "right = 'truth'\n"
     "map_size = 64\n"
     "layer = 'error'\n"
-    "reading = {place = [0, 0, 0], side = 'right', zoom = 2, channel = 1}\n";
+    "reading = {place = [0, 0, 0], side = 'right', zoom = 2, content = 'channel 1'}\n";
 
 class LessonsFile : public ::testing::Test {
  protected:
@@ -54,7 +55,7 @@ TEST_F(LessonsFile, Good_IsReadWhole) {
   EXPECT_EQ(lessons[0].sides[1], "truth");
   EXPECT_EQ(lessons[0].layer, "error");
   EXPECT_EQ(lessons[0].reading.side, 1u);
-  EXPECT_EQ(lessons[0].reading.content, 1u);
+  EXPECT_EQ(lessons[0].reading.content, "channel 1");
   EXPECT_EQ(lessons[0].settings.fit, "tight");
   EXPECT_TRUE(lessons[0].instead_title.empty());
 }
@@ -62,10 +63,12 @@ TEST_F(LessonsFile, Good_IsReadWhole) {
 TEST_F(LessonsFile, Bad_IsRefusedWithItsLine) {
   using ::testing::AllOf;
   using ::testing::HasSubstr;
-  EXPECT_THAT(refuse("'Three.'", ""), AllOf(HasSubstr("lessons.toml:3"), HasSubstr("three sentences")));
-  EXPECT_THAT(refuse("layer = 'error'", "layer = 'eror'"), AllOf(HasSubstr("lessons.toml:8"), HasSubstr("error")));
-  EXPECT_THAT(refuse("left = ", "lft = "), AllOf(HasSubstr("lessons.toml:5"), HasSubstr("left")));
-  EXPECT_THAT(refuse("zoom = 2", "zoom = 0"), HasSubstr("lessons.toml:9"));
+  EXPECT_THAT(refuse("'Three.'", ""), AllOf(HasSubstr("lessons.toml:4"), HasSubstr("three sentences")));
+  EXPECT_THAT(refuse("layer = 'error'", "layer = 'eror'"), AllOf(HasSubstr("lessons.toml:9"), HasSubstr("error")));
+  EXPECT_THAT(refuse("left = ", "lft = "), AllOf(HasSubstr("lessons.toml:6"), HasSubstr("left")));
+  EXPECT_THAT(refuse("zoom = 2", "zoom = 0"), HasSubstr("lessons.toml:10"));
+  EXPECT_THAT(refuse("'channel 1'", "'chanel 1'"), AllOf(HasSubstr("lessons.toml:10"), HasSubstr("channel 1")));
+  EXPECT_THAT(refuse("name = 'a'", ""), HasSubstr("name"));
   EXPECT_THAT(refuse("reading = ", "divider = 0.3 # "), HasSubstr("reading"));
 }
 
