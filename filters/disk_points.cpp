@@ -23,6 +23,16 @@ Points spread_on_spiral(int count, unsigned seed) {
   return points;
 }
 
+/// Each point an eighth of three turns on, and nearer to the centre by the same step.
+Points spread_inwards(int count, unsigned seed) {
+  Points points;
+  for (int i = 0; i < count; ++i) {
+    const double radius = 1.0 - static_cast<double>(i) / count, angle = 0.75 * std::numbers::pi * (seed + i);
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return points;
+}
+
 /// A stream of places in the unit square, in 32-bit fractions: sums and distances of them wrap as the square does.
 class RandomPlaces {
  public:
@@ -87,6 +97,7 @@ Points spread_by_distance(int count, unsigned seed) {
 Points spread(int count, unsigned seed, const std::string& pattern) {
   if (pattern == "stratified") return spread_in_cells(count, seed);
   if (pattern == "blue-noise") return spread_by_distance(count, seed);
+  if (pattern == "spiral") return spread_inwards(count, seed);
   assert(pattern == "vogel");
   return spread_on_spiral(count, seed);
 }
@@ -104,7 +115,7 @@ glm::dvec2 map_to_disk(glm::dvec2 square) {
 }
 
 const std::vector<std::string>& disk_patterns() {
-  static const std::vector<std::string> names{"vogel", "stratified", "blue-noise"};
+  static const std::vector<std::string> names{"vogel", "stratified", "blue-noise", "spiral"};
   return names;
 }
 

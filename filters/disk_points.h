@@ -19,13 +19,14 @@ glm::dvec2 map_to_disk(glm::dvec2 square);
 ///   TOG 5(1)), mapped to the disk.
 /// - `blue-noise`: each point the farthest of some from those before it (Mitchell 1991, Spectrally Optimal Sampling for
 ///   Distribution Ray Tracing, SIGGRAPH), on a square without edges, so that none crowd there, mapped to the disk.
+/// - `spiral`: as many steps inwards as points, three eighths of a turn apart, so that points crowd in the middle
+///   (Jimenez 2014, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH, with eight).
 const std::vector<std::string>& disk_patterns();
 
-/// Generates `count` points that are spread evenly over the unit disk, those near its rim as thinly as the others; the
-/// same for the same pattern, count and seed on every machine. A seed turns the spiral about the centre, and is chance
-/// for the others. All are then moved so that their mean is the centre, since a mean elsewhere would shift the shadow,
-/// and scaled to fit the disk where the move took one out of it.
-/// Cost: quadratic in `count` for `blue-noise`.
+/// Generates `count` points over the unit disk, evenly spread but for `spiral`; the same for the same pattern, count
+/// and seed on every machine. A seed turns the spiral about the centre, and is chance for the others. All are then
+/// moved so that their mean is the centre, since a mean elsewhere would shift the shadow, and scaled to fit the disk
+/// where the move took one out of it. Cost: quadratic in `count` for `blue-noise`.
 std::vector<glm::vec2> generate_disk_points(int count, unsigned seed, const std::string& pattern = "vogel");
 
 /// Generates the points that `[disk.<name>]` of a filter's front matter asks for.

@@ -28,7 +28,7 @@ max = 1e-1
 unit = "depth"
 text = "least standard deviation; too small gives acne, too large fades contact shadows"
 [param.bleed_reduction]
-default = 0.0
+default = 0.15
 min = 0.0
 max = 0.99
 text = "share of the dark end that is cut to black; hides light bleeding, and hardens penumbrae; 0 is the textbook form, and alone an upper bound"

@@ -21,8 +21,8 @@ choices = ["none", "per-pixel", "interleaved-gradient", "blue-noise"]
 text = "turn of the disk at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither, blue-noise one without a pattern"
 [param.pattern]
 default = "vogel"
-choices = ["vogel", "stratified", "blue-noise"]
-text = "how points are spread: vogel on a sunflower's spiral, stratified one anywhere in each cell of a grid, blue-noise far from each other"
+choices = ["vogel", "stratified", "blue-noise", "spiral"]
+text = "how points are spread: vogel on a sunflower's spiral, stratified one anywhere in each cell of a grid, blue-noise far from each other, spiral with even steps inwards (Jimenez 2014), so that they crowd in the middle"
 [param.bail]
 default = "none"
 choices = ["none", "agree"]

@@ -440,6 +440,16 @@ TEST(DiskPoints, OfPatternsWithChance_AreTheSameOnEveryMachine) {
   EXPECT_LT(glm::distance(apart.back(), glm::vec2(0.8834952f, -0.1211787f)), 1e-6f);
 }
 
+TEST(DiskPoints, OfTheSpiral_AreThoseOfAnEngine_AboutTheirMean) {
+  const std::vector<glm::vec2> engine = {{-0.7071f, 0.7071f},  {0.0f, -0.875f},     {0.5303f, 0.5303f},
+                                         {-0.625f, 0.0f},      {0.3536f, -0.3536f}, {0.0f, 0.375f},
+                                         {-0.1768f, -0.1768f}, {0.125f, 0.0f}};  // Bevy's utils.wgsl
+  glm::vec2 mean(0.0f);
+  for (const glm::vec2& point : engine) mean += point / 8.0f;
+  const std::vector<glm::vec2> ours = generate_disk_points(8, 1, "spiral");
+  for (std::size_t i = 0; i < engine.size(); ++i) EXPECT_LT(glm::distance(ours[i], engine[i] - mean), 1e-4f) << i;
+}
+
 TEST(DiskPoints, ASeedTurnsThem) {
   const std::vector<glm::vec2> one = generate_disk_points(16, 1), other = generate_disk_points(16, 2);
   EXPECT_NE(one, other);

@@ -66,8 +66,8 @@ TEST_P(UpperBound, IsNeverDarkerThanPcfOfItsKernel_OnAnyMap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Filters, UpperBound,
-                         ::testing::Values("evsm2", "evsm4", "evsm4:radius=1,c=20", "msm_hamburger", "msm_hausdorff",
-                                           "msm_hausdorff:radius=1,moment_bias=0.01"));
+                         ::testing::Values("evsm2:bleed_reduction=0", "evsm4", "evsm4:radius=1,c=20", "msm_hamburger",
+                                           "msm_hausdorff", "msm_hausdorff:radius=1,moment_bias=0.01"));
 
 TEST(Msm, DepthsWithinTheMap_SayMoreThanAnyDepths) {
   const DepthMap map = make_blocks(5);
@@ -89,8 +89,8 @@ TEST(Moments, OfTwoDepths_GiveTheLitShare) {
   DepthMap map{kMomentMapSide, {}};
   for (int i = 0; i < kMomentMapSide * kMomentMapSide; ++i)
     map.stored.push_back(i % kMomentMapSide < kMomentMapSide / 2 ? kNear : kFar);
-  for (const char* text : {"msm_hamburger", "msm_hausdorff", "evsm2", "evsm4", "msm_packed64:lookup=bilinear",
-                           "msm_packed32:lookup=bilinear"}) {
+  for (const char* text : {"msm_hamburger", "msm_hausdorff", "evsm2:bleed_reduction=0", "evsm4",
+                           "msm_packed64:lookup=bilinear", "msm_packed32:lookup=bilinear"}) {
     const FilterRequest request = request_blocks(text);
     const auto lookup = prepare_blocks(request, map);
     const PercentageCloser closer(*find_kernel(request.spec, request.values), map);
