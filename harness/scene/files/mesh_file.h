@@ -70,21 +70,11 @@ std::string write_glb(const Scene& scene, double aspect);
 /// Adds geometry, materials, textures and warnings to a scene, but neither cameras nor lights.
 Scene add_mesh_file(Scene scene, MeshFile file);
 
-/// Decodes a PNG, JPEG, BMP, TGA or GIF picture to 8 bits and four channels.
+/// Decodes a picture of a format that stb_image knows to 8 bits and four channels.
 /// Its header is read first. A side may have 16384 pixels, a picture 2^26, and all pictures of a file, of which
 /// `others` are decoded already, 2^28 (1 GiB). Throws kInput, with `name` and `where`, for anything else.
 Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
                        const std::vector<Texture>& others);
-
-/// What a picture's header says of its size, pixels.
-struct PictureSize {
-  std::uint64_t width = 0;
-  std::uint64_t height = 0;
-};
-
-/// Reads the size from the header of a PNG, JPEG, BMP, GIF or TGA picture, without decoding it; nothing where the bytes
-/// are no such picture. The formats must be told apart as the decoder does it, or a picture would be decoded unchecked.
-std::optional<PictureSize> read_picture_size(std::span<const unsigned char> bytes);
 
 /// Resolves a reference that a file in `folder` makes; percent signs must be decoded already. Returns nothing if it
 /// would leave that folder: by "../x" or "/etc/passwd", by a symbolic link, or by a NUL that hides its end. Links that
