@@ -24,7 +24,7 @@ struct RoundLimits {
   int most = 200;
   /// How wide the 95 % interval of a filter's ratio to the reference may be, relative to the ratio.
   double precision = 0.05;
-  double budget_ms = 400.0;  ///< of timed work for each filter; what a filter does not need is left to the others
+  double budget_ms = 200.0;  ///< of timed work for each filter; what a filter does not need is left to the others
 
   /// Exactly this many rounds, however precise they are.
   static RoundLimits exactly(int rounds) { return {.fewest = rounds, .most = rounds}; }

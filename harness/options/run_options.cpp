@@ -394,7 +394,7 @@ std::vector<RunOption> list_run_options() {
       .in(measure)
       .rarely();
   t.add_row(
-       "--budget", "for --rounds auto: seconds of timing per filter and map (default 0.2)", 0.4,
+       "--budget", "for --rounds auto: seconds of timing per filter and map", 0.2,
        [](RunOptions& o, const Told& told) { o.rounds.budget_ms = 1e3 * std::get<double>(told); },
        [](const RunOptions& o) { return o.rounds.budget_ms / 1e3; })
       .in(measure)

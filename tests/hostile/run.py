@@ -55,7 +55,7 @@ READERS = [["advise", "whole", "--max-rmse", "1"], ["merge", "whole", "--out", "
            ["regress", "whole", "--baseline", "base", "--out", "new"],
            ["regress", "whole", "--baseline", "base", "--out", "new", "--accept"],
            ["score", "whole", "--name", "x", "--visibility", "whole/cubes.exr#none.visibility", "--gl", "software"],
-           ["status", "whole"], [*RUN[:1], "--out", "whole", *RUN[3:]],
+           [*RUN[:1], "--out", "whole", *RUN[3:]],
            [*RUN[:1], "--out", "whole", "--fresh", *RUN[3:]]]
 # What a folder to write into may hold that is not ours, or has one of our names.
 NAMES = [".shadowbench-lock", ".shadowbench-folder", "index.html", "results.json", "stress.json", "tuned.json", "images",

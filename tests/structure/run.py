@@ -33,6 +33,7 @@ MOST_FILES = 40
 MOST_LINES = 700
 SOURCES = {".cpp", ".h"}
 COUNTED_LINES = SOURCES | {".glsl", ".frag", ".vert", ".js", ".css", ".py"}
+TOPS = ("base", "filters", "shaders", "reference", "report", "harness", "data", "tests")
 
 
 def room_of(path):
@@ -123,6 +124,15 @@ def check_own_names(root, faults):
                 faults.append(f"{name}: defines {own}, as {owners[program, own]} does; give one another name")
 
 
+def check_named_files(root, faults):
+    """A source that a README names by its file's name alone must be somewhere."""
+    known = {path.name for top in TOPS for path in root.joinpath(top).rglob("*")}
+    for readme in [root / "CONTRIBUTING.md", *(path for top in TOPS for path in root.joinpath(top).rglob("README.md") if "node_modules" not in path.parts)]:
+        for name in re.findall(r"`(?:[\w./]*/)?(\w+\.(?:h|cpp|js|py))`", readme.read_text(encoding="utf-8")):
+            if name not in known:
+                faults.append(f"{readme.relative_to(root)}: names {name}, which there is not")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
@@ -135,6 +145,7 @@ def main():
             check_folder(root, path, faults) if path.is_dir() else check_source(root, path, faults) if path.suffix in COUNTED_LINES else None
         check_folder(root, root.joinpath(top), faults)
     check_own_names(root, faults)
+    check_named_files(root, faults)
     for room in ROOMS:
         if not root.joinpath(room, "CMakeLists.txt").exists():
             faults.append(f"{room}: has no CMakeLists.txt, so it is no target")
