@@ -168,14 +168,9 @@ TEST(UserFile, HasNoWidth) {
 using ::testing::EndsWith;
 using ::testing::StartsWith;
 
-const Catalogue& filters_of_program() {
-  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  return catalogue;
-}
-
 std::vector<std::string> labels_of(const std::string& text) {
   std::vector<std::string> labels;
-  for (const FilterRequest& request : filters_of_program().parse_requests(text)) labels.push_back(request.label());
+  for (const FilterRequest& request : built_in().parse_requests(text)) labels.push_back(request.label());
   return labels;
 }
 
@@ -195,10 +190,10 @@ Error error_of(const std::function<void()>& action) {
 }
 
 TEST(ShippedPresets, AreFiltersOfOurs_WithSourceAndVersion) {
-  const std::vector<Preset> presets = filters_of_program().presets();
+  const std::vector<Preset> presets = built_in().presets();
   ASSERT_GE(presets.size(), 12u);
   for (const Preset& preset : presets) {
-    const auto requests = filters_of_program().parse_requests("@" + preset.name);
+    const auto requests = built_in().parse_requests("@" + preset.name);
     ASSERT_EQ(requests.size(), 1u) << preset.name << " is the beginning of another name";
     EXPECT_THAT(presets_of(requests.front()), ElementsAre(preset.name));
     for (const std::string& source : preset.sources) EXPECT_THAT(source, StartsWith("https://")) << preset.name;
@@ -223,32 +218,25 @@ TEST(Presets, StandAmongFilters_ABeginningForAll) {
 TEST(Presets, OfOneFilter_AreOneRequest) {
   for (const char* text :
        {"@playcanvas,@filament", "castano3,@playcanvas,@filament", "@playcanvas,@filament,castano3"}) {
-    const auto requests = filters_of_program().parse_requests(text);
+    const auto requests = built_in().parse_requests(text);
     ASSERT_EQ(requests.size(), 1u) << text;
     EXPECT_THAT(presets_of(requests.front()), ElementsAre("playcanvas", "filament")) << text;
   }
-  EXPECT_EQ(filters_of_program().parse_requests("castano3,castano3").size(), 2u)
-      << "what is named twice is told, as ever";
-  EXPECT_TRUE(filters_of_program().parse_requests("castano3").front().presets.empty());
+  EXPECT_EQ(built_in().parse_requests("castano3,castano3").size(), 2u) << "what is named twice is told, as ever";
+  EXPECT_TRUE(built_in().parse_requests("castano3").front().presets.empty());
 }
 
 TEST(Presets, SayWhatTheyLack_AndTheEnginesBias) {
-  const Preset preset = choose_presets(filters_of_program().presets(), "playcanvas").front();
+  const Preset preset = choose_presets(built_in().presets(), "playcanvas").front();
   EXPECT_EQ(write_bias_options(preset), "--bias polygon-offset:factor=0.5,units=0.5 --bias constant:depth=1e-4");
   const std::string text = describe_preset(preset);
   for (const std::string& part : {std::string("@playcanvas is castano3"), preset.differs, preset.bias,
                                   "but this does: " + write_bias_options(preset)})
     EXPECT_THAT(text, HasSubstr(part));
-  EXPECT_THAT(describe_preset(choose_presets(filters_of_program().presets(), "godot").front()),
-              EndsWith("nor can --bias"));
+  EXPECT_THAT(describe_preset(choose_presets(built_in().presets(), "godot").front()), EndsWith("nor can --bias"));
 }
 
 TEST(Presets, Mistakes_AreNamed) {
-  const auto expect_usage_error = [](const std::string& text, const std::string& words) {
-    const Error error = error_of([&] { filters_of_program().parse_requests(text); });
-    EXPECT_EQ(error.kind(), ErrorKind::kUsage) << text;
-    EXPECT_THAT(error.message(), HasSubstr(words)) << text;
-  };
   expect_usage_error("@godt", "unknown preset '@godt'; did you mean 'godot'?");
   expect_usage_error("none,@", "unknown preset '@'");
   expect_usage_error("@unreal", "known: three.js, babylon.js-none");

@@ -246,26 +246,6 @@ TEST(PercentageCloser, HasTheWeightsOfThePrefilter) {
   }
 }
 
-TEST(PercentageCloser, OfADisk_IsTheMeanOfManyTaps) {
-  const DepthMap map = make_random_map(32, 9);
-  const PercentageCloser closer(kernel_of("poisson:radius=3"), map), tent(kernel_of("pcf2x2"), map);
-  double worst = 0.0;
-  for (int place = 0; place < 20; ++place) {
-    const double px = 10.0 + 0.37 * place, py = 14.0 + 0.23 * place;
-    double sum = 0.0;
-    constexpr int kSteps = 300;
-    int inside = 0;
-    for (int i = 0; i < kSteps * kSteps; ++i) {
-      const double x = -3.0 + 6.0 * (i % kSteps + 0.5) / kSteps, y = -3.0 + 6.0 * (i / kSteps + 0.5) / kSteps;
-      if (x * x + y * y > 9.0) continue;
-      sum += tent.at(make_receiver(px + x, py + y, 32, 0.5f));
-      ++inside;
-    }
-    worst = std::max(worst, std::abs(closer.at(make_receiver(px, py, 32, 0.5f)) - sum / inside));
-  }
-  EXPECT_LT(worst, 5e-4);
-}
-
 TEST(PercentageCloser, OfADisk_IsExactlyLit_WhereNothingBlocks) {
   const DepthMap map{32, std::vector<float>(32 * 32, 0.5f)};
   const PercentageCloser closer(kernel_of("poisson:radius=3"), map);

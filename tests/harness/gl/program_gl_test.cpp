@@ -57,12 +57,6 @@ TEST_F(GlTest, CompileErrorInAFilter_NamesTheUsersLine) {
   EXPECT_THAT(error.message(), HasSubstr("'soft'"));
 }
 
-TEST_F(GlTest, CompileErrorAfterAnInclude_NamesTheUsersLine) {
-  const Error error = catch_error(
-      [] { make_filter_program("#include \"lib\"\nfloat visibility() { return helper(); }\nfloat x = nosuch;\n"); });
-  EXPECT_EQ(error.where(), "/home/me/soft.glsl:20");
-}
-
 TEST_F(GlTest, CompileErrorInOurPartOfTheShader_NamesOurLine) {
   const Error error = catch_error([] { make_filter_program("#define visibility nosuch\n"); });
   EXPECT_EQ(error.where(), "lookup.frag:4");

@@ -124,47 +124,26 @@ TEST_F(ShaderSourceTest, Circle_IsRefusedWhereItCloses) {
   EXPECT_THAT(error.message(), HasSubstr("includes itself"));
 }
 
-TEST_F(ShaderSourceTest, MissingInclude_NamesTheUsersLineAndTheFolders) {
-  write("main.frag", "#include \"filter\"\n");
-  options_.pieces = {{"filter", "x\n#include \"lib/nosuch.glsl\"\n", "user.glsl", 20}};
-  const Error error = catch_error([&] { build_source(options_); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_EQ(error.where(), "user.glsl:21");
-  EXPECT_THAT(error.message(), HasSubstr("lib/nosuch.glsl"));
-  EXPECT_THAT(error.message(), HasSubstr(folder_.string()));
-}
-
-TEST_F(ShaderSourceTest, IncludeOutsideTheFolders_IsRefused) {
+TEST_F(ShaderSourceTest, WhatAFilterMayNotHold_IsRefusedOnItsLine) {
   write("secret.txt", "SECRET\n");
   options_.roots = {folder_ / "lib"};
-  write("lib/main.frag", "#include \"filter\"\n");
+  write("lib/main.frag", "#include \"filter\"\nvoid main() {}\n");
+  const auto expect = [&](const std::string& line, const std::string& words) {
+    options_.pieces = {{"filter", "x\n" + line + "\n", "user.glsl", 20}};
+    const Error error = catch_error([&] { build_source(options_); });
+    EXPECT_EQ(error.kind(), ErrorKind::kFilter) << line;
+    EXPECT_EQ(error.where(), "user.glsl:21") << line;
+    EXPECT_THAT(error.message(), HasSubstr(words)) << line;
+  };
+  expect("#include \"lib/nosuch.glsl\"", "lib/nosuch.glsl");
+  expect("#include \"lib/nosuch.glsl\"", path("lib"));
   for (const std::string& name : {path("secret.txt"), std::string("../secret.txt"), std::string("x/../../secret.txt"),
-                                  std::string("/etc/passwd")}) {
-    options_.pieces = {{"filter", "x\n#include \"" + name + "\"\n", "user.glsl", 20}};
-    const Error error = catch_error([&] { build_source(options_); });
-    EXPECT_EQ(error.kind(), ErrorKind::kFilter) << name;
-    EXPECT_EQ(error.where(), "user.glsl:21") << name;
-    EXPECT_THAT(error.message(), AllOf(HasSubstr("'" + name + "'"), HasSubstr("outside"))) << name;
-  }
-}
-
-TEST_F(ShaderSourceTest, LineDirectiveInTheText_IsRefused) {
-  write("main.frag", "#include \"filter\"\n");
-  for (const std::string line : {"#line 7 1", " # line 7", "#line"}) {
-    options_.pieces = {{"filter", "x\n" + line + "\n", "user.glsl", 5}};
-    const Error error = catch_error([&] { build_source(options_); });
-    EXPECT_EQ(error.where(), "user.glsl:6") << line;
-    EXPECT_THAT(error.message(), HasSubstr("#line")) << line;
-  }
-}
-
-TEST_F(ShaderSourceTest, NulByteInTheText_IsRefusedOnItsLine) {
-  write("main.frag", "#include \"filter\"\n");
-  options_.pieces = {{"filter", std::string("x\n\0y\n", 5), "user.glsl", 5}};
-  const Error error = catch_error([&] { build_source(options_); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_EQ(error.where(), "user.glsl:6");
-  EXPECT_THAT(error.message(), HasSubstr("NUL"));
+                                  std::string("/etc/passwd")})
+    expect("#include \"" + name + "\"", "'" + name + "' lies outside");
+  for (const char* line : {"#line 7 1", " # line 7", "#line"}) expect(line, "#line");
+  expect(std::string("\0y", 2), "NUL");
+  expect("#version 330", "#version");
+  expect("/* never closed", "");
 }
 
 TEST_F(ShaderSourceTest, MissingMainFile_IsAnInputError) {
@@ -188,14 +167,6 @@ TEST_F(ShaderSourceTest, MalformedInclude_NamesItsLine) {
   }
 }
 
-TEST_F(ShaderSourceTest, VersionInTheText_IsRefused) {
-  write("main.frag", "#include \"filter\"\n");
-  options_.pieces = {{"filter", "#version 330\n", "user.glsl", 5}};
-  const Error error = catch_error([&] { build_source(options_); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_EQ(error.where(), "user.glsl:5");
-}
-
 TEST_F(ShaderSourceTest, TextWithTooManyLines_IsRefused) {
   write("main.frag", std::string(kLinesPerFile - 2, '\n'));
   EXPECT_NO_THROW(build_source(options_));
@@ -203,88 +174,36 @@ TEST_F(ShaderSourceTest, TextWithTooManyLines_IsRefused) {
   EXPECT_EQ(catch_error([&] { build_source(options_); }).where(), path("main.frag"));
 }
 
-TEST_F(ShaderSourceTest, OpenComment_IsRefusedInItsOwnFile) {
-  write("main.frag", "#include \"filter\"\nvoid main() {}\n");
-  options_.pieces = {{"filter", "x\n/* never closed\n", "user.glsl", 5}};
-  const Error error = catch_error([&] { build_source(options_); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_EQ(error.where(), "user.glsl:6");
-}
-
 const std::vector<std::string> kFiles = {"(set by the program)", "lookup.frag", "my filter.glsl"};
 
-TEST(ShaderLog, MesaError_BecomesTheUsersFileAndLine) {
-  const auto log = translate_log("2:14(5): error: `x' undeclared\n", kFiles);
-  EXPECT_EQ(log.where, "my filter.glsl:14");
-  EXPECT_EQ(log.message, "`x' undeclared");
+/// What drivers write, Mesa's form first, and what becomes of it.
+TEST(ShaderLog, BecomesTheUsersFileAndLine_OfTheFirstError) {
+  struct Case {
+    const char *log, *where, *message;
+  };
+  for (const Case& each : {
+           Case{"2:14(5): error: `x' undeclared\n", "my filter.glsl:14", "`x' undeclared"},
+           {"2(14) : error C1503: undefined\n", "my filter.glsl:14", "error C1503: undefined"},
+           {"ERROR: 2:14: 'x' : undeclared\n", "my filter.glsl:14", "'x' : undeclared"},
+           {"1:3(1): warning: `a' unset\n2:14(5): error: one\r\n\n2:15(5): error: two\n", "my filter.glsl:14",
+            "one\nlookup.frag:3: warning: `a' unset\nmy filter.glsl:15: error: two"},
+           {"1(3) : warning C7050: \"v\"\n2(9) : error C0000: syntax\n", "my filter.glsl:9",
+            "error C0000: syntax\nlookup.frag:3: warning C7050: \"v\""},
+           {"WARNING: 1:3: extension\nERROR: 2:14: syntax\n", "my filter.glsl:14", "syntax\nlookup.frag:3: extension"},
+           {"0:200014(5): error: one\n1:100007(5): error: two\n", "my filter.glsl:14",
+            "one\nlookup.frag:7: error: two"},  // the line says the file, and overrules Mesa's index of zero
+           {"2(200014) : error C1503: x\n", "my filter.glsl:14", "error C1503: x"},
+           {"7:14(5): error: x\n", "", "7:14(5): error: x"},
+           {"99999999999999999999999:14(5): error: x\n", "", "99999999999999999999999:14(5): error: x"},
+           {"error: unresolved reference\n", "", "error: unresolved reference"},
+           {"Fragment info\n---\n2(4) : error C1: x\n", "my filter.glsl:4", "error C1: x\nFragment info\n---"},
+           {"", "", ""},
+       }) {
+    const ShaderLog log = translate_log(each.log, kFiles);
+    EXPECT_EQ(log.where, each.where) << each.log;
+    EXPECT_EQ(log.message, each.message) << each.log;
+  }
 }
-
-TEST(ShaderLog, NvidiaError_BecomesTheUsersFileAndLine) {
-  const auto log = translate_log("2(14) : error C1503: undefined variable \"x\"\n", kFiles);
-  EXPECT_EQ(log.where, "my filter.glsl:14");
-  EXPECT_EQ(log.message, "error C1503: undefined variable \"x\"");
-}
-
-TEST(ShaderLog, OtherDriversError_BecomesTheUsersFileAndLine) {
-  const auto log = translate_log("ERROR: 2:14: 'x' : undeclared identifier\n", kFiles);
-  EXPECT_EQ(log.where, "my filter.glsl:14");
-  EXPECT_EQ(log.message, "'x' : undeclared identifier");
-}
-
-TEST(ShaderLog, FirstError_GivesThePlace_AndOthersFollow) {
-  const auto log =
-      translate_log("1:3(1): warning: `a' used uninitialized\n2:14(5): error: one\r\n\n2:15(5): error: two\n", kFiles);
-  EXPECT_EQ(log.where, "my filter.glsl:14");
-  EXPECT_EQ(log.message, "one\nlookup.frag:3: warning: `a' used uninitialized\nmy filter.glsl:15: error: two");
-}
-
-TEST(ShaderLog, NvidiaWarningBeforeTheError_IsNotTheFirstError) {
-  const auto log =
-      translate_log("1(3) : warning C7050: \"v\" might be used\n2(9) : error C0000: syntax error\n", kFiles);
-  EXPECT_EQ(log.where, "my filter.glsl:9");
-  EXPECT_EQ(log.message, "error C0000: syntax error\nlookup.frag:3: warning C7050: \"v\" might be used");
-}
-
-TEST(ShaderLog, OtherDriversWarning_IsNotTheFirstError) {
-  const auto log = translate_log("WARNING: 1:3: extension\nERROR: 2:14: syntax\n", kFiles);
-  EXPECT_EQ(log.where, "my filter.glsl:14");
-  EXPECT_EQ(log.message, "syntax\nlookup.frag:3: extension");
-}
-
-TEST(ShaderLog, LineThatSaysTheFile_OverrulesMesasIndexOfZero) {
-  const auto log = translate_log("0:200014(5): error: one\n1:100007(5): error: two\n", kFiles);
-  EXPECT_EQ(log.where, "my filter.glsl:14");
-  EXPECT_EQ(log.message, "one\nlookup.frag:7: error: two");
-}
-
-TEST(ShaderLog, NvidiaLineThatSaysTheFile_IsSplit) {
-  EXPECT_EQ(translate_log("2(200014) : error C1503: x\n", kFiles).where, "my filter.glsl:14");
-}
-
-TEST(ShaderLog, IndexWithoutAFile_IsLeftAsItIs) {
-  const auto log = translate_log("7:14(5): error: x\n", kFiles);
-  EXPECT_EQ(log.where, "");
-  EXPECT_EQ(log.message, "7:14(5): error: x");
-}
-
-TEST(ShaderLog, IndexTooLargeForAnyNumber_IsLeftAsItIs) {
-  const auto log = translate_log("99999999999999999999999:14(5): error: x\n", kFiles);
-  EXPECT_EQ(log.message, "99999999999999999999999:14(5): error: x");
-}
-
-TEST(ShaderLog, LinkErrorWithoutAPlace_IsKept) {
-  const auto log = translate_log("error: unresolved reference to function `visibility'\n", kFiles);
-  EXPECT_EQ(log.where, "");
-  EXPECT_EQ(log.message, "error: unresolved reference to function `visibility'");
-}
-
-TEST(ShaderLog, TextInNoKnownForm_IsKept) {
-  const auto log = translate_log("Fragment info\n-------------\n2(4) : error C1: x\n", kFiles);
-  EXPECT_EQ(log.where, "my filter.glsl:4");
-  EXPECT_EQ(log.message, "error C1: x\nFragment info\n-------------");
-}
-
-TEST(ShaderLog, EmptyLog_IsEmpty) { EXPECT_EQ(translate_log("", kFiles).message, ""); }
 
 }  // namespace
 }  // namespace shadowbench::gl

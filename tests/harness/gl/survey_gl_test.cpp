@@ -62,22 +62,6 @@ TEST_F(GlTest, PcfWeightBits_AreThoseOfTheWholeMeasurement) {
   EXPECT_EQ(measure_pcf_weights(context(), GL_DEPTH_COMPONENT24).bits, WeightPrecision::kMaxBits);
 }
 
-TEST_F(GlTest, Text_SaysWhatWasMeasured) {
-  GlSurvey measured;
-  measured.d24.pcf = {8, 0.00195};
-  measured.d24.offset_unit_near = 0x1p-24;
-  measured.d32f.pcf = {23, 0.0};
-  measured.d32f.offset_unit_far = 0.3;
-  measured.d32f.clamps_reference = true;
-  measured.r8_levels = 257;
-  measured.slope_ratio = 1.25;
-  measured.timer = {10.0, 9.5, 0.95};
-  const std::string text = describe_survey(context().info(), measured);
-  for (const char* part : {"8 bits (worst error 0.0019)", "exact fp32", "2^-24", "0.3 at 0.75", "clamped to 1", "257",
-                           "length(dz/dx, dz/dy)", "9.500", "10.000", "95 %", "the query is used"})
-    EXPECT_THAT(text, HasSubstr(part));
-}
-
 TEST_F(GlTest, TimerQuery_OfLlvmpipe_IsNotBelieved) {
   const TimerCheck check = check_timer(context());
   EXPECT_GT(check.wall_ms, 1.0);

@@ -103,21 +103,6 @@ TEST_F(AccumulationTest, NoiseOfAMean_FallsWithTheRootOfFrames_AndFasterWithBlue
   EXPECT_NEAR(floor.back() / falling[0], std::sqrt(0.1 / 1.9), 0.04) << "the sum of squared weights, 0.1 / (2 - 0.1)";
 }
 
-TEST_F(AccumulationTest, EightFramesOfFourTaps_HaveTheErrorOfThirtyTwo) {
-  AccumulationMeter meter(bench_);
-  for (const char* rotation : {"per-pixel", "interleaved-gradient", "blue-noise"}) {
-    const std::string rest = std::string(",rotation=") + rotation;
-    const records::AccumulationRecord few = measure(meter, "poisson:taps=4" + rest);
-    const records::AccumulationRecord many = measure(meter, "poisson:taps=32" + rest);
-    const records::ResolveRecord &mean = find(few, "mean"), &one = find(many, "mean");
-    std::printf("%s: RMSE of 1 and 8 frames of 4 taps %.5f, %.5f, of one of 32 %.5f; noise %.5f, %.5f, %.5f\n",
-                rotation, mean.rmse[0], mean.rmse[7], one.rmse[0], (*mean.noise)[0], (*mean.noise)[7], (*one.noise)[0]);
-    EXPECT_LT(mean.rmse[7], 1.1 * one.rmse[0]) << rotation;
-    EXPECT_LT(mean.rmse[7], 0.99 * mean.rmse[0]) << rotation;
-    EXPECT_LT(find(few, "clamped").rmse[7], 1.1 * one.rmse[0]) << rotation;
-  }
-}
-
 TEST_F(AccumulationTest, Ghosts_FadeByTheWeight_AndSoonerWithClamping) {
   const GhostBench ghosts = make_ghost_bench(bench_);
   ASSERT_EQ(ghosts.motions.size(), 3u) << ghosts.absent;

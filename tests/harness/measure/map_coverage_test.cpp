@@ -70,13 +70,6 @@ TEST(MapCoverage, OrthographicViewAlongTheLight_IsTexelAreaOverPixelArea) {
   EXPECT_EQ(*c.record.map_filled, 0.5);
 }
 
-TEST(MapCoverage, TiltedLight_SpreadsATexelByOneOverTheCosine) {
-  const scene::Camera camera = camera_above(5.0f, 3.0f);
-  const MapCoverage c =
-      measure_coverage(look_at_floor(camera), camera, {{light_from_above(12.8, 256, 60.0f)}}, half_filled_map(256));
-  EXPECT_NEAR(*c.record.texels_per_pixel, 2.0, 1e-4);
-}
-
 /// The sum of all footprints is the area that the picture's corners enclose, as the light sees it.
 TEST(MapCoverage, PerspectiveFootprints_AddUpToWhatThePictureShows) {
   scene::Camera camera;

@@ -312,24 +312,5 @@ TEST_P(Retune, DrawsTheSameBitsAsNewPasses_ForEveryFilterAndLight) {
 // otherwise.
 INSTANTIATE_TEST_SUITE_P(Scenes, Retune, ::testing::Values("fence", "edge", "lamp", "lantern"));
 
-double mib_with_mips(const std::string& filter, int size) {
-  const scene::Scene scene = load_builtin("cubes");
-  Bench bench(shared_context(), scene, size, 16, 9);
-  const filters::FilterRequest request = catalogue().parse_requests(filter).front();
-  render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
-  passes.prefilter(bench.map());
-  const std::int64_t bytes_per_texel =
-      passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).bytes_per_texel;
-  std::int64_t bytes = 0;
-  for (std::int64_t side = size; side > 0; side /= 2) bytes += side * side * bytes_per_texel;
-  return static_cast<double>(bytes) / 1048576.0;
-}
-
-/// Annen et al. 2008, figure 1: a map of 2048^2 with mips takes 21.3 MiB as ESM and 42.7 MiB as VSM.
-TEST(Memory, OfMapsWithMips_IsWhatAnnenEtAlState) {
-  EXPECT_NEAR(mib_with_mips("esm", 2048), 21.3, 0.05);
-  EXPECT_NEAR(mib_with_mips("vsm", 2048), 42.7, 0.05);
-}
-
 }  // namespace
 }  // namespace shadowbench::test

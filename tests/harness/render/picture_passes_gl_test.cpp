@@ -138,18 +138,6 @@ TEST(Cookie, ColoursTheLight_ByItsPictureUprightAsSeenFromTheLamp) {
   }
 }
 
-TEST(Cookie, HalfBlack_DarkensThatHalf) {
-  CookieLight light(make_cookie_scene({0.0f, 4.0f, 0.0f}, {}));
-  const std::vector<glm::dvec3> plain = light.draw(nullptr);
-  const auto lower_half = [](int, int row) { return glm::ivec3(row < kCookieSide / 2 ? 255 : 0); };
-  const std::vector<glm::dvec3> half = light.draw(make_cookie(lower_half));
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    const double z = CookieLight::floor_at(i).z;
-    if (std::abs(z) < 0.1) continue;  // a texel is 0.07 m wide there
-    EXPECT_EQ(half[i], z > 0.0 ? plain[i] : glm::dvec3(0.0)) << "pixel " << i;
-  }
-}
-
 TEST(Cookie, LightsNothingBehindTheLamp) {
   CookieLight ahead(make_cookie_scene({0.0f, 4.0f, 0.0f}, {})),
       behind(make_cookie_scene({0.0f, 4.0f, 0.0f}, {0.0f, 8.0f, 0.0f}));

@@ -293,24 +293,6 @@ TEST(DepthPrecision, EveryFormat_KeepsWhatTheoryAllows) {
   }
 }
 
-/// What reversed depth is for: from end to end, at far/near 10^6, the error is rounding's alone.
-TEST(DepthPrecision, ReversedFloatAtAMillion_IsExactToRounding_TheOthersAreNot) {
-  shared_context();
-  render::ShaderLibrary shaders(options::find_resources().shaders);
-  const filters::DepthPlanes planes{0.01, 1e4};
-  for (const Case& c : cases()) {
-    render::ShadowMap map(kSize, {c.format, {c.reversed}});
-    double worst = 0.0;
-    for (const double d : spread_distances(planes)) worst = std::max(worst, measure_error(shaders, map, planes, d) / d);
-    const std::string name = render::describe_map(map.settings());
-    std::printf("%s: %.3g\n", name.c_str(), worst);
-    if (c.reversed && c.description.is_float)
-      EXPECT_LE(worst, std::exp2(-22)) << name;
-    else
-      EXPECT_GT(worst, 1e-3) << name;
-  }
-}
-
 TEST(DepthPrecision, FormatOfOtherBits_IsRefused) {
   EXPECT_NO_THROW(render::require_depth_bits(GL_DEPTH_COMPONENT16, 16));
   const Error error = catch_error([] { render::require_depth_bits(GL_DEPTH_COMPONENT24, 32); });

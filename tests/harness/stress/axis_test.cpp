@@ -186,18 +186,6 @@ TEST(WarpExponent, OverflowsWhereTheSecondMomentDoes) {
             Verdict::kBroken);
 }
 
-TEST(EsmExponent, ModelOverflows_AtTheLogarithmOfTheLargestNumber) {
-  const Axis axis = choose_axes("esm-exponent")[0];
-  for (const auto& [variant, limit] :
-       {std::pair("r32f, linear, depths to 1", 88.72), std::pair("r16f, linear, depths to 1", 11.09),
-        std::pair("r32f, linear, depths to 0.5, no blur", 177.4),
-        std::pair("r16f, linear, depths to 0.5, no blur", 22.18)}) {
-    EXPECT_NEAR(find_onsets(find_case("esm-exponent", variant, Level::kModel), axis).broken->value / limit, 1.0, 0.02)
-        << variant;
-  }
-  EXPECT_FALSE(find_onsets(find_case("esm-exponent", "r32f, log, depths to 1", Level::kModel), axis).broken);
-}
-
 /// NUMBERS: the variance of a constant depth that should be 0 reaches 7.2e-4 in 16-bit floats, 2.3e-5 in UNORM16.
 TEST(VsmCancellation, Wall_LeaksByTheVarianceThatIsNotThere) {
   const Observation half =

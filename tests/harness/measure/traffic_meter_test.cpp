@@ -1,8 +1,8 @@
 // Bytes that lookups fetch through a cache: closed forms, for receivers that step over the map texel by texel.
 
-#include <gtest/gtest.h>
-
 #include "harness/measure/traffic_meter.h"
+
+#include <gtest/gtest.h>
 
 namespace shadowbench::measure {
 namespace {
