@@ -3,12 +3,10 @@
 
     python3 tests/hostile/run.py --program build/tests/shadowbench --cases 2000 --seed 1
 
-A case is a command line, the files that it reads and the environment that it runs in. Kinds of cases take turns:
-`option` (values that an option cannot have), `words` (commands put together at random), `mutant` (a real file of a
-format that is read, with bytes flipped, cut, doubled or replaced), `filter` (GLSL that misbehaves), `environment`
-(limits, closed files, folders that cannot be written), `kill` (a run that is killed, and run again), `foreign` (a
-folder to write into that somebody else filled), and `planted` (a link to a file or folder outside, a pipe or a folder,
-in the place of something that is read or written).
+A case is a command line and the files that it reads. Kinds of cases take turns: `mutant` (a real file of a format that
+is read, with bytes flipped, cut, doubled or replaced), `foreign` (a folder to write into that somebody else filled), and
+`planted` (a link to a file or folder outside, a pipe or a folder, in the place of something that is read or written).
+Bad words, filters that misbehave, limits and killed runs have tests of their own, in tests/harness/cli.
 
 Each case knows the exit codes that are right for it. What counts against the program:
 
@@ -26,7 +24,6 @@ import argparse
 import concurrent.futures
 import os
 import random
-import resource
 import shlex
 import shutil
 import signal
@@ -40,7 +37,6 @@ ROOT = Path(__file__).resolve().parents[2]
 SMALL = ["--size", "16x9", "--map-size", "16", "--rounds", "1", "--no-truth", "--no-grids", "--gl", "software",
          "--gpu", "none"]
 RUN = ["run", "--out", "out", "--scene", "cubes", "--filters", "none", *SMALL]
-DONE = {0}
 SECRET = "of somebody else"
 CHEAP = ["--scene", "cubes", "--map-size", "16", "--size", "16x9", "--gl", "software"]
 # Every command that writes a folder; `whole` is a run's folder, `base` its baseline.
@@ -64,51 +60,13 @@ NAMES = [".shadowbench-lock", ".shadowbench-folder", "index.html", "results.json
          "deep/er/a.txt"]
 ANY_ANSWER = {0, 1, 2, 3, 5, 6}  # whatever it is, it is an answer
 
-# What an option cannot be: the exit code is 2 for every one of them.
-NOT_NUMBERS = ["", " ", "nan", "inf", "-inf", "1e999", "1,5", "1;2", "--", "ten", "1e", "½", "1 2", "\t",
-               "999999999999999999999999", "-1e300"]
-NUMBERS = ["--pad-texels", "--perspective-depth", "--precision", "--budget", "--cell-timeout", "--seed", "--phases"]
-WORDS = {"--map-format": ["d32", "", "D16 ", "r32f", "d16,d24"], "--fit": ["box", "", "cascades:count=9", "lispsm:x=1",
-         "cascades:", "cascades:count=2,count=3"], "--snap": ["maybe", ""], "--border": ["wrap", ""],
-         "--far-test": ["1", ""], "--gl": ["vulkan", ""], "--size": ["0x0", "16", "16x", "x9", "-1x9", "1e3x9", "16x9x2",
-         ""], "--map-size": ["0", "-1", "1.5", "64,64", "", "99999999", ","], "--light": ["1", "1,2,3", "a,b", "", "0,91",
-         "nan,0"], "--shard": ["0/2", "3/2", "1", "1/0", "", "a/b"], "--rounds": ["0", "-1", "many", ""],
-         "--filters": ["nosuch", "none,none", "vsm:radius", "vsm:radius=-1", "vsm:nosuch=1", "vsm:radius=nan", ",", ":"],
-         "--bias": ["nosuch", "constant", "constant:depth", "constant:depth=x", "constant:nosuch=1"],
-         "--gpu": ["", "nosuch", "navi21,navi21", "none,navi21", ","],
-         "--light-name": ["nobody"], "--blend-casters": ["glass", ""], "--view": ["nowhere"]}
-# Commands that work without a further word take minutes: these words, which may be overruled, keep them short.
-SHORT = {"run": SMALL, "bias": ["--filters", "none", "--size", "96x54", "--map-size", "128", "--gl", "software"],
-         "stress": ["--filters", "esm", "--axes", "esm-exponent", "--gl", "software"],
-         "tune": ["--scene", "cubes", "--budget", "1", "--size", "16x9", "--map-size", "16", "--gl", "software"]}
-COMMANDS = ["run", "list", "diff", "bias", "merge", "advise", "tune", "stress", "regress", "flicker", "nosuch",
-            ""]
-PIECES = ["--help", "--out", "out", "--scene", "cubes", "--filters", "none", "--fresh", "--json", "--yes", "-1", "..", "/",
-          "/dev/null", "/nonexistent/x", "a\nb", "\x1b[31m", "%s%n", "$(id)", "; id", "'", '"', "../" * 40, "x" * 5000,
-          "--nosuch", "--nosuch=1", "-z", "--", "=", "golden", "*", "~", "--shard", "1/2", "--no-cache", "\udcff"]
-
-GLSL_HEAD = "/*+++\ntitle = \"Hostile\"\nsource = \"a test\"\nkind = \"other\"\nradius_texels = 1\n+++*/\n"
-GLSL = ["float visibility(Receiver r) { return 0.0 / 0.0; }", "float visibility(Receiver r) { return 1.0 / 0.0; }",
-        "float visibility(Receiver r) { return visibility(r); }", "float visibility(Receiver r) { return", "}", "",
-        "float visibility(Receiver r) { float x[100000]; x[int(r.uv.x * 1e9)] = 1.0; return x[3]; }",
-        "float visibility(Receiver r) { int n = 0; while (r.depth > -1.0 && n < 70000) ++n; return float(n); }",
-        "#include \"../../../../etc/passwd\"\nfloat visibility(Receiver r) { return 1.0; }",
-        "#version 110\nfloat visibility(Receiver r) { return 1.0; }", "#error no\n", "void main() {}",
-        "float visibility(Receiver r) { return compare_nearest(r, vec2(1e30), r.depth); }",
-        "float visibility(Receiver r) { discard; return 1.0; }", "layout(binding = 99) uniform sampler2D t;\n"
-        "float visibility(Receiver r) { return texture(t, r.uv).r; }", "uniform float u[9999999];\n"
-        "float visibility(Receiver r) { return u[5]; }", "float visibility(Receiver r) { return " + "(" * 3000 + "1.0"
-        + ")" * 3000 + "; }", "/* never closed", "float visibility(int r) { return 1.0; }",
-        "float visibility(Receiver r) { r.uv = vec2(0.0 / 0.0); return fetch_depth(r, vec2(0.0)); }"]
-
 
 class Case:
     """A command in a folder of its own."""
 
-    def __init__(self, number, kind, words, right, before=None, environment=None, kill=False, after=None):
-        self.after = after  # what is wrong with the folder afterwards
+    def __init__(self, number, kind, words, right, before, after=None):
         self.number, self.kind, self.words, self.right = number, kind, words, right
-        self.before, self.environment, self.kill = before, environment or {}, kill
+        self.before, self.after = before, after  # fills the folder; says what is wrong with it afterwards
 
 
 def mutate(data, rng):
@@ -161,29 +119,8 @@ class Maker:
 
     def make(self, number, seed):
         rng = random.Random(f"{seed} {number}")
-        kinds = [self.option, self.foreign, self.words, self.mutant, self.mutant, self.planted, self.filter,
-                 self.environment, self.planted, self.kill if number % 40 == 9 else self.words]
+        kinds = [self.mutant, self.foreign, self.planted]
         return kinds[number % len(kinds)](number, rng)
-
-    def option(self, number, rng):
-        if rng.random() < 0.5:
-            name = rng.choice(NUMBERS)
-            value = rng.choice(NOT_NUMBERS)
-        else:
-            name = rng.choice(sorted(WORDS))
-            value = rng.choice(WORDS[name])
-        base = [word for word in RUN]
-        if name in base:
-            at = base.index(name)
-            del base[at:at + 2]
-        return Case(number, f"option {name}", [*base, f"{name}={value}" if rng.random() < 0.3 else name, value]
-                    if not value.startswith("-") and rng.random() < 0.7 else [*base, f"{name}={value}"], {2})
-
-    def words(self, number, rng):
-        pieces = [rng.choice(PIECES) for _ in range(rng.randrange(1, 7))]
-        command = rng.choice(COMMANDS)
-        words = [command, *SHORT.get(command, []), *pieces]
-        return Case(number, "words", [word.encode("utf-8", "surrogateescape") for word in words], ANY_ANSWER)
 
     def mutant(self, number, rng):
         ending, source, words, right = rng.choice(self.formats)
@@ -203,39 +140,6 @@ class Maker:
         filled = [word.replace("{}", "mutant." + ending) for word in words]
         extra = ["--out", "out", *SMALL, *([] if "--filters" in filled else ["--filters", "none"])]
         return Case(number, f"mutant {source.name}", [*filled, *(extra if filled[0] == "run" else [])], right, write)
-
-    def filter(self, number, rng):
-        body = rng.choice(GLSL)
-        head = GLSL_HEAD if rng.random() < 0.8 else mutate(GLSL_HEAD.encode(), rng).decode("latin-1")
-        return Case(number, "filter",
-                    ["run", "--out", "out", "--scene", "cubes", "--filters", "none,hostile", "--filter-file",
-                     "hostile.glsl", "--cell-timeout", "10", *SMALL], {0, 2, 5},
-                    lambda folder: (folder / "hostile.glsl").write_text(head + body, encoding="latin-1"))
-
-    def environment(self, number, rng):
-        def limit(kind, amount):
-            return lambda: resource.setrlimit(kind, (amount, amount))
-
-        def spoil(folder):
-            (folder / "file").write_text("")
-
-        megabyte = 1 << 20
-        name, change, right = rng.choice([
-            ("memory", {"preexec": limit(resource.RLIMIT_AS, rng.randrange(640, 2500) * megabyte)}, {0, 3}),
-            ("file size", {"preexec": limit(resource.RLIMIT_FSIZE, rng.choice([0, 512, 4096, 100000]))}, {0, 6}),
-            ("files", {"preexec": limit(resource.RLIMIT_NOFILE, rng.randrange(8, 40))}, {0, 3, 4, 6}),
-            ("no home", {"HOME": None, "XDG_CACHE_HOME": None}, DONE),
-            ("home is a file", {"HOME": "file", "XDG_CACHE_HOME": "file"}, DONE),
-            ("cache is no folder", {"XDG_CACHE_HOME": "/dev/null"}, DONE),
-            ("locale", {"LC_ALL": rng.choice(["de_DE.UTF-8", "tr_TR.UTF-8", "C", "nosuch", "\udcff"])}, DONE),
-            ("no folder for temporary files", {"TMPDIR": "/nonexistent"}, DONE),
-            ("no output", {"stdout": "closed"}, {0, 6}),
-            ("no input", {"stdin": "closed"}, DONE),
-            ("narrow", {"COLUMNS": "1", "LINES": "0", "TERM": "nosuch"}, DONE),
-            ("no display", {"DISPLAY": ":77777", "WAYLAND_DISPLAY": "x"}, DONE),
-            ("no shaders", {"SHADOWBENCH_RESOURCES": "/nonexistent"}, {0, 3}),
-        ])
-        return Case(number, f"environment: {name}", RUN, right, spoil, change)
 
     def copy_reports(self, folder):
         shutil.copytree(self.samples / "run", folder / "whole")
@@ -302,31 +206,11 @@ class Maker:
 
         return Case(number, f"planted {planting}", words, ANY_ANSWER, plant, after=look)
 
-    def kill(self, number, rng):
-        longer = {"--filters": "none,tent3x3,vsm,pcss", "--rounds": "3"}
-        words = [longer.get(option, word) for option, word in zip([None, *RUN], RUN)]
-        return Case(number, "kill", words, DONE, None, {"after": rng.uniform(0.05, 1.5)}, kill=True)
-
 
 def start(program, case, folder):
     environment = {**os.environ, "XDG_CACHE_HOME": str(folder / ".cache"), "HOME": str(folder)}
-    for key, value in case.environment.items():
-        if key in ("preexec", "stdout", "stdin", "after"):
-            continue
-        environment.pop(key, None)
-        if value is not None:
-            environment[key] = value
-    preexec = case.environment.get("preexec")
-    closed = {"stdin": 0, "stdout": 1}.get(next((k for k in ("stdin", "stdout") if k in case.environment), ""), None)
-
-    def prepare():
-        if preexec:
-            preexec()
-        if closed is not None:
-            os.close(closed)
-
     return subprocess.Popen([program, *case.words], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare, start_new_session=True)
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
 
 
 def wait(process, timeout):
@@ -357,16 +241,9 @@ def try_case(program, case, timeout):
     """What went wrong: kind and words; nothing where all is right."""
     with tempfile.TemporaryDirectory(prefix="hostile-") as name:
         folder = Path(name)
-        if case.before:
-            case.before(folder)
+        case.before(folder)
         known = [path.name for path in folder.iterdir()]
         process = start(program, case, folder)
-        if case.kill:
-            time.sleep(case.environment["after"])
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
-            process = start(program, case, folder)
         code, said = wait(process, timeout)
         if code is None:
             return "hang", f"more than {timeout} s"
@@ -374,16 +251,13 @@ def try_case(program, case, timeout):
             return "crash", f"{code}: {said[-300:]}"
         if code not in case.right:
             return "code", f"{code}, right were {sorted(case.right)}: {said[-300:]}"
-        if code not in (0, 1) and "stdout" not in case.environment and "shadowbench: " not in said:
+        if code not in (0, 1) and "shadowbench: " not in said:
             return "code", f"{code} without a message: {said[-300:]}"
-        if case.kill and not (folder / "out" / "results.json").exists():
-            return "leftover", "the second run wrote no report"
         if case.after and (found := case.after(folder)):
             return "outside", found
         if case.after:
             return None
-        # Words at random may name any folder as one to write to.
-        leftovers = [] if case.kind == "words" else list_leftovers(folder, known)
+        leftovers = list_leftovers(folder, known)
         return ("leftover", ", ".join(leftovers[:5])) if leftovers else None
 
 
@@ -430,8 +304,7 @@ def main():
                 if not found:
                     continue
                 wrong.setdefault(found[0], []).append(case.number)
-                words = shlex.join(w if isinstance(w, str) else w.decode("utf-8", "backslashreplace") for w in case.words)
-                print(f"{found[0]}: case {case.number} ({case.kind}): {found[1]}\n  shadowbench {words[:400]}\n"
+                print(f"{found[0]}: case {case.number} ({case.kind}): {found[1]}\n  shadowbench {shlex.join(case.words)[:400]}\n"
                       f"  again: --seed {arguments.seed} --only {case.number}", flush=True)
         counts = ", ".join(f"{len(wrong.get(kind, []))} {kind}" for kind in ("crash", "hang", "code", "leftover", "outside"))
         print(f"{len(cases)} cases in {time.monotonic() - started:.0f} s: {counts}")

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -29,8 +27,6 @@ struct Ending {
 /// Runs the program where things go wrong, and looks at what it leaves.
 class FaultTest : public ProgramTest {
  protected:
-  using json = nlohmann::json;
-
   /// Starts `shadowbench ARGUMENTS` in the test's folder and does not wait; its messages go to a file there.
   pid_t start(const std::string& arguments, const std::string& messages = "started.txt") const {
     const std::string command = "exec env XDG_CACHE_HOME='" + cache_folder().string() + "' '" SHADOWBENCH_PROGRAM "' " +
@@ -87,8 +83,6 @@ class FaultTest : public ProgramTest {
     return cells;
   }
 
-  json results(const std::string& out = "out") const { return json::parse(read_text(folder() / out / "results.json")); }
-
   /// The last line of a text.
   static std::string last_line(std::string text) {
     while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -101,15 +95,15 @@ class FaultTest : public ProgramTest {
     for (std::size_t at = text.find("shadowbench: "); at != std::string::npos; at = text.find("shadowbench: ", at + 1))
       ++count;
     EXPECT_EQ(count, 1u) << text;
-    EXPECT_THAT(last_line(text), ::testing::StartsWith("shadowbench: ")) << text;
-    for (const std::string& word : words) EXPECT_THAT(last_line(text), ::testing::HasSubstr(word));
+    EXPECT_THAT(last_line(text), StartsWith("shadowbench: ")) << text;
+    for (const std::string& word : words) EXPECT_THAT(last_line(text), HasSubstr(word));
   }
 
   /// Expects that no file below a folder is temporary.
   void expect_no_leftovers(const std::string& name) const {
     for (const auto& path : list_files(name))
       for (const char* mark : {"shadowbench-tmp", ".worker-", ".gpu-", ".plots-", "shadowbench-lock"})
-        EXPECT_THAT(path.string(), ::testing::Not(::testing::HasSubstr(mark)));
+        EXPECT_THAT(path.string(), Not(HasSubstr(mark)));
   }
 
   /// Expects that every file below a folder that has a name of its own can be read to its end.
@@ -126,7 +120,7 @@ class FaultTest : public ProgramTest {
 
   /// Expects the same cells in the same order, but for times, with the same pictures.
   void expect_same(const std::string& a, const std::string& b) const {
-    const json first = results(a), second = results(b);
+    const json first = read_results(a), second = read_results(b);
     ASSERT_EQ(first["cells"].size(), second["cells"].size());
     for (std::size_t i = 0; i < first["cells"].size(); ++i) {
       const json& cell = first["cells"][i];

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <wordexp.h>
@@ -8,13 +8,19 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "base/files.h"
 #include "harness/cli/commands.h"
 
 namespace shadowbench::test {
+
+using nlohmann::json;
+using ::testing::AllOf, ::testing::AnyOf, ::testing::ContainsRegex, ::testing::ElementsAre, ::testing::HasSubstr;
+using ::testing::IsEmpty, ::testing::MatchesRegex, ::testing::Not, ::testing::StartsWith;
 
 /// What a run of the program gave.
 struct Outcome {
@@ -54,6 +60,17 @@ class ProgramTest : public ::testing::Test {
     return folder_ / name;
   }
 
+  /// A file of the program's source.
+  static std::string read_source(const std::string& name) {
+    return read_text(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / name);
+  }
+
+  /// Writes a built-in filter as a user's, with `lines` before its title.
+  void copy_filter(const std::string& id, const std::string& name, const std::string& lines = "") const {
+    std::string text = read_source("filters/" + id + ".glsl");
+    write(name + ".glsl", text.insert(text.find("title ="), lines));
+  }
+
   /// Where the program keeps traced images: a folder of each test's own.
   std::filesystem::path cache_folder() const { return folder_ / "cache"; }
 
@@ -76,6 +93,41 @@ class ProgramTest : public ::testing::Test {
     return environment.empty() ? run_within(arguments) : run_process(arguments, environment);
   }
 
+  /// Runs what must succeed.
+  Outcome succeed(const std::string& arguments, const std::string& environment = "") const {
+    Outcome outcome = run(arguments, environment);
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
+    return outcome;
+  }
+
+  std::string read(const std::string& name) const { return read_text(folder_ / name); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+  json read_json(const std::string& name) const { return json::parse(read(name)); }
+  json read_results(const std::string& out = "out") const { return read_json(out + "/results.json"); }
+  json read_cells(const std::string& out = "out") const { return read_results(out)["cells"]; }
+
+  /// A small run on `cubes` into the folder `out`, unless the rest says otherwise.
+  static std::string small(const std::string& rest) {
+    std::string words = "run " + rest;
+    for (const std::string usual : {" --out out", " --size 64x36", " --map-size 64", " --rounds 1", " --scene cubes"})
+      if (words.find(usual.substr(0, usual.rfind(' ') + 1)) == std::string::npos) words += usual;
+    return words;
+  }
+
+  /// Does one, and gives its cells.
+  json measure(const std::string& rest) const {
+    succeed(small(rest));
+    return read_cells();
+  }
+
+  /// Expects that the results follow their schema.
+  void expect_valid() const {
+    const std::string out = (folder_ / "out").string();
+    const std::string check =
+        "/usr/bin/python3 -m jsonschema -i '" + out + "/results.json' '" + out + "/results.schema.json'";
+    EXPECT_EQ(std::system(check.c_str()), 0);
+  }
+
   Outcome run_process(const std::string& arguments, const std::string& environment = "") const {
     const std::string command = "cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' " +
                                 environment + " '" SHADOWBENCH_PROGRAM "' " + arguments +
@@ -94,6 +146,35 @@ class ProgramTest : public ::testing::Test {
     ASSERT_NE(begin, std::string::npos) << outcome.err;
     for (const std::string& word : words) EXPECT_NE(outcome.err.find(word, begin), std::string::npos) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "results.json"));
+  }
+
+  /// Words, the exit code, and what the message holds.
+  struct Refusal {
+    std::string words;
+    int exit_code;
+    std::vector<std::string> message;
+  };
+
+  void expect_refusals(const std::vector<Refusal>& refusals) const {
+    for (const auto& [words, exit_code, message] : refusals) {
+      SCOPED_TRACE(words);
+      expect_refusal(words, exit_code, message);
+    }
+  }
+
+  /// Does a run in the first test that asks for it, and gives the others a copy of its folder.
+  void draw_once(const std::string& words, const std::string& out = "out") const {
+    static const ScratchFolder kept(
+        make_temporary_folder_path(std::filesystem::temp_directory_path() / "shadowbench", "runs"));
+    const std::filesystem::path made = kept.path() / std::to_string(std::hash<std::string>()(words));
+    std::filesystem::remove_all(folder_ / out);
+    if (!std::filesystem::exists(made)) {
+      succeed(words + " --out " + out);
+      std::filesystem::create_directories(made);
+      return std::filesystem::copy(folder_ / out, made, std::filesystem::copy_options::recursive);
+    }
+    std::filesystem::create_directories(folder_ / out);
+    std::filesystem::copy(made, folder_ / out, std::filesystem::copy_options::recursive);
   }
 
   static std::string user_filter(const std::string& name) {

@@ -1,7 +1,5 @@
 // What a run says of how far it is.
 
-#include <gmock/gmock.h>
-
 #include <algorithm>
 #include <cstdio>
 
@@ -18,12 +16,9 @@ struct Line {
 
 class ProgressOfARun : public ProgramTest {
  protected:
-  std::vector<Line> draw(const std::string& options, const std::string& size = "64x36") const {
-    const Outcome outcome =
-        run("run --every-step --out out --gl software --scene cubes --map-size 64 --size " + size + " " + options);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::vector<Line> draw(const std::string& options) const {
     std::vector<Line> lines;
-    std::istringstream text(outcome.err);
+    std::istringstream text(succeed(small("--every-step --gl software " + options)).err);
     for (std::string line; std::getline(text, line);)
       if (int done = 0, all = 0, end = 0;
           std::sscanf(line.c_str(), "%d/%d · %*d %n", &done, &all, &end) == 2 && end > 0)
@@ -37,7 +32,7 @@ TEST_F(ProgressOfARun, NamesEveryStep_AndCountsCells) {
     const std::vector<Line> lines = draw(options);
     ASSERT_FALSE(lines.empty());
     EXPECT_EQ(lines.front().done, 0);
-    EXPECT_THAT(lines.back().text, ::testing::AllOf(::testing::StartsWith("2/2 · "), ::testing::EndsWith(" · done")));
+    EXPECT_THAT(lines.back().text, AllOf(StartsWith("2/2 · "), ::testing::EndsWith(" · done")));
     EXPECT_TRUE(std::ranges::is_sorted(lines, {}, &Line::done));
     for (const char* step : {"· none", "· vsm", "times", "phases", "pictures", "writing the report"}) {
       const auto is_of_step = [&](const Line& line) { return line.text.find(step) != std::string::npos; };
@@ -49,12 +44,13 @@ TEST_F(ProgressOfARun, NamesEveryStep_AndCountsCells) {
 }
 
 TEST_F(ProgressOfARun, StartsAnewWithWhatIsLeft) {
-  draw("--filters none --no-grids --rounds 1 --pad-texels 4");
-  EXPECT_EQ(draw("--filters none,vsm --no-grids --rounds 1 --pad-texels 4").front().done, 1);
+  draw("--filters none --pad-texels 4");
+  EXPECT_EQ(draw("--filters none,vsm --pad-texels 4").front().done, 1);
 }
 
 TEST_F(ProgressOfARun, SaysHowLongItTookAndTheRest) {
-  const std::vector<Line> lines = draw("--scene stack --filters none,vsm --no-truth --rounds 150", "960x540");
+  const std::vector<Line> lines =
+      draw("--scene cubes --scene stack --filters none,vsm --no-truth --rounds 150 --size 960x540");
   const auto second = std::ranges::find(lines, 2, &Line::done);
   ASSERT_NE(second, lines.end());
   int taken_s = 0, left_s = 0;
@@ -64,41 +60,31 @@ TEST_F(ProgressOfARun, SaysHowLongItTookAndTheRest) {
 
 /// Standard output and standard error of a run are what a build server's log shows.
 TEST_F(ProgressOfARun, InALog_TakesTwelveLinesAtMost_AndTheSummaryStandsThereOnce) {
-  const Outcome outcome = run(
-      "run --out out --gl software --scene cubes --scene stack --size 64x36 --map-size 64,128 --rounds 1 --no-truth");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = succeed(small("--gl software --scene cubes --scene stack --map-size 64,128 --no-truth"));
   const std::string log = outcome.err + outcome.out;
   EXPECT_LE(std::ranges::count(log, '\n'), 12) << log;
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr("32 cells; "));
+  EXPECT_THAT(outcome.err, HasSubstr("32 cells; "));
   EXPECT_GE(log.find("16/32 · "), log.find("32 cells; ")) << "it says how far it is meanwhile";
   EXPECT_NE(log.find("16/32 · "), log.npos);
-  EXPECT_THAT(outcome.err, ::testing::ContainsRegex("32/32 · [0-9]+ s · done\n$"));
+  EXPECT_THAT(outcome.err, ContainsRegex("32/32 · [0-9]+ s · done\n$"));
   EXPECT_EQ(outcome.err.find(" done\n"), outcome.err.rfind(" done\n"));
-  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("^The cheapest is [^\n]+; its error was not measured[.]\n"));
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("report: out/index.html\n"));
+  EXPECT_THAT(outcome.out, ContainsRegex("^The cheapest is [^\n]+; its error was not measured[.]\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("report: out/index.html\n"));
 }
 
 TEST_F(ProgressOfARun, OfFiltersForTeaching_EndsWithoutAnAnswer) {
-  const Outcome outcome =
-      run("run --out out --gl software --scene cubes --filters teach4x4 --size 64x36 --map-size 64 --rounds 1");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_EQ(outcome.out.find("report: out/index.html\n"), 0u) << outcome.out;
+  EXPECT_THAT(succeed(small("--gl software --filters teach4x4")).out, StartsWith("report: out/index.html\n"));
 }
 
 TEST_F(ProgressOfARun, InALog_WarningsStay_HoweverManyThereAre) {
   std::string scenes;
   for (int i = 0; i < 12; ++i)
-    scenes += " --scene " + write("below" + std::to_string(i) + ".toml",
-                                  read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes/cubes.toml"))
-                                .string();
+    scenes +=
+        " --scene " + write("below" + std::to_string(i) + ".toml", read_source("data/scenes/cubes.toml")).string();
   const Outcome outcome =
-      run("run --out out --gl software --filters none --size 32x18 --map-size 32 --rounds 1 "
-          "--no-truth --light 0,-20" +
-          scenes);
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (int i = 0; i < 12; ++i)
-    EXPECT_THAT(outcome.err, ::testing::HasSubstr("warning: below" + std::to_string(i) + ": "));
-  EXPECT_THAT(outcome.err, ::testing::ContainsRegex("12/12 · [0-9]+ s · done"));
+      succeed(small("--gl software --filters none --size 32x18 --map-size 32 --no-truth --light 0,-20" + scenes));
+  for (int i = 0; i < 12; ++i) EXPECT_THAT(outcome.err, HasSubstr("warning: below" + std::to_string(i) + ": "));
+  EXPECT_THAT(outcome.err, ContainsRegex("12/12 · [0-9]+ s · done"));
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
 // The command `regress`, from a run to its exit code.
 
-#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "report/files/folder_lock.h"
 #include "report/regress/regress.h"
@@ -14,23 +12,14 @@
 namespace shadowbench::test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 class Regress : public ProgramTest {
  protected:
-  /// A run of two filters on one scene, small; no time counts. The first test that asks for it makes it, the others
-  /// copy it.
+  /// A run of two filters on one scene, small; no time counts.
   void draw(const std::string& out, const std::string& options = "--filters none,pcf2x2") const {
-    std::filesystem::remove_all(folder() / out);
-    const std::filesystem::path kept = made() / std::to_string(std::hash<std::string>()(options));
-    if (std::filesystem::exists(kept)) return copy(kept, folder() / out);
-    const Outcome outcome =
-        run("run --gl software --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options +
-            (options.find("--map-size") == std::string::npos ? " --map-size 128" : "") +
-            (options.find("--no-grids") == std::string::npos ? " --grids" : "") + " --out " + out);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    copy(folder() / out, kept);
+    draw_once("run --gl software --scene cubes --size 96x54 --rounds 1 --pad-texels 4 --uncertainty " + options +
+                  (options.find("--map-size") == std::string::npos ? " --map-size 128" : "") +
+                  (options.find("--no-grids") == std::string::npos ? " --grids" : ""),
+              out);
   }
 
   /// Compares as `regress OUT --baseline base OPTIONS` does, in this process.
@@ -60,20 +49,7 @@ class Regress : public ProgramTest {
     ASSERT_EQ(compare("a").exit_code, 0);
   }
 
-  static void TearDownTestSuite() { std::filesystem::remove_all(made()); }
-
-  static std::filesystem::path made() {
-    return std::filesystem::temp_directory_path() / ("shadowbench.baseline." + std::to_string(getpid()));
-  }
-
-  static void copy(const std::filesystem::path& from, const std::filesystem::path& to) {
-    std::filesystem::create_directories(to);
-    std::filesystem::copy(from, to, std::filesystem::copy_options::recursive);
-  }
-
-  nlohmann::json report(const std::string& out) const {
-    return nlohmann::json::parse(read_text(folder() / out / "regress" / "regress.json"));
-  }
+  json report(const std::string& out) const { return read_json(out + "/regress/regress.json"); }
 
   void cut(const std::string& file) const {
     std::filesystem::resize_file(folder() / file, std::filesystem::file_size(folder() / file) / 2);
@@ -108,7 +84,7 @@ class Regress : public ProgramTest {
 
 /// A copy of tent3x3 whose first fetch lies a texel aside.
 TEST_F(Regress, OneTexelOffset_IsCaught_WithItsPicture) {
-  const std::string tent = read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/filters/tent3x3.glsl");
+  const std::string tent = read_source("filters/tent3x3.glsl");
   std::string shifted = tent;
   const std::string first = "vec2(-0.5, -0.5)";
   ASSERT_NE(shifted.find(first), std::string::npos);
@@ -123,7 +99,7 @@ TEST_F(Regress, OneTexelOffset_IsCaught_WithItsPicture) {
   EXPECT_EQ(caught.exit_code, 1);
   EXPECT_THAT(caught.err, HasSubstr("my_tent"));
   EXPECT_THAT(caught.out, HasSubstr("if this is meant: "));
-  const nlohmann::json worst = report("b")["cells"][0];
+  const json worst = report("b")["cells"][0];
   EXPECT_EQ(worst["outcome"], "less accurate");
   EXPECT_GT(worst["pixels"]["max"], 0.2);
   EXPECT_TRUE(std::filesystem::exists(folder() / "b" / "regress" / worst["picture"].get<std::string>()));
@@ -138,7 +114,7 @@ TEST_F(Regress, Accept_ChangesWhatMovedAlone_AndSaysWhat) {
   EXPECT_EQ(compare("b").exit_code, 0) << "neither filter depends on the seed, and the truth is noise";
   ASSERT_EQ(compare("b", "--accept").exit_code, 0);
   EXPECT_EQ(list_changes(before), (std::vector<std::string>{}));
-  nlohmann::json wrong = nlohmann::json::parse(before.at("pcf2x2.json"));
+  json wrong = json::parse(before.at("pcf2x2.json"));
   wrong["cells"][0]["values"]["error.rmse"] = 0.0;
   write("base/cubes/pcf2x2.json", wrong.dump());
   EXPECT_EQ(compare("a").exit_code, 1);
@@ -159,10 +135,10 @@ TEST_F(Regress, MissingCell_Fails_AndLeavesOnRequestAlone) {
   expect_failure("b", "missing");
   EXPECT_EQ(compare("b", "--filters none").exit_code, 0);
   EXPECT_EQ(compare("b", "--accept").exit_code, 1) << "a cell that was not compared stays";
-  EXPECT_TRUE(std::filesystem::exists(folder() / "base/cubes/pcf2x2.exr"));
+  EXPECT_TRUE(exists("base/cubes/pcf2x2.exr"));
   EXPECT_EQ(compare("b", "--accept --remove-missing").exit_code, 0);
-  EXPECT_FALSE(std::filesystem::exists(folder() / "base/cubes/pcf2x2.exr"));
-  EXPECT_FALSE(std::filesystem::exists(folder() / "base/cubes/pcf2x2.json"));
+  EXPECT_FALSE(exists("base/cubes/pcf2x2.exr"));
+  EXPECT_FALSE(exists("base/cubes/pcf2x2.json"));
   EXPECT_EQ(compare("b").exit_code, 0);
 }
 
@@ -194,7 +170,7 @@ TEST_F(Regress, UnreadableBaseline_Fails_AndCanBeReplaced) {
 
 TEST_F(Regress, LimitsThatWereEdited_Hold) {
   make_baseline();
-  nlohmann::json wrong = nlohmann::json::parse(read_text(folder() / "base/cubes/pcf2x2.json"));
+  json wrong = read_json("base/cubes/pcf2x2.json");
   wrong["cells"][0]["values"]["error.rmse"] = 0.0;
   write("base/cubes/pcf2x2.json", wrong.dump());
   EXPECT_EQ(compare("a").exit_code, 1);
@@ -261,7 +237,7 @@ TEST_F(Regress, MissingTruth_Fails_AndLeavesOnRequestAlone) {
   draw("b", "--filters none,pcf2x2 --no-truth");
   EXPECT_THAT(compare("b").out, HasSubstr("missing: cubes truth"));
   EXPECT_EQ(compare("b", "--accept --remove-missing").exit_code, 0);
-  EXPECT_FALSE(std::filesystem::exists(folder() / "base/cubes/truth.area.exr"));
+  EXPECT_FALSE(exists("base/cubes/truth.area.exr"));
   EXPECT_EQ(compare("b").exit_code, 0);
 }
 
@@ -299,27 +275,27 @@ TEST_F(Regress, ForBuildServers_JUnitAndJson) {
   draw("b", "--filters none,box3x3");
   const Outcome outcome = run("regress b --baseline base --junit junit.xml --json");
   EXPECT_EQ(outcome.exit_code, 1);
-  const nlohmann::json printed = nlohmann::json::parse(outcome.out);
+  const json printed = json::parse(outcome.out);
   EXPECT_EQ(printed, report("b"));
   EXPECT_EQ(printed["failed"], 2);
   const std::string count = "import xml.etree.ElementTree as e; r = e.parse('" + (folder() / "junit.xml").string() +
                             "').getroot(); assert r.get('failures') == '2', r.attrib; assert "
                             "len(r.findall('.//failure')) == 2; assert len(r.findall('.//testcase')) == 4";
-  EXPECT_EQ(std::system(("python3 -c \"" + count + "\"").c_str()), 0) << read_text(folder() / "junit.xml");
+  EXPECT_EQ(std::system(("python3 -c \"" + count + "\"").c_str()), 0) << read("junit.xml");
 }
 
 TEST_F(Regress, BadInput_IsRefused) {
   make_baseline();
-  expect_refusal("regress nowhere --baseline base", 3, {"nowhere"});
-  expect_refusal("regress a --baseline none", 3, {"none: there is no baseline here", "--accept"});
-  expect_refusal("regress a --baseline base --remove-missing", 2, {"--remove-missing", "add --accept"});
-  expect_refusal("regress a", 2, {"--baseline"});
-  expect_refusal("regress a --baseline base --filters nosuch", 3,
-                 {"--filters: neither the run nor the baseline has 'nosuch'"});
-  expect_refusal("regress a --baseline base --filters \"none, pcf2x3\"", 3, {"did you mean 'pcf2x2'?"});
-  expect_refusal("regress a --baseline base --scene cubes --scene stakc", 3, {"'stakc'"});
-  expect_refusal("regress a --baseline stdout.txt", 3, {"stdout.txt: this is a file"});
-  expect_refusal("regress a --baseline stdout.txt --accept", 3, {"stdout.txt: this is a file"});
+  expect_refusals(
+      {{"regress nowhere --baseline base", 3, {"nowhere"}},
+       {"regress a --baseline none", 3, {"none: there is no baseline here", "--accept"}},
+       {"regress a --baseline base --remove-missing", 2, {"--remove-missing", "add --accept"}},
+       {"regress a", 2, {"--baseline"}},
+       {"regress a --baseline base --filters nosuch", 3, {"--filters: neither the run nor the baseline has 'nosuch'"}},
+       {"regress a --baseline base --filters \"none, pcf2x3\"", 3, {"did you mean 'pcf2x2'?"}},
+       {"regress a --baseline base --scene cubes --scene stakc", 3, {"'stakc'"}},
+       {"regress a --baseline stdout.txt", 3, {"stdout.txt: this is a file"}},
+       {"regress a --baseline stdout.txt --accept", 3, {"stdout.txt: this is a file"}}});
   write("base/baseline.toml", "[all.\"error.rms\"]\nlimit = 1\nreason = \"r\"\n");
   expect_refusal("regress a --baseline base", 3, {"baseline.toml:1", "did you mean 'error.rmse'?"});
   write("base/baseline.toml", "");

@@ -1,8 +1,5 @@
 // Another renderer's pictures as rows of a report.
 
-#include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "report/images/picture_io.h"
@@ -11,35 +8,24 @@
 namespace shadowbench::test {
 namespace {
 
-using nlohmann::json;
-using testing::HasSubstr;
+constexpr const char* kScoredRun =
+    "run --grids --all-parts --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene cubes --filters "
+    "none,pcf2x2,vsm";
 
 class Score : public ProgramTest {
  protected:
-  void make_run(const std::string& more = "") {
-    const Outcome outcome =
-        run("run --grids --all-parts --out out --size 96x54 --map-size 128 --rounds 1 --phases 1 "
-            "--scene cubes --filters none,pcf2x2,vsm " +
-            more);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  }
-
-  json read_results(const std::string& name = "out") const {
-    return json::parse(read_text(folder() / name / "results.json"));
-  }
+  void make_run() const { draw_once(kScoredRun); }
 
   json find_row(const std::string& filter) const {
-    const json results = read_results();
-    for (const json& cell : results["cells"])
+    for (const json& cell : read_cells())
       if (cell["filter"] == filter) return cell;
     return {};
   }
 };
 
-TEST_F(Score, OurOwnPicture_HasOurOwnErrors) {
+TEST_F(Score, OurOwnPicture_HasOurOwnErrors_AndTheTruthNone) {
   make_run();
-  const Outcome outcome = run("score out --name 'a <b>copy</b>' --visibility 'out/cubes.exr#none.visibility'");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Outcome outcome = succeed("score out --name 'a <b>copy</b>' --visibility 'out/cubes.exr#none.visibility'");
   EXPECT_THAT(outcome.out, HasSubstr("nearest filter       none, 0 apart"));
   const json row = find_row("a <b>copy</b>"), none = find_row("none");
   for (const char* name : {"rmse", "mae", "p95", "max", "mean", "flip"})
@@ -48,47 +34,38 @@ TEST_F(Score, OurOwnPicture_HasOurOwnErrors) {
   EXPECT_EQ(row["external"]["nearest"], "none");
   EXPECT_EQ(row["external"]["peers"]["pcf2x2"], find_row("pcf2x2")["error"]["rmse"]);
   EXPECT_EQ(row["absent"]["time_ms"], "another renderer drew it");
-  EXPECT_THAT(read_text(folder() / "out/accuracy.csv"), HasSubstr("a <b>copy</b>"));
-  EXPECT_EQ(read_text(folder() / "out/index.html").find("<b>copy</b>"), std::string::npos);
-  EXPECT_EQ(read_text(folder() / "out/fronts.csv").find("copy"), std::string::npos);
+  EXPECT_THAT(read("out/accuracy.csv"), HasSubstr("a <b>copy</b>"));
+  EXPECT_EQ(read("out/index.html").find("<b>copy</b>"), std::string::npos);
+  EXPECT_EQ(read("out/fronts.csv").find("copy"), std::string::npos);
+  succeed("score out --name truth --visibility 'out/cubes.exr#truth.area'");
+  EXPECT_EQ(find_row("truth")["error"]["rmse"], 0.0);
   // It is measured against the same truth, and no fit for advice.
   EXPECT_EQ(run("advise out").out.find("copy"), std::string::npos);
 }
 
-TEST_F(Score, TheTruth_HasNoError) {
-  make_run();
-  ASSERT_EQ(run("score out --name truth --visibility 'out/cubes.exr#truth.area'").exit_code, 0);
-  EXPECT_EQ(find_row("truth")["error"]["rmse"], 0.0);
-}
-
 TEST_F(Score, ARowStays_WhenTheRunIsRepeated_AndIsReplacedByItsName) {
   make_run();
-  ASSERT_EQ(run("score out --name other --visibility 'out/cubes.exr#vsm.visibility'").exit_code, 0);
-  make_run("--fresh");
+  succeed("score out --name other --visibility 'out/cubes.exr#vsm.visibility'");
+  succeed(std::string(kScoredRun) + " --fresh --out out");
   EXPECT_EQ(find_row("other")["external"]["nearest"], "vsm");
   EXPECT_EQ(find_row("other")["images"]["grid"], nullptr);
-  ASSERT_EQ(run("score out --name other --visibility 'out/cubes.exr#pcf2x2.visibility'").exit_code, 0);
+  succeed("score out --name other --visibility 'out/cubes.exr#pcf2x2.visibility'");
   EXPECT_EQ(find_row("other")["external"]["nearest"], "pcf2x2");
-  EXPECT_EQ(read_results()["cells"].size(), 4u);
+  EXPECT_EQ(read_cells().size(), 4u);
 }
 
 TEST_F(Score, ARowOfAnotherLight_IsDropped_AndSaid) {
   make_run();
-  ASSERT_EQ(run("score out --name other --visibility 'out/cubes.exr#vsm.visibility'").exit_code, 0);
-  const Outcome outcome =
-      run("run --grids --out out --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene cubes "
-          "--filters none,vsm --light 200,40");
-  EXPECT_THAT(outcome.err, HasSubstr("other, cubes: this row of another renderer is dropped"));
+  succeed("score out --name other --visibility 'out/cubes.exr#vsm.visibility'");
+  EXPECT_THAT(run(std::string(kScoredRun) + " --light 200,40 --out out").err,
+              HasSubstr("other, cubes: this row of another renderer is dropped"));
   EXPECT_TRUE(find_row("other").is_null());
 }
 
 TEST_F(Score, ASceneThatHasChanged_IsNotScored) {
-  write("my.toml", read_text(std::string(SHADOWBENCH_SOURCE_DIR) + "/data/scenes/cubes.toml"));
-  ASSERT_EQ(
-      run("run --grids --out out --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene my.toml --filters none")
-          .exit_code,
-      0);
-  std::string text = read_text(folder() / "my.toml");
+  write("my.toml", read_source("data/scenes/cubes.toml"));
+  succeed("run --grids --out out --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene my.toml --filters none");
+  std::string text = read("my.toml");
   text.replace(text.find("elevation_deg"), 13, "elevation_deg = 20 #");
   write("my.toml", text);
   const Outcome outcome = run("score out --name x --visibility 'out/my.exr#none.visibility'");
@@ -99,10 +76,10 @@ TEST_F(Score, ASceneThatHasChanged_IsNotScored) {
 TEST_F(Score, RegressTellsThatItMoved) {
   make_run();
   const std::string score = "score out --name 'my engine' --visibility ";
-  ASSERT_EQ(run(score + "'out/cubes.exr#pcf2x2.visibility'").exit_code, 0);
-  ASSERT_EQ(run("regress out --baseline base --accept").exit_code, 0);
-  EXPECT_EQ(run("regress out --baseline base").exit_code, 0);
-  ASSERT_EQ(run(score + "'out/cubes.exr#vsm.visibility'").exit_code, 0);
+  succeed(score + "'out/cubes.exr#pcf2x2.visibility'");
+  succeed("regress out --baseline base --accept");
+  succeed("regress out --baseline base");
+  succeed(score + "'out/cubes.exr#vsm.visibility'");
   const Outcome moved = run("regress out --baseline base");
   EXPECT_EQ(moved.exit_code, 1);
   EXPECT_THAT(moved.out, HasSubstr("my engine"));
@@ -110,13 +87,12 @@ TEST_F(Score, RegressTellsThatItMoved) {
 
 TEST_F(Score, AnExportedScene_HasTheSameTruth) {
   make_run();
-  ASSERT_EQ(run("export cubes --strict --size 96x54 --map-size 128 --out scenes").exit_code, 0);
-  const json scene = json::parse(read_text(folder() / "scenes/cubes/scene.json"));
+  succeed("export cubes --strict --size 96x54 --map-size 128 --out scenes");
+  const json scene = read_json("scenes/cubes/scene.json");
   EXPECT_EQ(scene["maps"][0]["layers"][0]["kind"], "orthographic");
-  ASSERT_EQ(run("run --grids --all-parts --out again --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene "
-                "scenes/cubes/cubes.glb --filters none,pcf2x2,vsm")
-                .exit_code,
-            0);
+  succeed(
+      "run --grids --all-parts --out again --size 96x54 --map-size 128 --rounds 1 --phases 1 --scene "
+      "scenes/cubes/cubes.glb --filters none,pcf2x2,vsm");
   const Outcome diff = run("diff --json out/cubes.exr#truth.area again/cubes.exr#truth.area");
   EXPECT_LT(json::parse(diff.out)["rmse"].get<double>(), 1e-5);
 }
@@ -128,7 +104,7 @@ TEST_F(Score, AnExportedSceneThatWarns_IsWritten_AndIsNotStrict) {
   EXPECT_EQ(exported.exit_code, 1) << exported.err;
   EXPECT_THAT(exported.err, HasSubstr("warning: table: the material library 'absent.mtl'"));
   EXPECT_THAT(exported.err, HasSubstr("--strict: the scene has 1 warning: table: the material library 'absent.mtl'"));
-  EXPECT_TRUE(std::filesystem::exists(folder() / "scenes/table/table.glb"));
+  EXPECT_TRUE(exists("scenes/table/table.glb"));
 }
 
 TEST_F(Score, ACommandDrawsTheScene) {
@@ -140,8 +116,7 @@ TEST_F(Score, ACommandDrawsTheScene) {
   for (const images::Part& part : file.parts)
     if (part.name == "vsm.visibility")
       images::write_exr(folder() / "out/own.exr", {{"visibility", {"Y"}, part.image, false}}, {});
-  const Outcome outcome = run("score out --name mine --command 'sh draw.sh'");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  succeed("score out --name mine --command 'sh draw.sh'");
   EXPECT_EQ(find_row("mine")["external"]["engine"], "sh");
   EXPECT_EQ(find_row("mine")["external"]["ms"], 1.5);
   EXPECT_EQ(find_row("mine")["external"]["nearest"], "vsm");
@@ -164,9 +139,8 @@ name = "all lit"
 command = "sh copy.sh"
 )");
   expect_refusal("run engines.toml --out out", 2, {"--allow-commands"});
-  EXPECT_THAT(read_text(folder() / "stderr.txt"), HasSubstr("sh copy.sh")) << "what would be run";
-  const Outcome outcome = run("run engines.toml --allow-commands --out out");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(read("stderr.txt"), HasSubstr("sh copy.sh")) << "what would be run";
+  succeed("run engines.toml --allow-commands --out out");
   EXPECT_GT(find_row("all lit")["error"]["mean"].get<double>(), 0.0);
   EXPECT_THAT(run("run engines.toml --allow-commands --out out").err, HasSubstr("all lit"));
   write("typo.toml", "[[engine]]\nname = 'x'\ncomand = 'y'\n");
@@ -180,10 +154,9 @@ TEST_F(Score, WithItsOwnMap_ItsErrorIsTakenApart) {
   std::vector<double> columns(16);
   for (std::size_t i = 0; i < 16; ++i) rows >> columns[4 * (i % 4) + i / 4];
   write("meta.json", json{{"map_from_world", columns}}.dump());
-  ASSERT_EQ(run("score out --name mine --visibility 'out/cubes.exr#none.visibility' --meta meta.json --shadow-map "
-                "'out/cubes.exr#depth_map'")
-                .exit_code,
-            0);
+  succeed(
+      "score out --name mine --visibility 'out/cubes.exr#none.visibility' --meta meta.json --shadow-map "
+      "'out/cubes.exr#depth_map'");
   const json own = find_row("mine")["attribution"], none = find_row("none")["attribution"];
   // One lookup in the map is what `none` is: nothing is left to its filter, and the map has its share.
   EXPECT_NEAR(own["estimator"]["rms"].get<double>(), 0.0, 0.01);
@@ -198,7 +171,7 @@ TEST_F(Score, WithItsOwnMap_ItsErrorIsTakenApart) {
 
 TEST_F(Score, BadInput_IsOneSentence_AndLosesNothing) {
   make_run();
-  const std::string before = read_text(folder() / "out/results.json");
+  const std::string before = read("out/results.json");
   write("typo.json", R"({"engin": "x"})");
   write("foreign.json", R"({"truth": "0123"})");
   write("list.json", "[1]");
@@ -226,7 +199,7 @@ TEST_F(Score, BadInput_IsOneSentence_AndLosesNothing) {
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.exit_code, code) << words << "\n" << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(text)) << words;
-    EXPECT_EQ(read_text(folder() / "out/results.json"), before) << words;
+    EXPECT_EQ(read("out/results.json"), before) << words;
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "report/images/picture_io.h"
+#include "tests/error_of.h"
 
 namespace shadowbench::engines {
 namespace {
@@ -258,12 +259,7 @@ TEST(Alignment, NaN_IsCountedAndLeftOut) {
 }
 
 std::string refusal_of(const ExternalImages& images) {
-  try {
-    check_images(images, make_own());
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "none";
+  return error_of([&] { check_images(images, make_own()); }).message();
 }
 
 TEST(Alignment, WhatCannotBeCompared_IsAnError) {

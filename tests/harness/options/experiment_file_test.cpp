@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "harness/render/bias.h"
+#include "tests/error_of.h"
 
 namespace shadowbench::options {
 namespace {
@@ -28,14 +29,6 @@ class ExperimentFile : public ::testing::Test {
   std::string expand(const std::string& text) const {
     static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
     return expand_filters(read(text), catalogue);
-  }
-  static Error error_of(const std::function<void()>& action) {
-    try {
-      action();
-    } catch (const Error& error) {
-      return error;
-    }
-    return {ErrorKind::kLimit, "no error"};
   }
   const std::filesystem::path& folder() const { return folder_; }
 

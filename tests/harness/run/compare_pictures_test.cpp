@@ -10,6 +10,7 @@
 #include "harness/measure/scene_truth.h"
 #include "report/images/picture_io.h"
 #include "report/records/record_fields.h"
+#include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::run {
@@ -53,13 +54,9 @@ class ComparePictures : public ::testing::Test {
   }
 
   void expect_refusal(const ComparisonOptions& options, const std::vector<std::string>& words) const {
-    try {
-      compare_pictures(options);
-      FAIL() << options.image << " and " << options.truth << " were compared";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kInput);
-      for (const std::string& word : words) EXPECT_THAT(error.what(), HasSubstr(word));
-    }
+    const Error error = error_of([&] { compare_pictures(options); });
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    for (const std::string& word : words) EXPECT_THAT(error.what(), HasSubstr(word));
   }
 
  private:

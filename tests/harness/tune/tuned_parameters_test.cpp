@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "harness/options/options.h"
 #include "harness/tune/tune_filters.h"
+#include "tests/error_of.h"
 
 namespace shadowbench::tune {
 namespace {
@@ -38,14 +39,9 @@ class TunedParameters : public ::testing::Test {
   }
 
   void expect_refusal(const std::filesystem::path& file, const std::string& words) {
-    try {
-      apply("vsm", file);
-      ADD_FAILURE() << "took " << file << " where '" << words << "' was expected";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kInput);
-      EXPECT_THAT(error.what(), HasSubstr(words));
-      EXPECT_THAT(error.what(), HasSubstr("tuned.json"));
-    }
+    const Error error = error_of([&] { apply("vsm", file); });
+    EXPECT_EQ(error.kind(), ErrorKind::kInput) << words;
+    EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr(words), HasSubstr("tuned.json")));
   }
 
   std::filesystem::path folder_;

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "report/analysis/advice_words.h"
 #include "report/records/absence.h"
+#include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::analysis {
@@ -85,13 +86,9 @@ Advice rank_on(const std::vector<records::CellRecord>& cells, std::vector<Demand
 
 void expect_refusal(const std::vector<records::CellRecord>& cells, const AdviceRequest& request, ErrorKind kind,
                     const std::string& word) {
-  try {
-    advise(cells, request);
-    FAIL() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind);
-    EXPECT_THAT(error.what(), HasSubstr(word));
-  }
+  const Error error = error_of([&] { advise(cells, request); });
+  EXPECT_EQ(error.kind(), kind);
+  EXPECT_THAT(error.what(), HasSubstr(word));
 }
 
 TEST(Advice, WorstPlace_DecidesALimit) {

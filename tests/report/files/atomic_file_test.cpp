@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "report/images/picture_io.h"
+#include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::files {
@@ -20,13 +21,9 @@ std::size_t count_files(const std::filesystem::path& dir) {
 }
 
 std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kOutput);
-    return error.what();
-  }
-  return "no error";
+  const Error error = error_of(action);
+  EXPECT_EQ(error.kind(), ErrorKind::kOutput);
+  return error.what();
 }
 
 TEST(AtomicFile, NotCommitted_LeavesNothing) {

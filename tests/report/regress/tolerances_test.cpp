@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "tests/error_of.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -22,14 +23,10 @@ class ToleranceFile : public ::testing::Test {
 
   /// Expects one message that names the line and holds the words.
   void expect_refusal(const std::string& text, int line, const std::string& words) const {
-    try {
-      read(text);
-      FAIL() << "accepted: " << text;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kInput);
-      EXPECT_EQ(error.where(), file_.string() + ":" + std::to_string(line));
-      EXPECT_THAT(error.message(), ::testing::HasSubstr(words));
-    }
+    const Error error = error_of([&] { read(text); });
+    EXPECT_EQ(error.kind(), ErrorKind::kInput) << text;
+    EXPECT_EQ(error.where(), file_.string() + ":" + std::to_string(line));
+    EXPECT_THAT(error.message(), ::testing::HasSubstr(words));
   }
 
   std::filesystem::path file_ =

@@ -1,20 +1,20 @@
-// Output folders that cannot be written, vanish, or are another run's at the moment.
+// Output folders that cannot be written, vanish, or are another run's at the moment; runs that are stopped at random
+// moments: what was finished is intact, and the same command goes on from there.
 
+#include <random>
+
+#include "base/files.h"
 #include "tests/harness/cli/faults.h"
 
 namespace shadowbench::test {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr const char* kSmallFolderRun =
     "--size 32x18 --map-size 16 --rounds 1 --scene cubes --no-attribution --filters none,pcf2x2 ";
 
 class FaultFolder : public FaultTest {
  protected:
-  void run_whole() const {
-    ASSERT_EQ(run("run " + std::string(kSmallFolderRun) + "--no-grids --out whole").exit_code, 0);
-  }
+  void run_whole() const { succeed("run " + std::string(kSmallFolderRun) + "--no-grids --out whole"); }
 
   /// Starts a run that stays in the folder `out` until it is killed.
   pid_t start_endless() const {
@@ -25,7 +25,7 @@ class FaultFolder : public FaultTest {
         "first.txt");
   }
 
-  bool is_taken() const { return std::filesystem::exists(folder() / "out" / ".shadowbench-lock"); }
+  bool is_taken() const { return exists("out/.shadowbench-lock"); }
 };
 
 /// Each command that writes a folder.
@@ -41,7 +41,7 @@ std::vector<std::string> list_commands() {
 TEST_F(FaultFolder, OfARunThatGoesOn_IsRefusedToAllOthers_AndFreeOnceItIsKilled) {
   run_whole();
   const pid_t first = start_endless();
-  ASSERT_TRUE(wait_until([&] { return is_taken(); })) << read_text(folder() / "first.txt");
+  ASSERT_TRUE(wait_until([&] { return is_taken(); })) << read("first.txt");
   for (const std::string& command : list_commands()) {
     const Outcome outcome = run(command + " --out out");
     EXPECT_EQ(outcome.exit_code, 6) << command << "\n" << outcome.err;
@@ -51,9 +51,8 @@ TEST_F(FaultFolder, OfARunThatGoesOn_IsRefusedToAllOthers_AndFreeOnceItIsKilled)
   EXPECT_EQ(count_cells(), 0u) << "another wrote into it";
   kill(first, SIGKILL);
   EXPECT_EQ(wait_for(first).signal, SIGKILL);
-  EXPECT_THAT(list_processes(), ::testing::IsEmpty()) << "the worker of the user's filter";
-  const Outcome outcome = run("run " + std::string(kSmallFolderRun) + "--no-grids --out out");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(list_processes(), IsEmpty()) << "the worker of the user's filter";
+  succeed("run " + std::string(kSmallFolderRun) + "--no-grids --out out");
   expect_no_leftovers("out");
   expect_same("whole", "out");
 }
@@ -71,9 +70,8 @@ TEST_F(FaultFolder, OfSomebodyElse_IsRefusedToAll_UnlessItIsForced) {
     expect_one_message(outcome.err, {"out: ", "--force"});
     EXPECT_EQ(list_files("out").size(), 4u) << command;
   }
-  const Outcome forced = run("export cubes --force --out out");
-  EXPECT_EQ(forced.exit_code, 0) << forced.err;
-  EXPECT_EQ(read_text(folder() / "out" / "results.json"), "mine");
+  succeed("export cubes --force --out out");
+  EXPECT_EQ(read("out/results.json"), "mine");
 }
 
 /// A report that is meant to be sent would hold what the link leads to.
@@ -83,7 +81,7 @@ TEST_F(FaultFolder, WithLinks_IsNeitherMergedNorWritten) {
   std::filesystem::rename(images, folder() / "elsewhere");
   std::filesystem::create_directory_symlink("../elsewhere", images);
   expect_refusal("merge whole --out out", 3, {"whole/images", "a link"});
-  EXPECT_THAT(list_files("out"), ::testing::IsEmpty());
+  EXPECT_THAT(list_files("out"), IsEmpty());
   const Outcome outcome = run("run --fresh --no-grids --out whole " + std::string(kSmallFolderRun));
   EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
   expect_one_message(outcome.err, {"whole/images", "a link"});
@@ -92,12 +90,11 @@ TEST_F(FaultFolder, WithLinks_IsNeitherMergedNorWritten) {
 TEST_F(FaultFolder, OfAMergeThatWasStopped_IsGoneOnWith_AndThatOfAnotherIsNot) {
   run_whole();
   EXPECT_EQ(run_script("", "ulimit -f 20\nshadowbench merge whole --out out"), 6) << "the schema is larger";
-  expect_one_message(read_text(folder() / "script.txt"), {"out/", "free space", "--out"});
+  expect_one_message(read("script.txt"), {"out/", "free space", "--out"});
   expect_whole("out");
-  EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "results.json"));
+  EXPECT_FALSE(exists("out/results.json"));
   EXPECT_GT(count_cells(), 0u);
-  const Outcome again = run("merge whole --out out");
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  succeed("merge whole --out out");
   expect_no_leftovers("out");
   expect_same("whole", "out");
   std::filesystem::create_directories(folder() / "other" / "cells");
@@ -148,39 +145,22 @@ TEST_F(FaultFolder, ThatVanishesDuringARun_IsAnOutputError_AndTheCommandWorksAga
         "[[filter]]\nid = 'none'\n[[filter]]\nid = 'vsm'\nradius = {linear = [1, 8], count = 8}\n");
   for (const char* way : {"removed", "renamed", "a file now"}) {
     const pid_t pid = start("run e.toml --out out");
-    ASSERT_TRUE(wait_until([&] { return count_cells() > 0; })) << read_text(folder() / "started.txt");
+    ASSERT_TRUE(wait_until([&] { return count_cells() > 0; })) << read("started.txt");
     std::filesystem::rename(folder() / "out", folder() / "moved");
     if (way == std::string("a file now")) write("out", "a file");
     const Ending ending = wait_for(pid);
     EXPECT_EQ(ending.exit_code, 6) << way << " " << ending.signal;
-    const std::string text = read_text(folder() / "started.txt");
+    const std::string text = read("started.txt");
     expect_one_message(text, {"out", "--out"});
     EXPECT_THAT(last_line(text), HasSubstr("out: this folder was removed or replaced")) << way;
     expect_whole("moved");
     std::filesystem::remove_all(folder() / "out");
     if (way == std::string("renamed")) std::filesystem::rename(folder() / "moved", folder() / "out");
     std::filesystem::remove_all(folder() / "moved");
-    const Outcome again = run("run e.toml --out out");
-    EXPECT_EQ(again.exit_code, 0) << again.err;
+    succeed("run e.toml --out out");
     expect_no_leftovers("out");
-    EXPECT_EQ(results()["cells"].size(), 54u);
+    EXPECT_EQ(read_cells().size(), 54u);
     std::filesystem::remove_all(folder() / "out");
-  }
-}
-
-TEST_F(FaultFolder, OnAReadOnlyMount_IsAnOutputErrorForEveryCommand) {
-  const auto shell = find_mounting_shell();
-  if (!shell)
-    GTEST_SKIP() << "no file system can be mounted here (neither as root nor with 'unshare -rm'); root may write where "
-                    "rights forbid it";
-  run_whole();
-  for (const std::string& command : list_commands()) {
-    const std::string script =
-        "mkdir -p disk && mount -t tmpfs none disk && mkdir disk/out && mount -o remount,ro disk || exit "
-        "98\nshadowbench " +
-        command + " --out disk/out";
-    EXPECT_EQ(run_script(*shell, script), 6) << command;
-    expect_one_message(read_text(folder() / "script.txt"), {"disk/out: ", "Read-only file system", "--out"});
   }
 }
 
@@ -198,11 +178,17 @@ TEST_F(FaultFolder, WithoutTheRightToWrite_IsAnOutputError) {
   EXPECT_EQ(run_script("", (is_root ? as_nobody + "'" SHADOWBENCH_PROGRAM "' run " : "shadowbench run ") +
                                kSmallFolderRun + "--out out"),
             6);
-  expect_one_message(read_text(folder() / "script.txt"), {"out: ", "Permission denied", "rights", "--out"});
+  expect_one_message(read("script.txt"), {"out: ", "Permission denied", "rights", "--out"});
 }
 
 /// Pictures are written beside other work.
-TEST_F(FaultFolder, WhereAPictureCannotBe_IsAnOutputErrorThatNamesIt) {
+TEST_F(FaultFolder, WhereAPictureOrAFolderCannotBe_IsAnOutputErrorThatNamesIt) {
+  write("file", "a file");
+  for (const char* out : {"file", "file/inner"}) {
+    const Outcome outcome = run("run " + std::string(kSmallFolderRun) + "--out " + out);
+    EXPECT_EQ(outcome.exit_code, 6);
+    expect_one_message(outcome.err, {out, "--out"});
+  }
   for (const char* picture : {"images/cubes.none.picture.png", "cubes.grid.png"}) {
     std::filesystem::create_directories(folder() / "out" / picture);
     const Outcome outcome = run("run --grids --force --out out " + std::string(kSmallFolderRun));
@@ -212,18 +198,135 @@ TEST_F(FaultFolder, WhereAPictureCannotBe_IsAnOutputErrorThatNamesIt) {
   }
 }
 
-TEST_F(FaultFolder, ThatIsAFile_IsAnOutputErrorForEveryCommand) {
-  run_whole();
-  write("out", "a file");
-  for (const std::string& command : list_commands()) {
-    const Outcome outcome = run(command + " --out out");
-    EXPECT_EQ(outcome.exit_code, 6) << command << " " << outcome.err;
-    expect_one_message(outcome.err, {"out: ", "--out"});
+constexpr int kStops = 9;  // three of each signal
+constexpr const char* kLastLine = "what was finished stays, and the same command goes on from there";
+
+class FaultSignal : public FaultTest {
+ protected:
+  void SetUp() override {
+    FaultTest::SetUp();
+    write("e.toml",
+          "scene = 'cubes'\nmap_size = 32\nsize = '48x27'\nrounds = 1\ngrids = false\nattribution = false\n"
+          "[[filter]]\nid = 'none'\n[[filter]]\nid = 'vsm'\nradius = {linear = [1, 10], count = 10}\n");
   }
-  const Outcome inner = run("run " + std::string(kSmallFolderRun) + "--out out/inner");
-  EXPECT_EQ(inner.exit_code, 6) << inner.err;
-  expect_one_message(inner.err, {"out/inner: ", "--out"});
-  EXPECT_EQ(read_text(folder() / "out"), "a file");
+
+  std::string command(const std::string& out) const {
+    return "run e.toml --filter-file " + user_filter("stored_plane.glsl") +
+           " --filters none,vsm,esm,pcf2x2,tent3x3,box4x4,box3x3,poisson,stored_plane --out " + out;
+  }
+
+  /// What a stopped run may leave.
+  void expect_intact() const {
+    for (const auto& path : list_files("out")) {
+      if (path.parent_path().filename() != "cells" || path.string().find("tmp-") != std::string::npos ||
+          path.string().find(".worker-") != std::string::npos)
+        continue;
+      const records::CellRecord cell = records::read_cell(folder() / "out", path.stem().string());
+      for (const auto& image : {cell.images.picture, cell.images.visibility})
+        if (!image)
+          ADD_FAILURE() << path << " names no picture";
+        else
+          EXPECT_FALSE(images::read_picture(folder() / "out" / *image).texels.empty()) << *image;
+    }
+    expect_whole("out");
+    EXPECT_THAT(list_processes(), IsEmpty());
+  }
+
+  /// What it must have said, and how it ended.
+  void expect_goodbye(const Ending& ending, int signal) const {
+    EXPECT_EQ(ending.signal, signal) << read("started.txt");
+    const std::string text = read("started.txt");
+    if (signal == SIGKILL || text.empty()) return;
+    if (last_line(text).ends_with(" done")) return expect_same("whole", "out");  // nothing was left to stop
+    expect_one_message(text, {signal == SIGINT ? "stopped by SIGINT" : "stopped by SIGTERM", kLastLine});
+  }
+
+  /// Expects that the run that has just finished equals the undisturbed one, and makes place for the next.
+  void expect_equal_and_clear() const {
+    expect_same("whole", "out");
+    expect_no_leftovers("out");
+    expect_no_leftovers("cache");
+    std::filesystem::remove_all(folder() / "out");
+    std::filesystem::remove_all(cache_folder());
+  }
+};
+
+TEST_F(FaultSignal, ManyTimesAtRandomMoments_NothingIsLost) {
+  const auto begin = std::chrono::steady_clock::now();
+  succeed(command("whole"));
+  double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::filesystem::remove_all(cache_folder());
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> moment(0.0, 1.0);
+  int stops = 0, finished = 0;
+  std::size_t kept = 0;
+  while (stops < kStops) {
+    const int signal = stops % 3 == 0 ? SIGINT : stops % 3 == 1 ? SIGTERM : SIGKILL;
+    const pid_t pid = start(command("out"));
+    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random) * seconds));
+    kill(pid, signal);
+    const Ending ending = wait_for(pid);
+    if (ending.exit_code == 0) {
+      ++finished;
+      seconds *= 0.8;  // the first run had shaders to compile, and perhaps a busier machine
+      expect_equal_and_clear();
+      kept = 0;
+      continue;
+    }
+    ++stops;
+    expect_goodbye(ending, signal);
+    expect_intact();
+    EXPECT_GE(count_cells(), kept) << "what was finished is gone";
+    kept = count_cells();
+    if (HasFailure()) FAIL() << "stop " << stops << " by signal " << signal;
+  }
+  succeed(command("out"));
+  expect_equal_and_clear();
+  RecordProperty("finished", finished);
+}
+
+/// The worker of a user's filter has a process group of its own, and must not outlive the run.
+TEST_F(FaultSignal, WhileAUsersFilterIsMeasured_NoChildStays) {
+  for (const int signal : {SIGINT, SIGTERM, SIGKILL}) {
+    const pid_t pid = start(
+        "run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out "
+        "--filter-file " +
+        user_filter("endless.glsl"));
+    const std::filesystem::path worker =
+        folder() / "out" / (".worker-" + std::to_string(pid) + "-" + this_writer().host);
+    ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(worker); })) << read("started.txt");
+    std::this_thread::sleep_for(
+        std::chrono::milliseconds(1500));  // by now it says nothing more, and a closed pipe would not end it
+    kill(pid, signal);
+    expect_goodbye(wait_for(pid), signal);
+    EXPECT_THAT(list_processes(), IsEmpty());
+  }
+  succeed("run --size 32x18 --map-size 16 --rounds 1 --scene cubes --filters none --out out");
+  expect_no_leftovers("out");
+}
+
+TEST_F(FaultSignal, OtherCommands_SayThatTheyWereStopped) {
+  const char* commands[] = {"bias --size 320x180 --out out", "stress --out out", "tune --filters vsm --out out"};
+  for (const char* each : commands) {
+    const pid_t pid = start(each);
+    ASSERT_TRUE(wait_until([&] { return !read("started.txt").empty() || exists("out"); })) << each;
+    kill(pid, SIGINT);
+    EXPECT_EQ(wait_for(pid).signal, SIGINT) << each;
+    expect_one_message(read("started.txt"), {"stopped by SIGINT", "run the same command again"});
+    expect_whole("out");
+    std::filesystem::remove_all(folder() / "out");
+    std::filesystem::remove(folder() / "started.txt");
+  }
+}
+
+/// A program that was started to ignore a signal, as by nohup, goes on.
+TEST_F(FaultSignal, IgnoredSignals_StayIgnored) {
+  const int status =
+      run_script("", "trap '' HUP\n'" SHADOWBENCH_PROGRAM
+                     "' run --size 64x36 --map-size 16 --rounds 1 --scene cubes --filters none --out out &\n"
+                     "i=0\nwhile [ ! -e out/.shadowbench-lock ] && [ $i -lt 1000 ]; do sleep 0.01; i=$((i+1)); "
+                     "done\nkill -HUP $! && wait $!");
+  EXPECT_EQ(status, 0) << read("script.txt");
 }
 
 }  // namespace
