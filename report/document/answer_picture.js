@@ -21,7 +21,7 @@ const startLivePicture = ({ figure, stage, slider, line, sayTruth, say }) => {
   const reveal = (isShown) => {
     canvases.forEach((canvas) => (canvas.hidden = !isShown));
     stage.classList.toggle("turns", isShown);
-    choice.style.visibility = isShown ? "" : "hidden";
+    choice.hidden = !isShown;
     button.setAttribute("aria-pressed", isShown);
     if (!isShown) sayTruth("truth");
   };
@@ -90,7 +90,7 @@ const startLivePicture = ({ figure, stage, slider, line, sayTruth, say }) => {
     canvases,
     // Another filter, or another place, whose camera and sun are as the run had them.
     show: (index, place, canDraw) => {
-      button.hidden = choice.hidden = !canDraw;
+      button.hidden = !canDraw;
       right = index;
       if (place !== view.place) Object.assign(view, { place, camera: [0, 0], light: [0, 0] });
       reveal(false);
@@ -174,10 +174,10 @@ const addCommand = (holder, lead) => {
   return code;
 };
 
-// The commands that say and show the same: the run's folder is that of the page, where it was opened from a disk.
+// The commands that say and show the same: the run's folder is that of the page, seen from beside it.
 const writeWord = (word) => (/^[\w./+:,=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 const folderOfPage = () =>
-  writeWord(location.protocol === "file:" ? decodeURI(location.pathname).replace(/\/[^/]*$/, "") : "RUN");
+  writeWord(location.protocol === "file:" ? decodeURI(location.pathname).split("/").at(-2) : "RUN");
 // Empty where it is not known how the scene, or the file of a filter, was given.
 const writeView = (index, place) => {
   const { filter, request, map } = run.configurations[index];

@@ -77,15 +77,30 @@ document::Table make_equivalence_table(const std::vector<analysis::CellGroup>& g
   return table;
 }
 
-/// A sentence for the fewest taps.
+/// What most frames gain: of the filter whose error falls by most.
+std::string describe_gain(const std::vector<analysis::CellGroup>& groups, std::size_t frames) {
+  const CellRecord* best = nullptr;
+  std::string name;
+  const auto rmse_of = [](const CellRecord& cell) -> const std::vector<double>& {
+    return find_resolve(*cell.accumulation, "mean", false).rmse;
+  };
+  const auto gain_of = [&](const CellRecord& cell) { return rmse_of(cell).front() - rmse_of(cell).back(); };
+  for (const analysis::CellGroup& group : groups)
+    for (const CellRecord& cell : group.cells) {
+      if (!cell.accumulation || (best && gain_of(cell) <= gain_of(*best))) continue;
+      best = &cell;
+      name = group.names.name(cell);
+    }
+  return fmt::format("Over {} frames, {} gains most: its RMSE on {} goes from {} to {}.", frames, name, best->scene,
+                     records::format_number(rmse_of(*best).front()), records::format_number(rmse_of(*best).back()));
+}
+
+/// A sentence for the fewest taps; without fewer than 16 what frames gain.
 std::string summarize(const std::vector<analysis::CellGroup>& groups, std::size_t frames) {
   std::vector<TapEquivalence> all;
   for (const analysis::CellGroup& group : groups) std::ranges::copy(list_equivalences(group), std::back_inserter(all));
-  if (all.empty())
-    return fmt::format(
-        "No filter of this run has 16 taps beside other numbers of them: nothing to compare frames "
-        "with. Errors and noise after each of the {} frames stand below.",
-        frames);
+  std::erase_if(all, [](const TapEquivalence& each) { return each.taps == kReferenceTaps; });
+  if (all.empty()) return describe_gain(groups, frames);
   const int fewest = std::ranges::min_element(all, {}, &TapEquivalence::taps)->taps;
   std::vector<int> counts;
   std::set<std::string> late;
@@ -100,7 +115,7 @@ std::string summarize(const std::vector<analysis::CellGroup>& groups, std::size_
   std::string text = fmt::format("{} taps have the noise of 16 taps in one frame ", fewest);
   if (counts.empty()) return text + fmt::format("after more than {} frames.", frames);
   text += counts.front() == counts.back()
-              ? fmt::format("after {} frames", counts.front())
+              ? fmt::format("after {} frame{}", counts.front(), counts.front() == 1 ? "" : "s")
               : fmt::format("after {} to {} frames, by scene and rotation", counts.front(), counts.back());
   if (!late.empty()) text += fmt::format(", and after more than {}: {}", frames, fmt::join(late, "; "));
   return text + ".";
@@ -152,18 +167,16 @@ document::Chart make_chart(const analysis::CellGroup& group, const std::string& 
 }
 
 document::ChartChoice make_charts(const std::vector<analysis::CellGroup>& groups) {
-  document::ChartChoice choice{"frames", {{"of", {}}, {"shown", {"noise", "error"}}}, {}};
+  document::ChartChoice choice{"frames", {{"of", {}}, {"shown", {"error", "noise"}}}, {}};
   for (const analysis::CellGroup& group : groups) {
     choice.selectors[0].options.push_back(
         fmt::format("{}, {}", group.scene, records::describe_settings(group.cells.front())));
     choice.charts.push_back(make_chart(
-        group, "noise",
-        [](const AccumulationRecord& record) {
-          const auto& noise = find_resolve(record, "mean", false).noise;
-          return noise ? &*noise : nullptr;
-        }));
-    choice.charts.push_back(make_chart(
         group, "RMSE", [](const AccumulationRecord& record) { return &find_resolve(record, "mean", false).rmse; }));
+    choice.charts.push_back(make_chart(group, "noise", [](const AccumulationRecord& record) {
+      const auto& noise = find_resolve(record, "mean", false).noise;
+      return noise ? &*noise : nullptr;
+    }));
   }
   return choice;
 }

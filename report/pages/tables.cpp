@@ -125,10 +125,12 @@ records::TextTable make_accuracy_table(const analysis::CellGroup& group) {
   return table;
 }
 
-document::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns) {
+void explain_columns(document::Details& details, const std::string& file,
+                     const std::vector<records::CsvColumn>& columns) {
   document::Facts facts;
   for (const records::CsvColumn& column : columns) facts.items.push_back({column.name, column.meaning});
-  return {"Columns of " + file, {facts}};
+  details.blocks.emplace_back(document::Heading{file});
+  details.blocks.emplace_back(std::move(facts));
 }
 
 namespace {

@@ -21,7 +21,8 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
 records::TextTable make_accuracy_table(const analysis::CellGroup& group);
 
 /// What the columns of a CSV file mean, for readers who unfold it.
-document::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns);
+void explain_columns(document::Details& details, const std::string& file,
+                     const std::vector<records::CsvColumn>& columns);
 
 /// Lists the columns of fronts.csv with their meanings.
 std::vector<records::CsvColumn> list_front_columns();
