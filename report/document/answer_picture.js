@@ -21,7 +21,7 @@ const startLivePicture = ({ figure, stage, slider, line, sayTruth, say }) => {
   const reveal = (isShown) => {
     canvases.forEach((canvas) => (canvas.hidden = !isShown));
     stage.classList.toggle("turns", isShown);
-    choice.hidden = !isShown;
+    choice.style.visibility = isShown ? "" : "hidden";
     button.setAttribute("aria-pressed", isShown);
     if (!isShown) sayTruth("truth");
   };
@@ -90,7 +90,7 @@ const startLivePicture = ({ figure, stage, slider, line, sayTruth, say }) => {
     canvases,
     // Another filter, or another place, whose camera and sun are as the run had them.
     show: (index, place, canDraw) => {
-      button.hidden = !canDraw;
+      button.hidden = choice.hidden = !canDraw;
       right = index;
       if (place !== view.place) Object.assign(view, { place, camera: [0, 0], light: [0, 0] });
       reveal(false);

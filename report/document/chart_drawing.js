@@ -8,6 +8,7 @@ const kGrid = "#e2e4e8";
 const kPaper = "#ffffff";
 const kAccent = "#0b57d0";
 const kFaint = 0.55;
+const kManyLabels = 60;
 const kAcross = [-1, 1, 1, -1, 0, 0, 1, -1];
 const kDown = [-1, -1, 1, 1, -1, 1, 0, 0];
 const kLines = {
@@ -132,7 +133,9 @@ const addLabels = (svg, labels, marks, area) => {
       const [cx, cy] = [px + kAcross[i] * (away + half), py + kDown[i] * (away + 2)];
       return [cx - half, cy - kSize / 2, cx + half, cy + kSize / 2];
     };
-    const places = [10, 20, 36, 52].flatMap((away) => kAcross.map((_, i) => boxAt(i, away)));
+    const places = (labels.length > kManyLabels ? [10] : [10, 20, 36, 52]).flatMap((away) =>
+      kAcross.map((_, i) => boxAt(i, away)),
+    );
     const at = places.findIndex((each) => isInside(each) && boxes.every((other) => areApart(each, other)));
     if (at < 0) continue; // the pointer still finds it
     const box = places[at];

@@ -160,9 +160,9 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
       mount.blocks.emplace_back(document::Paragraph{judged + "."});
     mount.blocks.emplace_back(document::Paragraph{describe_setting(cells), true});
     mount.blocks.emplace_back(make_table(run, cells, advice, biases));
-    if (auto grid = make_grid_picture(cells)) mount.blocks.emplace_back(std::move(*grid));
     if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
   }
+  if (auto grid = make_grid_picture(cells)) mount.blocks.emplace_back(std::move(*grid));
   mount.blocks.emplace_back(document::Paragraph{analysis::describe_cost(advice), true});
   mount.blocks.emplace_back(document::Sentences{{}, analysis::list_advice_notes(advice, run.gl)});
   section.blocks.emplace_back(std::move(mount));

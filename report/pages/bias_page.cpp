@@ -51,93 +51,46 @@ std::string explain_amounts() {
 }
 
 /// What a mode comes to for a filter, at the smallest amount swept that is enough where it takes an amount.
-struct BiasVerdict {
-  std::string text;
-  document::Grade grade = document::Grade::kBad;
-  std::optional<bool> free = {};  ///< of acne
-  std::optional<double> gap = {};
-};
-
-BiasVerdict judge_curve(const records::BiasCurve& curve) {
+std::pair<std::string, document::Grade> judge_curve(const records::BiasCurve& curve) {
   if (curve.points.empty()) return {"absent", document::Grade::kNone};
   const records::BiasPoint* enough = find_enough_point(curve);
   const records::BiasPoint& point = enough ? *enough : curve.points.back();
-  if (!point.acne || *point.acne >= kLittleAcne)
-    return point.acne ? BiasVerdict{"acne " + records::format_rate(point.acne), document::Grade::kBad, false}
-                      : BiasVerdict{"acne absent", document::Grade::kNone};
-  BiasVerdict verdict{(point.factor ? name_factor(*point.factor) + ", " : "") + "gap " +
-                      records::format_rate(point.contact_gap)};
-  verdict.free = true;
-  verdict.gap = point.contact_gap;
-  if (!verdict.gap)
-    verdict.grade = document::Grade::kNone;
-  else if (*verdict.gap < kWideGap)
-    verdict.grade = *verdict.gap < kNarrowGap ? document::Grade::kGood : document::Grade::kNear;
-  return verdict;
+  if (!point.acne) return {"acne absent", document::Grade::kNone};
+  if (*point.acne >= kLittleAcne) return {"acne " + records::format_rate(point.acne), document::Grade::kBad};
+  const std::optional<double>& gap = point.contact_gap;
+  return {(point.factor ? name_factor(*point.factor) + ", " : "") + "gap " + records::format_rate(gap),
+          !gap                ? document::Grade::kNone
+          : *gap < kNarrowGap ? document::Grade::kGood
+          : *gap < kWideGap   ? document::Grade::kNear
+                              : document::Grade::kBad};
 }
-
-/// One rate of the modes, each with the filters that can use it.
-struct ComparedModes {
-  std::vector<analysis::Rated> modes;
-  int absent = 0, cells = 0;  ///< modes with a filter: those that lack the rate, and all that could have it
-
-  void add(const std::string& mode, double rate) { modes.push_back({mode, rate, records::format_rate(rate)}); }
-
-  std::string describe(const records::BiasSweepRecord& sweep) const {
-    const std::string why = fmt::format("fewer than {} receivers are left to rate", sweep.fewest_receivers);
-    if (modes.empty()) return absent > 0 ? "absent, since " + why : "none";
-    return analysis::describe_extremes(modes, "under", "modes") +
-           (absent > 0 ? fmt::format("; absent in {} of {} cells, where {}", absent, cells, why) : "");
-  }
-};
-
-/// Acne and contact gap each have a sentence: one mode can be the best of one, and the worst of the other.
-struct BiasHeadline {
-  ComparedModes acne, gap;
-
-  void add(const std::string& mode, const std::vector<BiasVerdict>& verdicts) {
-    int rated = 0, kept = 0;
-    std::optional<double> widest;
-    for (const BiasVerdict& verdict : verdicts) {
-      ++acne.cells;
-      ++(verdict.free ? rated : acne.absent);
-      if (verdict.free == false) ++kept;
-      if (verdict.free != true) continue;
-      ++gap.cells;
-      if (!verdict.gap) ++gap.absent;
-      if (verdict.gap) widest = std::max(widest.value_or(0.0), *verdict.gap);
-    }
-    if (rated > 0) acne.add(mode, static_cast<double>(kept) / rated);
-    if (widest) gap.add(mode, *widest);
-  }
-
-  std::string describe(const records::BiasSweepRecord& sweep) const {
-    if (acne.cells == 0) return "No filter of this run can use any bias.";
-    return fmt::format("Filters with acne: {}. Widest contact gap of those without: {}.", acne.describe(sweep),
-                       gap.describe(sweep));
-  }
-};
 
 /// What each mode comes to for each filter.
 document::Table make_verdict_table(const records::BiasSweepRecord& sweep) {
   document::Table table{"Enough bias, and the contact gap it opens", {{"mode"}, {}}};
   for (const records::BiasModeRecord& mode : sweep.modes)
     for (const records::BiasCurve& curve : mode.curves) {
-      BiasVerdict verdict = judge_curve(curve);
-      table.judge(mode.mode, curve.filter, std::move(verdict.text), verdict.grade);
+      auto [text, grade] = judge_curve(curve);
+      table.judge(mode.mode, curve.filter, std::move(text), grade);
     }
   return table;
 }
 
+/// How many filters some mode frees of acne, and the widest contact gap that it then opens.
 std::string describe_bias_answer(const records::BiasSweepRecord& sweep) {
   if (!sweep.refused.empty()) return sweep.refused;
-  BiasHeadline headline;
-  for (const records::BiasModeRecord& mode : sweep.modes) {
-    std::vector<BiasVerdict> verdicts;
-    std::ranges::transform(mode.curves, std::back_inserter(verdicts), judge_curve);
-    headline.add(mode.mode, verdicts);
-  }
-  return headline.describe(sweep);
+  const std::vector<records::BiasToShip> ships = list_bias_to_ship({sweep});
+  const auto is_free = [](const records::BiasToShip& ship) { return !ship.bias.empty(); };
+  std::string text = fmt::format("With the bias below {} of {} filters {} less than {:g} % acne",
+                                 std::ranges::count_if(ships, is_free), ships.size(),
+                                 ships.size() == 1 ? "has" : "have", 100.0 * kLittleAcne);
+  const auto widest =
+      std::ranges::max_element(ships, {}, [](const auto& ship) { return ship.contact_gap.value_or(-1.0); });
+  if (widest != ships.end() && widest->contact_gap)
+    return text + fmt::format("; the widest contact gap is {}, of {}.", records::format_rate(widest->contact_gap),
+                              widest->filter);
+  return text +
+         fmt::format("; contact gaps are absent: fewer than {} receivers are left to rate.", sweep.fewest_receivers);
 }
 
 document::Table make_ship_table(const std::vector<records::BiasToShip>& ships) {

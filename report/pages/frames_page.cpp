@@ -77,22 +77,24 @@ document::Table make_equivalence_table(const std::vector<analysis::CellGroup>& g
   return table;
 }
 
-/// What most frames gain: of the filter whose error falls by most.
+/// What frames gain at most: of the filter whose noise falls by most, or whose error where none has noise.
 std::string describe_gain(const std::vector<analysis::CellGroup>& groups, std::size_t frames) {
-  const CellRecord* best = nullptr;
-  std::string name;
-  const auto rmse_of = [](const CellRecord& cell) -> const std::vector<double>& {
-    return find_resolve(*cell.accumulation, "mean", false).rmse;
-  };
-  const auto gain_of = [&](const CellRecord& cell) { return rmse_of(cell).front() - rmse_of(cell).back(); };
+  std::string text;
+  double most = -1.0;
   for (const analysis::CellGroup& group : groups)
     for (const CellRecord& cell : group.cells) {
-      if (!cell.accumulation || (best && gain_of(cell) <= gain_of(*best))) continue;
-      best = &cell;
-      name = group.names.name(cell);
+      if (!cell.accumulation) continue;
+      const ResolveRecord& mean = find_resolve(*cell.accumulation, "mean", false);
+      const bool is_noisy = mean.noise && mean.noise->front() > 0.0;
+      const std::vector<double>& values = is_noisy ? *mean.noise : mean.rmse;
+      const double gain = (is_noisy ? 1e3 : 1.0) * (values.front() - values.back());
+      if (gain <= most) continue;
+      most = gain;
+      text = fmt::format("Over {} frames, {} gains most: its {} on {} goes from {} to {}.", frames,
+                         group.names.name(cell), is_noisy ? "noise" : "RMSE", cell.scene,
+                         records::format_number(values.front()), records::format_number(values.back()));
     }
-  return fmt::format("Over {} frames, {} gains most: its RMSE on {} goes from {} to {}.", frames, name, best->scene,
-                     records::format_number(rmse_of(*best).front()), records::format_number(rmse_of(*best).back()));
+  return text;
 }
 
 /// A sentence for the fewest taps; without fewer than 16 what frames gain.
@@ -166,17 +168,24 @@ document::Chart make_chart(const analysis::CellGroup& group, const std::string& 
   return chart;
 }
 
+/// Of noise and error, the one that all groups have comes first.
 document::ChartChoice make_charts(const std::vector<analysis::CellGroup>& groups) {
-  document::ChartChoice choice{"frames", {{"of", {}}, {"shown", {"error", "noise"}}}, {}};
+  using Values = const std::vector<double>* (*)(const AccumulationRecord&);
+  std::vector<std::pair<const char*, Values>> kinds = {
+      {"noise",
+       [](const AccumulationRecord& record) {
+         const auto& noise = find_resolve(record, "mean", false).noise;
+         return noise ? &*noise : nullptr;
+       }},
+      {"RMSE", [](const AccumulationRecord& record) { return &find_resolve(record, "mean", false).rmse; }}};
+  if (std::ranges::any_of(groups,
+                          [&](const auto& group) { return make_chart(group, "", kinds[0].second).series.empty(); }))
+    std::ranges::reverse(kinds);
+  document::ChartChoice choice{"frames", {{"of", {}}, {"shown", {kinds[0].first, kinds[1].first}}}, {}};
   for (const analysis::CellGroup& group : groups) {
     choice.selectors[0].options.push_back(
         fmt::format("{}, {}", group.scene, records::describe_settings(group.cells.front())));
-    choice.charts.push_back(make_chart(
-        group, "RMSE", [](const AccumulationRecord& record) { return &find_resolve(record, "mean", false).rmse; }));
-    choice.charts.push_back(make_chart(group, "noise", [](const AccumulationRecord& record) {
-      const auto& noise = find_resolve(record, "mean", false).noise;
-      return noise ? &*noise : nullptr;
-    }));
+    for (const auto& [name, values] : kinds) choice.charts.push_back(make_chart(group, name, values));
   }
   return choice;
 }

@@ -21,7 +21,7 @@
 #include "report/document/chart.h"
 #include "report/files/file_name.h"
 #include "report/pages/bias_page.h"
-#include "report/pages/sections.h"
+#include "report/pages/tables.h"
 #include "report/pages/trade_section.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
@@ -119,16 +119,16 @@ std::string describe_wrong(const analysis::Configuration& configuration, const s
   const auto name_place = [&](const records::CellRecord& cell) {
     return analysis::describe_place(analysis::place_of(cell), places);
   };
-  const std::string text = "worst on " + name_place(worst);
+  const std::string at = places.size() > 1 ? "worst on " + name_place(worst) : "";
   if (fault) {
-    std::string name(fault->name());
-    std::ranges::replace(name, '_', ' ');
-    return fmt::format("{}: {} {}{}", text, name, records::format_rate(most),
-                       where == &worst ? "" : " on " + name_place(*where));
+    std::string seen = fmt::format("{} {}", fault->name(), records::format_rate(most));
+    std::ranges::replace(seen, '_', ' ');
+    if (at.empty()) return seen;
+    return where == &worst ? at + ": " + seen : fmt::format("{}; {} on {}", at, seen, name_place(*where));
   }
   const auto shares = analysis::is_lost_in_truth(worst) ? std::nullopt : records::list_shares(worst);
   const auto part = shares ? analysis::find_dominating_part(*shares) : std::nullopt;
-  return part ? fmt::format("{}: {}", text, records::list_error_parts()[*part].meaning) : text;
+  return !part ? at : at + (at.empty() ? "" : ": ") + records::list_error_parts()[*part].meaning;
 }
 
 /// What a scope has of each configuration; null of those without a cell there.

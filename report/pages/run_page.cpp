@@ -16,7 +16,6 @@
 #include "report/pages/answer.h"
 #include "report/pages/grid_sheets.h"
 #include "report/pages/run_data.h"
-#include "report/pages/sections.h"
 #include "report/pages/tables.h"
 #include "report/pages/trade_section.h"
 #include "report/records/cell_key.h"
@@ -297,7 +296,7 @@ std::optional<document::Section> make_gpu_section(const std::vector<records::Cel
                       records::kGpuFrameWidth, records::kGpuFrameHeight),
           std::move(table)});
   }
-  if (!sentences.items.empty()) section.blocks.emplace_back(std::move(sentences));
+  if (!sentences.items.empty()) tables.blocks.emplace(tables.blocks.begin(), std::move(sentences));
   tables.blocks.emplace(tables.blocks.begin(), document::Paragraph{kGpuNote, true});
   if (!tables.blocks.empty()) section.blocks.emplace_back(std::move(tables));
   return section;

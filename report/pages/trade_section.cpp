@@ -350,9 +350,9 @@ void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector
 
 void add_charts(Blocks& blocks, const char* heading, document::ChartChoice charts, const char* note) {
   if (charts.charts.empty()) return;
-  blocks.emplace_back(document::Heading{heading});
-  blocks.emplace_back(std::move(charts));
-  if (note) blocks.emplace_back(document::Paragraph{note, true});
+  document::Details details{heading, {std::move(charts)}};
+  if (note) details.blocks.emplace_back(document::Paragraph{note, true});
+  blocks.emplace_back(std::move(details));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ const countWords = (page, above = Infinity) => page.evaluate((most) => {
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const option = node.parentElement.closest("option"), holder = option ? option.closest("select") : node.parentElement;
     if (option && !option.selected) continue;
-    if (!holder.checkVisibility() || /^(SCRIPT|STYLE)$/.test(holder.tagName)) continue;
+    if (!holder.checkVisibility({ visibilityProperty: true }) || /^(SCRIPT|STYLE)$/.test(holder.tagName)) continue;
     range.selectNodeContents(option ? holder : node);
     const { top, width } = option ? holder.getBoundingClientRect() : range.getBoundingClientRect();
     if (width > 0 && top < most) count += node.textContent.split(/\s+/).filter((word) => /[\p{L}\p{N}]/u.test(word)).length;

@@ -45,9 +45,17 @@ std::string write_and_read(const TemporaryFolder& folder, const std::vector<reco
   return read_text(folder.path() / file);
 }
 
+const document::ChartChoice* find_in(const std::vector<document::Block>& blocks, const std::string& id) {
+  for (const document::Block& block : blocks) {
+    if (const auto* choice = std::get_if<document::ChartChoice>(&block); choice && choice->id == id) return choice;
+    const auto* details = std::get_if<document::Details>(&block);
+    if (const auto* inside = details ? find_in(details->blocks, id) : nullptr) return inside;
+  }
+  return nullptr;
+}
+
 const document::ChartChoice& find_choice(const document::Section& section, const std::string& id) {
-  for (const document::Block& block : section.blocks)
-    if (const auto* choice = std::get_if<document::ChartChoice>(&block); choice && choice->id == id) return *choice;
+  if (const auto* found = find_in(section.blocks, id)) return *found;
   throw std::runtime_error("the section has no choice of charts " + id);
 }
 
