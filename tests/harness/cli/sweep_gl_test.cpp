@@ -55,7 +55,7 @@ TEST_F(Sweep, ReportIsThatOfItsCells_WhateverTheClockSaid) {
 
 TEST_F(Sweep, Grids_OfAFinishedRun_AreDrawnAgainInAnotherWidth) {
   const std::string again =
-      "run --scene cubes --filters none --size 64x36 --map-size 32 --rounds 1 --phases 1 --no-attribution --out out";
+      "run --grids --pictures --scene cubes --filters none --size 64x36 --map-size 32 --rounds 1 --phases 1 --out out";
   ASSERT_EQ(run(again).exit_code, 0);
   const auto before = cell_times();
   const std::filesystem::path grid = folder() / "out" / "cubes.grid.png";
