@@ -92,15 +92,16 @@ void require_picture(const std::filesystem::path& argument) {
                      argument.string()));
 }
 
-/// The numbers in one line each, as they are printed.
+/// The numbers in one line each.
 std::vector<std::pair<std::string, std::string>> list_numbers(const run::ComparisonOptions& options,
-                                                              const run::Comparison& result) {
+                                                              const run::Comparison& result, bool in_full) {
   std::vector<std::pair<std::string, std::string>> numbers;
   for (const metrics::Metric& metric : options.metrics) {
     const std::string name(metric.name());
     const auto value = result.values.find(name);
-    numbers.emplace_back(
-        name, value != result.values.end() ? fmt::format("{}", value->second) : "absent: " + result.absent.at(name));
+    numbers.emplace_back(name, value == result.values.end() ? "absent: " + result.absent.at(name)
+                               : in_full                    ? fmt::format("{}", value->second)
+                                                            : records::format_number(value->second));
   }
   numbers.emplace_back("compared", fmt::format("{}", result.compared));
   numbers.emplace_back("not_finite", fmt::format("{}", result.not_finite));
@@ -109,7 +110,7 @@ std::vector<std::pair<std::string, std::string>> list_numbers(const run::Compari
 
 void write_images(const DiffArguments& arguments, const run::ComparisonOptions& options,
                   const run::Comparison& result) {
-  const auto numbers = list_numbers(options, result);
+  const auto numbers = list_numbers(options, result, false);
   const run::ComparedImages& made = *result.images;
   if (arguments.out) {
     std::vector<std::string> facts;
@@ -162,7 +163,7 @@ int diff(const DiffArguments& arguments) {
   }
   if (result.images) write_images(arguments, options, result);
   if (arguments.json) return 0;
-  for (const auto& [name, value] : list_numbers(options, result)) print("{:<11} {}\n", name, value);
+  for (const auto& [name, value] : list_numbers(options, result, true)) print("{:<11} {}\n", name, value);
   return 0;
 }
 

@@ -160,10 +160,20 @@ class Experiment {
     if (options_.grids && options_.pictures && !options_.part.is_worker()) draw_all_lights(options_, plan, run_.gl);
     if (!options_.part.is_worker()) {
       std::vector<records::CellRecord> cells = records::read_cells(options_.out, keep_rows(plan));
+      std::ranges::for_each(cells, [&](records::CellRecord& cell) { rename_grid(cell); });
       if (options_.pictures && options_.truth) draw_supersampled_pictures(renderer_, plan, cache_, cells);
       pages::write_report(options_.out, run_, cells, options_.grid_width);
     }
     cache_.prune(truth::kMaxCacheBytes);
+  }
+
+  /// A cell that was finished before may name a grid of the other kind of file.
+  void rename_grid(records::CellRecord& cell) const {
+    if (!cell.images.grid) return;
+    std::filesystem::path path(*cell.images.grid);
+    if (path.replace_extension(options_.grid_width.in_inches ? ".svg" : ".png") == *cell.images.grid) return;
+    cell.images.grid = path.generic_string();
+    records::write_cell(options_.out, cell);
   }
 
   void count(const measure::SceneMeasurement& measured) {
@@ -203,6 +213,16 @@ class Experiment {
     return known.settings == own.settings && known.shard == own.shard && known.shards == own.shards;
   }
 
+  /// The words that ask for the width of grids; empty: as wide as they are without.
+  static std::string find_grid_width(const std::vector<std::string>& command) {
+    const auto word =
+        std::ranges::find_if(command, [](const std::string& each) { return each.starts_with("--grid-width"); });
+    if (word == command.end()) return "";
+    const std::size_t equals = word->find('=');
+    if (equals != std::string::npos) return word->substr(equals + 1);
+    return word + 1 == command.end() ? "" : *(word + 1);
+  }
+
   /// Whether the folder has the whole report of this very run already, of the very cells that lie there. Their content
   /// decides, not the times of the files: the clock may have been set in between.
   bool has_report(const RunPlan& plan) const {
@@ -215,7 +235,9 @@ class Experiment {
         return records::to_json(records::read_cell(options_.out, key)) == records::to_json(cell);
       };
       const std::vector<std::string> keys = list_report_keys(plan, results.cells);
-      return is_same(results.run.experiment) && keys.size() == results.cells.size() &&
+      return is_same(results.run.experiment) &&
+             find_grid_width(results.run.command) == find_grid_width(options_.command) &&
+             keys.size() == results.cells.size() &&
              std::ranges::all_of(results.cells, [&](const records::CellRecord& cell) {
                return std::ranges::count(keys, cell.key) > 0 && is_whole(cell.key, cell);
              });

@@ -349,13 +349,13 @@ std::string describe_test_without_effect(const options::RunOptions& options, con
 
 std::vector<std::string> list_scene_warnings(const options::RunOptions& options, const scene::Scene& scene) {
   std::vector<std::string> warnings;
+  if (!options.part.is_worker())
+    warnings = {describe_unseen_light(options, scene), describe_light_below(scene),
+                describe_test_without_effect(options, scene)};
+  std::erase(warnings, "");
   // What is said of the scene holds for all its lights.
   for (const std::string& warning : scene.warnings)
     warnings.push_back(scene::name_without_light(scene) + ": " + warning);
-  if (options.part.is_worker()) return warnings;
-  for (const std::string& warning : {describe_light_below(scene), describe_unseen_light(options, scene),
-                                     describe_test_without_effect(options, scene)})
-    if (!warning.empty()) warnings.push_back(warning);
   return warnings;
 }
 

@@ -289,7 +289,9 @@ class BiasSweep {
     for (Shot& shot : shots) grid.tiles.push_back(make_tile(mode, shot));
     std::vector<const images::Image*> images;
     for (const images::GridTile& tile : grid.tiles) images.push_back(&tile.visibility);
-    const images::Image& truth = assets_.truth(camera()).area;
+    const measure::SceneTruth& scene_truth = assets_.truth(camera());
+    const images::Image& truth = scene_truth.area;
+    grid.mask = images::make_image(truth.width, truth.height, scene_truth.mask);
     images.push_back(&truth);
     grid.crop =
         images::find_hardest_edge(images, images.size() - 1, images::choose_crop_size({truth.width, truth.height}));

@@ -86,6 +86,7 @@ constexpr const char* kTitle = "A famous mistake, replayed";
 /// What one set-up of the filters resulted in.
 struct Result {
   images::GridTile tile;
+  images::Image receivers;
   double rmse = 0.0;
   std::int64_t broken_texels = 0;
 };
@@ -121,6 +122,7 @@ Result draw(render::FilterPasses& passes, const render::ShadowMap& map, const re
   tile.label = passes.request().label();
   tile.visibility = measure::draw_visibility(passes, map, gbuffer, target);
   tile.error = measure::make_error_image(tile.visibility, truth);
+  result.receivers = images::make_image(kWidth, kHeight, truth.mask);
   result.broken_texels = measure::count_broken_texels(passes, map);
   result.rmse = measure_rmse(tile.visibility.texels, truth);
   tile.caption =
@@ -206,6 +208,7 @@ Exhibit replay(const AxisInputs& inputs, const Mistake& mistake, const std::stri
   grid.title = kTitle;
   grid.subtitle = fmt::format("scene {}, map {}", mistake.scene, kMapSize);
   grid.columns = 4;
+  grid.mask = results.front().receivers;
   for (Result& result : results) grid.tiles.push_back(std::move(result.tile));
   images::write_grid(inputs.out / exhibit.pictures.front().file, grid);
   return exhibit;

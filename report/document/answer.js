@@ -54,11 +54,12 @@ const startAnswer = (holder) => {
 
   // Of what is there without the script the notes stay, which are of the choice that the page opens with.
   const notes = holder.querySelector(":scope > ul");
-  [...holder.children].filter((child) => !child.matches("figure.split")).forEach((child) => child.remove());
+  [...holder.children].filter((child) => !child.matches("figure")).forEach((child) => child.remove());
   const headline = element(holder, "p", { className: "choice", "aria-live": "polite" });
-  element(holder, "p", { className: "note" }, run.setting);
+  const setting = element(holder, "p", { className: "note" }, `${run.setting} · `);
   const controls = element(holder, "form", { className: "limits", "aria-label": "Limits", onsubmit: () => false });
   const table = element(element(holder, "div", { className: "scroll picks" }), "table");
+  holder.append(...holder.querySelectorAll(":scope > figure:not(.split)")); // the grid
   const picture = startPicture(holder);
   const folded = element(holder, "details", { className: "reasons" });
   element(folded, "summary", {}, "Why, limits and commands");
@@ -120,6 +121,7 @@ const startAnswer = (holder) => {
     const cell = element(row, "td");
     const choose = () => {
       showPick(index, place);
+      picture.figure.scrollIntoView({ block: "nearest" });
       writeLink("shown", [labelOf(index), places[place]]);
     };
     const button = addButton(cell, "", choose, run.configurations[index].full);
@@ -175,6 +177,13 @@ const startAnswer = (holder) => {
     }
     addBiasRow(judged.picks);
   };
+  // What charts mark: "fast", "balanced", "best", or two of them, by the key of any of its cells.
+  const roles = { names: "", picks: [] };
+  shadowbench.roleOf = (key) => {
+    const { configuration } = run.cells.find((cell) => cell.key === key) ?? {};
+    const pick = roles.picks.find(({ index }) => index === configuration);
+    return pick?.columns.map((column) => kPicks[column].toLowerCase()).join(" and ");
+  };
   const isAsked = () => state.wide || state.soft || Object.keys(state.limits).length > 0;
   const show = () => {
     stated.textContent = `Cost: ${costChoice().text}.`;
@@ -186,6 +195,10 @@ const startAnswer = (holder) => {
     if (first) showPick(Number(first.dataset.index), Number(first.dataset.place));
     codes[0].textContent = writeAdvise();
     if (notes) notes.hidden = isAsked() || shadowbench.cost !== run.cost;
+    const names = listNames(judged);
+    const isNew = names !== roles.names;
+    Object.assign(roles, { names, picks: judged.picks });
+    if (isNew) shadowbench.drawCharts?.();
   };
 
   // A slider's steps are the worst values of the run: each step lets one more configuration through.
@@ -253,9 +266,13 @@ const startAnswer = (holder) => {
   const wide = addSelect(controls, "Kernel", classes, { name: "class" }, (value) => choose({ wide: value }));
   const softLabel = element(controls, "label", { title: "Only filters whose shadows are sharper where they touch" });
   const soft = element(softLabel, "input", { type: "checkbox", name: "soft" });
-  softLabel.append(" Soft shadows that harden at contacts");
+  softLabel.append(" Contact hardening");
   softLabel.hidden = !run.configurations.some(({ hardens, teaching }) => hardens && !teaching);
   soft.addEventListener("change", () => choose({ soft: soft.checked }));
+  addButton(setting, "My limits", () => {
+    folded.open = true;
+    folded.scrollIntoView();
+  });
   const measurer = makeMeasurer(cost, chooseCost);
   const openShown = () => {
     const [label, title] = readLink("shown") ?? [];

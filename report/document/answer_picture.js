@@ -174,10 +174,10 @@ const addCommand = (holder, lead) => {
   return code;
 };
 
-// The commands that say and show the same: the run's folder is that of the page, where it was opened from a disk.
+// The commands that say and show the same: the run's folder is that of the page, seen from beside it.
 const writeWord = (word) => (/^[\w./+:,=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 const folderOfPage = () =>
-  writeWord(location.protocol === "file:" ? decodeURI(location.pathname).replace(/\/[^/]*$/, "") : "RUN");
+  writeWord(location.protocol === "file:" ? decodeURI(location.pathname).split("/").at(-2) : "RUN");
 // Empty where it is not known how the scene, or the file of a filter, was given.
 const writeView = (index, place) => {
   const { filter, request, map } = run.configurations[index];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -148,8 +149,9 @@ struct Page {
   nlohmann::json data = {};         ///< what the scripts that fill mounts read; null: there are none
 };
 
-/// Writes a page as HTML that opens from disk and loads nothing but what lies beside it.
-std::string write_html(const Page& page);
+/// Writes a page as HTML that opens from disk and loads nothing but what lies beside it, in `dir`: pictures that are
+/// there already have their sizes in it.
+std::string write_html(const Page& page, const std::filesystem::path& dir = {});
 
 /// Links a page that write_html() wrote with other siblings than it had when it was written.
 std::string replace_siblings(std::string html, const std::vector<Link>& siblings);

@@ -81,7 +81,7 @@ inline constexpr std::size_t kMostShown = 6;
 /// with the titled one before it. Curves that no title names stay.
 void show_most_telling(Chart& chart, std::vector<std::pair<double, std::string>> weights_and_titles);
 
-/// Charts of which the reader chooses one.
+/// Charts of which the reader chooses one; without selectors all are shown, small, beside each other, with one key.
 struct ChartChoice {
   struct Selector {
     std::string label;

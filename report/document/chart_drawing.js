@@ -6,10 +6,16 @@ const kInk = "#1c1f24";
 const kSecond = "#545a63";
 const kGrid = "#e2e4e8";
 const kPaper = "#ffffff";
+const kAccent = "#0b57d0";
 const kFaint = 0.55;
+const kManyLabels = 60;
 const kAcross = [-1, 1, 1, -1, 0, 0, 1, -1];
 const kDown = [-1, -1, 1, 1, -1, 1, 0, 0];
-const kDashes = { dashed: { "stroke-dasharray": "6 4" }, ties: { "stroke-dasharray": "2 3" } };
+const kLines = {
+  steps: { "stroke-width": 1 },
+  dashed: { "stroke-dasharray": "6 4" },
+  ties: { "stroke-dasharray": "2 3" },
+};
 const kMarks = {
   circle: (r) => `M${-r},0a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0z`,
   square: (r) => `M${-r},${-r}h${2 * r}v${2 * r}h${-2 * r}z`,
@@ -114,7 +120,8 @@ const addWhiskers = (parent, point, x, y, color) => {
   if (point.y[1] !== point.y[2]) addPath(parent, along, color);
 };
 
-// Puts labels beside their points, where they cover neither marks nor each other; what says most comes first.
+// Puts labels beside their points, where they cover neither marks nor each other, a far one with a line to its point;
+// what says most comes first.
 const addLabels = (svg, labels, marks, area) => {
   const boxes = marks.map(([px, py]) => [px - 6, py - 6, px + 6, py + 6]);
   const isInside = ([left, top, right, bottom]) =>
@@ -126,10 +133,16 @@ const addLabels = (svg, labels, marks, area) => {
       const [cx, cy] = [px + kAcross[i] * (away + half), py + kDown[i] * (away + 2)];
       return [cx - half, cy - kSize / 2, cx + half, cy + kSize / 2];
     };
-    const places = [8, 20].flatMap((away) => kAcross.map((_, i) => boxAt(i, away)));
-    const box = places.find((each) => isInside(each) && boxes.every((other) => areApart(each, other)));
-    if (!box) continue; // the pointer still finds it
+    const places = (labels.length > kManyLabels ? [10] : [10, 20, 36, 52]).flatMap((away) =>
+      kAcross.map((_, i) => boxAt(i, away)),
+    );
+    const at = places.findIndex((each) => isInside(each) && boxes.every((other) => areApart(each, other)));
+    if (at < 0) continue; // the pointer still finds it
+    const box = places[at];
     boxes.push(box);
+    const [left, top, right, bottom] = box;
+    const end = [Math.min(Math.max(px, left), right), Math.min(Math.max(py, top), bottom)];
+    if (at >= 2 * kAcross.length) addPath(svg, `M${px},${py}L${end}`, kSecond, { "stroke-width": 0.7 });
     const halo = { "text-anchor": "middle", stroke: kPaper, "stroke-width": 3, "paint-order": "stroke" };
     addText(svg, (box[0] + box[2]) / 2, (box[1] + box[3]) / 2, label, halo);
   }
@@ -153,7 +166,7 @@ const addKey = (svg, chart, top, width, hidden, onToggle) => {
   for (const series of entries) {
     const group = svgElement(svg, "g", { opacity: hidden.has(series.title) ? 0.3 : 1, class: "key" });
     const at = addLines(group, series.title, 34, {});
-    const line = { "stroke-width": 1.6, ...kDashes[series.line] };
+    const line = { "stroke-width": 1.6, ...kLines[series.line] };
     if (series.line !== "none") addPath(group, `M${at.x},${at.y}h26`, series.color, line);
     if (series.mark !== "none") addMark(group, series, at.x + 13, at.y);
     group.addEventListener("click", () => onToggle(series.title));
@@ -172,12 +185,32 @@ const listShown = (chart, hidden) => {
   });
 };
 
-// Draws one chart. Returns the SVG and where its points are.
-const drawChart = (chart, width, hidden, onToggle) => {
+// Begins an SVG on paper; `end` gives it its height.
+const beginSvg = (title, width) => {
   const font = { "font-family": kFont, "font-size": kSize, fill: kInk };
-  const name = { xmlns: "http://www.w3.org/2000/svg", role: "img", "aria-label": chart.title };
-  const svg = svgElement(null, "svg", { ...name, ...font });
-  const paper = svgElement(svg, "rect", { width: "100%", height: "100%", fill: kPaper });
+  const name = { xmlns: "http://www.w3.org/2000/svg", role: "img", "aria-label": title };
+  const svg = svgElement(null, "svg", { ...name, ...font, width });
+  const paper = svgElement(svg, "rect", { width, height: "100%", fill: kPaper });
+  const end = (height) => {
+    for (const each of [svg, paper]) each.setAttribute("height", height);
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  };
+  return { svg, end };
+};
+
+// Draws the key of several charts: all that one of them has.
+const drawKey = (charts, width, hidden, onToggle) => {
+  const { svg, end } = beginSvg("Key", width);
+  const all = charts.flatMap(({ series }) => series).filter(({ points }) => points.length > 0);
+  const series = all.filter(({ title }, i) => all.findIndex((each) => each.title === title) === i);
+  const notes = [...new Set(charts.flatMap((chart) => chart.notes))];
+  end(addKey(svg, { series, notes }, kLine, width, hidden, onToggle));
+  return svg;
+};
+
+// Draws one chart, its key included where a click on it does something. Returns the SVG and where its points are.
+const drawChart = (chart, width, hidden, onToggle) => {
+  const { svg, end } = beginSvg(chart.title, width);
   let top = kLine + 2;
   const say = (text, attributes) => {
     for (const line of wrap(text, width - 24)) {
@@ -210,22 +243,20 @@ const drawChart = (chart, width, hidden, onToggle) => {
     const points = series.points.filter((point) => x.can(point.x[0]) && y.can(point.y[0]));
     const path = points.map((point) => [x(point.x[0]), y(point.y[0])]);
     if (series.line !== "none")
-      addPath(layers[i], pathOf(series.line, path), series.color, { ...line, ...kDashes[series.line] });
+      addPath(layers[i], pathOf(series.line, path), series.color, { ...line, ...kLines[series.line] });
     for (const [j, point] of points.entries()) {
       if (!x.holds(point.x[0]) || !y.holds(point.y[0])) continue;
       if (series.whiskers) addWhiskers(layers[i], point, x, y, series.color);
-      if (isMarked) addMark(layers[i], series, ...path[j]);
+      const role = point.opens && window.shadowbench.roleOf?.(point.opens); // an answer of the page
+      if (isMarked) addMark(layers[i], role ? { ...series, filled: true, color: kAccent } : series, ...path[j]);
+      if (role) addPath(svg, kMarks.circle(9), kAccent, { transform: `translate(${path[j]})`, "stroke-width": 2 });
       if (isMarked) marks.push(path[j]);
-      if (point.label) labels.push([...path[j], point.label, series.faint ? 2 : series.filled ? 0 : 1]);
+      const rank = role ? 0 : series.faint ? 3 : series.filled ? 1 : 2;
+      if (point.label) labels.push([...path[j], role ? `${point.label} · ${role}` : point.label, rank]);
       if (isMarked || point.details.length > 0) hits.push({ at: path[j], point, series });
     }
   }
   addLabels(svg, labels, marks, area);
-  const height = addKey(svg, chart, top + 4, width, hidden, onToggle);
-  for (const each of [svg, paper]) {
-    each.setAttribute("width", width);
-    each.setAttribute("height", height);
-  }
-  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  end(onToggle ? addKey(svg, chart, top + 4, width, hidden, onToggle) : top);
   return { svg, hits };
 };

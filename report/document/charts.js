@@ -1,6 +1,7 @@
 // The charts of a page, from the JSON block "charts" that write_html() makes: choosing, pointing, saving.
 const page = JSON.parse(document.getElementById("charts").textContent);
 const kReach = 24;
+const kLeastWidth = 380; // of one of several charts, pixels
 const kSavedWidth = 1120;
 
 // The saved file does not depend on the window.
@@ -77,7 +78,7 @@ const start = ({ id, charts, selectors }) => {
   const holder = figure.querySelector(".holder");
   const all = charts.flatMap(({ series }) => series);
   const hidden = new Set(all.filter((series) => series.hidden).map(({ title }) => title));
-  let chart = null;
+  let shown = []; // without anything to choose all, small, with one key
   let drawn = 0;
   const toggle = (title) => {
     if (!hidden.delete(title)) hidden.add(title);
@@ -86,13 +87,21 @@ const start = ({ id, charts, selectors }) => {
   const draw = () => {
     drawn = holder.clientWidth;
     if (drawn === 0) return; // folded away
-    const result = drawChart(chart, drawn, hidden, toggle);
-    holder.replaceChildren(result.svg);
-    followPointer(holder, element(holder, "div", { className: "tip", hidden: true }), chart, result);
+    holder.replaceChildren();
+    const isOne = shown.length === 1;
+    const columns = isOne ? 1 : Math.max(1, Math.floor(drawn / kLeastWidth));
+    for (const chart of shown) {
+      const box = element(holder, "div", { className: "multiple" });
+      const result = drawChart(chart, Math.floor(drawn / columns), hidden, isOne && toggle);
+      box.append(result.svg);
+      followPointer(box, element(box, "div", { className: "tip", hidden: true }), chart, result);
+    }
+    if (!isOne) holder.append(drawKey(shown, drawn, hidden, toggle));
   };
   const choose = () => {
     const find = (index, select, i) => index * selectors[i].options.length + Number(select.value);
-    chart = unpack(charts[selects.reduce(find, 0)], width?.value);
+    const chosen = selects.length > 0 ? [charts[selects.reduce(find, 0)]] : charts;
+    shown = chosen.map((each) => unpack(each, width?.value));
     draw();
   };
   const addChoice = (text, options) => addSelect(controls, text, options, {}, choose);
@@ -105,19 +114,25 @@ const start = ({ id, charts, selectors }) => {
   const groups = new Set(all.flatMap(({ points }) => points.map((point) => point[5])).filter(Boolean));
   const classes = [["", "any"], ...[...groups].map((group) => [group, group])];
   const width = groups.size > 1 ? addChoice("width", classes) : null;
-  addButton(controls, "Save as SVG", () => saveSvg(chart, hidden));
-  addButton(controls, "Save as PNG", () => savePng(chart, hidden));
-  // The cost that the page's reader chose, where there is a chart of it.
-  const follow = () => {
+  addButton(controls, "Save as SVG", () => shown.forEach((chart) => saveSvg(chart, hidden)));
+  addButton(controls, "Save as PNG", () => shown.forEach((chart) => savePng(chart, hidden)));
+  // The cost that the page's reader chose anew, where there is a chart of it.
+  const follow = (isNew) => {
     selectors.forEach(({ costs }, i) => {
+      if (!isNew) return;
       const at = costs.indexOf(shadowbench.cost);
       if (at >= 0) selects[i].value = at;
     });
     choose();
   };
-  follow();
+  follow(true);
   new ResizeObserver(() => holder.clientWidth !== drawn && draw()).observe(holder);
   return follow;
 };
 const followers = page.charts.map(start);
-shadowbench.drawCharts = () => followers.forEach((follow) => follow());
+let followed = shadowbench.cost;
+shadowbench.drawCharts = () => {
+  const isNew = shadowbench.cost !== followed;
+  followed = shadowbench.cost;
+  followers.forEach((follow) => follow(isNew));
+};

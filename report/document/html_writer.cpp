@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <numeric>
 
 #include "report/document/blocks.h"
 #include "report/document/embedded.h"
@@ -50,11 +53,16 @@ std::string html_link(const Link& link) {
   return fmt::format("<a href=\"{}\">{}</a>", files::encode_url_path(link.path), escape_html(link.text));
 }
 
-std::string html_picture(const Picture& picture) {
-  return fmt::format(
-      "<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
-      "<figcaption>{1}</figcaption></figure>\n",
-      files::encode_url_path(picture.path), escape_html(picture.caption));
+/// The size of a PNG file, so that nothing moves once it is loaded; empty of any other file.
+std::string html_size(const std::filesystem::path& file) {
+  std::array<char, 24> head{};
+  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  if (std::string_view(&head[1], 3) != "PNG") return {};
+  const auto read = [&](std::size_t at) {
+    return std::accumulate(&head[at], &head[at + 4], 0U,
+                           [](unsigned sum, char c) { return 256 * sum + static_cast<unsigned char>(c); });
+  };
+  return fmt::format(" width=\"{}\" height=\"{}\"", read(16), read(20));
 }
 
 std::string html_facts(const std::vector<std::pair<std::string, std::string>>& facts) {
@@ -188,6 +196,8 @@ std::string classify_column(const records::TextTable& table, std::size_t column)
 /// Writes blocks as HTML, and collects the charts.
 class HtmlWriter {
  public:
+  explicit HtmlWriter(const std::filesystem::path& dir) : dir_(dir) {}
+
   std::string write(const std::vector<Block>& blocks) {
     std::string html;
     for (const Block& block : blocks) html += std::visit([this](const auto& each) { return write(each); }, block);
@@ -197,6 +207,13 @@ class HtmlWriter {
   const ChartPacker& charts() const { return charts_; }
 
  private:
+  std::string write(const Picture& picture) const {
+    return fmt::format(
+        "<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\"{2} loading=\"lazy\"></a>"
+        "<figcaption>{1}</figcaption></figure>\n",
+        files::encode_url_path(picture.path), escape_html(picture.caption), html_size(dir_ / picture.path));
+  }
+
   std::string write(const Facts& facts) { return html_facts(facts.items); }
 
   std::string write(const Sentences& sentences) {
@@ -243,7 +260,7 @@ class HtmlWriter {
 
   std::string write(const Gallery& gallery) {
     std::string figures;
-    for (const Picture& picture : gallery.pictures) figures += html_picture(picture);
+    for (const Picture& picture : gallery.pictures) figures += write(picture);
     if (gallery.title.empty() || figures.empty()) return figures;
     return fmt::format("<details open><summary>{}</summary>\n<div class=\"gallery{}\">\n{}</div></details>\n",
                        escape_html(gallery.title), gallery.wide ? " wide" : "", figures);
@@ -319,6 +336,7 @@ class HtmlWriter {
     return lead.empty() ? std::string() : "<p>" + escape_html(lead) + "</p>\n";
   }
 
+  const std::filesystem::path& dir_;  ///< of the page
   ChartPacker charts_;
 };
 
@@ -355,8 +373,8 @@ std::string replace_siblings(std::string html, const std::vector<Link>& siblings
   return html;
 }
 
-std::string write_html(const Page& page) {
-  HtmlWriter writer;
+std::string write_html(const Page& page, const std::filesystem::path& dir) {
+  HtmlWriter writer(dir);
   std::string html = html_head(page.of.empty() ? page.title : page.title + ": " + page.of) +
                      fmt::format("<body>\n<main>\n<h1>{}</h1>\n", escape_html(page.title)) +
                      write_siblings(page.siblings);

@@ -12,7 +12,9 @@ if (run.cells.some(({ picture, values }) => picture || values)) {
   new ResizeObserver(() => requestAnimationFrame(fitCanvases)).observe(paneBox);
   window.addEventListener("hashchange", openLink);
   const [first = kTruth, second = first] = listAll(0);
-  if (!openLink()) start({ place: 0, left: first, right: second });
+  wanted = run.opens ?? null;
+  if (!openLink())
+    start({ place: 0, left: first, right: second, ...(run.opens && { mode: "difference", layer: "visibility" }) });
 } else section.hidden = true;
 run.times?.forEach(({ file, ...times }) => addMachine(times, false, `${folderOfPage()}/${file}`));
 if (timesHere() && run.scopes.length > 0) addMachine(timesHere(), true);

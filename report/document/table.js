@@ -100,6 +100,9 @@ const startTable = (holder) => {
   const classes = [["", "any"], ...run.classes.map((name) => [name, name])];
   const wide = addSelect(controls, "Width", classes, { name: "width" }, (value) => change({ wide: value }));
 
+  const isMixed = run.classes.length > 1;
+  wide.parentNode.hidden = !isMixed;
+
   const addHead = (row, { id, title, text, unit }, at) => {
     const sorted = state.sort === id;
     const [direction, arrow] = state.down ? ["descending", " ▼"] : ["ascending", " ▲"];
@@ -154,9 +157,9 @@ const startTable = (holder) => {
   const draw = () => {
     scroll.replaceChildren();
     const table = element(scroll, "table");
-    const columns = listColumns();
+    const columns = listColumns().filter(({ id }) => id !== "class" || isMixed);
     const rows = listRows(columns);
-    element(table, "caption", {}, `${measureOf().title}: ${measureOf().text}`);
+    element(table, "caption", {}, measureOf().text);
     const head = element(element(table, "thead"), "tr");
     columns.forEach((column, at) => addHead(head, column, at));
     const body = element(table, "tbody");
@@ -170,8 +173,14 @@ const startTable = (holder) => {
       );
     }
     const many = rows.length > kMany ? ` Print has the first ${kMany} of ${rows.length} rows.` : "";
-    const marked = "Best: of its column. ≈ tied with it, ! suspect or not finished.";
-    key = `${rows.length} of ${run.configurations.length} configurations. ${marked}${many}`;
+    const all = run.configurations.length;
+    const isMarked = (mark) => marks.some((each) => [...each.values()].includes(mark));
+    const said = [
+      rows.length < all && `${rows.length} of ${all} configurations.`,
+      isMarked(kMarks.tied) && "≈: tied with the best of its column.",
+      run.cells.some(({ status }) => status !== "ok") && "!: suspect or not finished.",
+    ];
+    key = said.filter(Boolean).join(" ") + many;
     note.textContent = key;
   };
   const change = (changes) => {

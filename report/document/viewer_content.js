@@ -173,7 +173,8 @@ const learn = async (who, place) => {
 };
 const readPixel = () => {
   if (!table.caption) return;
-  table.caption.textContent = cursor ? `Pixel x ${cursor.x}, y ${cursor.y}` : "Point at a pixel to read its values";
+  table.tHead.hidden = table.tBodies[0].hidden = !cursor;
+  table.caption.textContent = cursor ? `Pixel x ${cursor.x}, y ${cursor.y}` : "Values under the pointer";
   const at = cursor ? cursor.y * size.width + cursor.x : -1;
   const truth = known.get(kTruth)?.value[at];
   for (const [who, { value, cells }] of known) {
@@ -220,11 +221,11 @@ const showHardest = async (place) => {
   const { width, height } = await loadFile(kTruth, place);
   const all = listFilters(place).length;
   const some = count < all ? `${count} of ${all}` : all;
-  fillStrip(hardest, `Hardest tiles: where ${some} filters have most of their squared error`);
+  fillStrip(hardest, `Shares of the squared error of ${some} filters`);
   for (const { rect, share } of findTiles(sums, width, height, 6)) {
-    const caption = `${(100 * share).toFixed(0)} % at x\u00a0${rect.x}, y\u00a0${rect.y}`;
+    const caption = `${(100 * share).toFixed(0)} %`;
     const make = async () => (picture ? cut(picture, rect, 1) : paint(truth, null, width, rect, "grey", white));
-    addThumb(hardest, caption, () => showRect(rect), make);
+    addThumb(hardest, caption, () => showRect(rect), make).title = `at x\u00a0${rect.x}, y\u00a0${rect.y}`;
   }
 };
 const fillStrip = (strip, title) => {

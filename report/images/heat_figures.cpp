@@ -69,8 +69,7 @@ Stack show_bound(const Image& shortfall, const Image& violation, const std::stri
   Image marked = shortfall;
   for (std::size_t i = 0; i < marked.texels.size(); ++i)
     if (violation.texels[i] > 0.0f) marked.texels[i] = std::numeric_limits<float>::infinity();
-  const ColorScale scale = make_linear_scale(
-      0.0, choose_error_scale({&shortfall}), 2, [](float place) { return map_diverging(-place, 1.0f); });
+  const ColorScale scale = make_linear_scale(0.0, choose_error_scale({&shortfall}), 2, color_map("magma"));
   return show_heat(
       "a bound that must hold: by how much the filter is darker than the PCF of its kernel", caption, marked,
       [](float v) { return worst_if_nan(v, v); }, scale);

@@ -90,6 +90,15 @@ const records::CellRecord* find_worst_picture(const analysis::Configuration& con
   return worst;
 }
 
+/// The first sheet of the grid with the largest error, behind what each scene's answer is.
+std::optional<document::Gallery> make_grid_picture(const std::vector<records::CellRecord>& cells) {
+  const records::CellRecord* worst = nullptr;
+  for (const records::CellRecord& cell : cells)
+    if (cell.images.grid && (!worst || cell.error.rmse.value_or(0.0) > worst->error.rmse.value_or(0.0))) worst = &cell;
+  if (!worst) return std::nullopt;
+  return document::Gallery{"", {{*worst->images.grid, "filters on " + worst->scene + " by their error"}}};
+}
+
 /// The picture to begin with: the fast one against the truth, on the scene where it differs most from it.
 std::optional<document::Split> make_picture(const analysis::Advice& advice) {
   const analysis::Candidate& shown = advice.keeping.front();
@@ -134,7 +143,7 @@ std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRec
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                       const analysis::AdviceRequest& request,
                                       const std::vector<records::BiasToShip>& biases) {
-  document::Section section{"answer", "Which filter?", {}};
+  document::Section section{"answer", "", {}};
   if (!can_advise(cells)) {
     section.blocks = {document::Paragraph{
         cells.empty() ? "The run holds no cell." : "The run has filters for teaching alone, which are not advised."}};
@@ -153,6 +162,7 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
     mount.blocks.emplace_back(make_table(run, cells, advice, biases));
     if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
   }
+  if (auto grid = make_grid_picture(cells)) mount.blocks.emplace_back(std::move(*grid));
   mount.blocks.emplace_back(document::Paragraph{analysis::describe_cost(advice), true});
   mount.blocks.emplace_back(document::Sentences{{}, analysis::list_advice_notes(advice, run.gl)});
   section.blocks.emplace_back(std::move(mount));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -49,91 +51,46 @@ std::string explain_amounts() {
 }
 
 /// What a mode comes to for a filter, at the smallest amount swept that is enough where it takes an amount.
-struct BiasVerdict {
-  std::string text;
-  document::Grade grade = document::Grade::kBad;
-  std::optional<bool> free = {};  ///< of acne
-  std::optional<double> gap = {};
-};
-
-BiasVerdict judge_curve(const records::BiasCurve& curve) {
+std::pair<std::string, document::Grade> judge_curve(const records::BiasCurve& curve) {
   if (curve.points.empty()) return {"absent", document::Grade::kNone};
   const records::BiasPoint* enough = find_enough_point(curve);
   const records::BiasPoint& point = enough ? *enough : curve.points.back();
-  if (!point.acne || *point.acne >= kLittleAcne)
-    return point.acne ? BiasVerdict{"acne " + records::format_rate(point.acne), document::Grade::kBad, false}
-                      : BiasVerdict{"acne absent", document::Grade::kNone};
-  BiasVerdict verdict{(point.factor ? name_factor(*point.factor) + ", " : "") + "gap " +
-                      records::format_rate(point.contact_gap)};
-  verdict.free = true;
-  verdict.gap = point.contact_gap;
-  if (!verdict.gap)
-    verdict.grade = document::Grade::kNone;
-  else if (*verdict.gap < kWideGap)
-    verdict.grade = *verdict.gap < kNarrowGap ? document::Grade::kGood : document::Grade::kNear;
-  return verdict;
+  if (!point.acne) return {"acne absent", document::Grade::kNone};
+  if (*point.acne >= kLittleAcne) return {"acne " + records::format_rate(point.acne), document::Grade::kBad};
+  const std::optional<double>& gap = point.contact_gap;
+  return {(point.factor ? name_factor(*point.factor) + ", " : "") + "gap " + records::format_rate(gap),
+          !gap                ? document::Grade::kNone
+          : *gap < kNarrowGap ? document::Grade::kGood
+          : *gap < kWideGap   ? document::Grade::kNear
+                              : document::Grade::kBad};
 }
 
-/// One rate of the modes, each with the filters that can use it.
-struct ComparedModes {
-  std::vector<analysis::Rated> modes;
-  int absent = 0, cells = 0;  ///< modes with a filter: those that lack the rate, and all that could have it
-
-  void add(const std::string& mode, double rate) { modes.push_back({mode, rate, records::format_rate(rate)}); }
-
-  std::string describe(const records::BiasSweepRecord& sweep) const {
-    const std::string why = fmt::format("fewer than {} receivers are left to rate", sweep.fewest_receivers);
-    if (modes.empty()) return absent > 0 ? "absent, since " + why : "none";
-    return analysis::describe_extremes(modes, "under", "modes") +
-           (absent > 0 ? fmt::format("; absent in {} of {} cells, where {}", absent, cells, why) : "");
-  }
-};
-
-/// Acne and contact gap each have a sentence: one mode can be the best of one, and the worst of the other.
-struct BiasHeadline {
-  ComparedModes acne, gap;
-
-  void add(const std::string& mode, const std::vector<BiasVerdict>& verdicts) {
-    int rated = 0, kept = 0;
-    std::optional<double> widest;
-    for (const BiasVerdict& verdict : verdicts) {
-      ++acne.cells;
-      ++(verdict.free ? rated : acne.absent);
-      if (verdict.free == false) ++kept;
-      if (verdict.free != true) continue;
-      ++gap.cells;
-      if (!verdict.gap) ++gap.absent;
-      if (verdict.gap) widest = std::max(widest.value_or(0.0), *verdict.gap);
-    }
-    if (rated > 0) acne.add(mode, static_cast<double>(kept) / rated);
-    if (widest) gap.add(mode, *widest);
-  }
-
-  std::string describe(const records::BiasSweepRecord& sweep) const {
-    if (acne.cells == 0) return "No filter of this run can use any bias.";
-    return fmt::format("Filters with acne: {}. Widest contact gap of those without: {}.", acne.describe(sweep),
-                       gap.describe(sweep));
-  }
-};
-
-void add_bias_answer(document::Section& section, const std::vector<records::BiasSweepRecord>& sweeps,
-                     const records::BiasSweepRecord& sweep) {
-  if (!sweep.refused.empty()) {
-    section.blocks.emplace_back(document::Paragraph{name_light(sweeps, sweep, sweep.refused)});
-    return;
-  }
-  document::Table table{name_light(sweeps, sweep, "Enough bias, and the contact gap it opens"), {{"mode"}, {}}};
-  BiasHeadline headline;
-  for (const records::BiasModeRecord& mode : sweep.modes) {
-    std::vector<BiasVerdict> verdicts;
+/// What each mode comes to for each filter.
+document::Table make_verdict_table(const records::BiasSweepRecord& sweep) {
+  document::Table table{"Enough bias, and the contact gap it opens", {{"mode"}, {}}};
+  for (const records::BiasModeRecord& mode : sweep.modes)
     for (const records::BiasCurve& curve : mode.curves) {
-      verdicts.push_back(judge_curve(curve));
-      table.judge(mode.mode, curve.filter, verdicts.back().text, verdicts.back().grade);
+      auto [text, grade] = judge_curve(curve);
+      table.judge(mode.mode, curve.filter, std::move(text), grade);
     }
-    headline.add(mode.mode, verdicts);
-  }
-  section.blocks.emplace_back(document::Paragraph{name_light(sweeps, sweep, headline.describe(sweep))});
-  section.blocks.emplace_back(std::move(table));
+  return table;
+}
+
+/// How many filters some mode frees of acne, and the widest contact gap that it then opens.
+std::string describe_bias_answer(const records::BiasSweepRecord& sweep) {
+  if (!sweep.refused.empty()) return sweep.refused;
+  const std::vector<records::BiasToShip> ships = list_bias_to_ship({sweep});
+  const auto is_free = [](const records::BiasToShip& ship) { return !ship.bias.empty(); };
+  std::string text = fmt::format("With the bias below {} of {} filters {} less than {:g} % acne",
+                                 std::ranges::count_if(ships, is_free), ships.size(),
+                                 ships.size() == 1 ? "has" : "have", 100.0 * kLittleAcne);
+  const auto widest =
+      std::ranges::max_element(ships, {}, [](const auto& ship) { return ship.contact_gap.value_or(-1.0); });
+  if (widest != ships.end() && widest->contact_gap)
+    return text + fmt::format("; the widest contact gap is {}, of {}.", records::format_rate(widest->contact_gap),
+                              widest->filter);
+  return text +
+         fmt::format("; contact gaps are absent: fewer than {} receivers are left to rate.", sweep.fewest_receivers);
 }
 
 document::Table make_ship_table(const std::vector<records::BiasToShip>& ships) {
@@ -144,15 +101,15 @@ document::Table make_ship_table(const std::vector<records::BiasToShip>& ships) {
   return table;
 }
 
-/// The top of the page: what each mode comes to under each light, and the bias to ship.
+/// The top of the page: what modes come to under each light, and the bias to ship.
 document::Section make_bias_answers(const std::vector<records::BiasSweepRecord>& sweeps) {
   document::Section section{"answer", "", {}};
-  for (const records::BiasSweepRecord& sweep : sweeps) add_bias_answer(section, sweeps, sweep);
-  section.blocks.emplace_back(document::Paragraph{explain_amounts(), true});
+  for (const records::BiasSweepRecord& sweep : sweeps)
+    section.blocks.emplace_back(document::Paragraph{name_light(sweeps, sweep, describe_bias_answer(sweep))});
   section.blocks.emplace_back(make_ship_table(list_bias_to_ship(sweeps)));
   section.blocks.emplace_back(document::Paragraph{
-      "Of the modes that leave less acne than that, each at its smallest such amount, the one with the smallest "
-      "contact gap, as --bias takes it.",
+      fmt::format("The narrowest contact gap of the modes that leave less than {:g} % acne, as --bias takes it.",
+                  100.0 * kLittleAcne),
       true});
   return section;
 }
@@ -226,6 +183,13 @@ constexpr double kNeverEnough = 1e6;  // weighs more than any amount swept
 
 using Rate = std::optional<double> records::BiasPoint::*;
 
+constexpr std::pair<Rate, const char*> kRates[] = {{&records::BiasPoint::acne, "acne"},
+                                                   {&records::BiasPoint::contact_gap, "contact gap"}};
+
+std::string name_curve(const records::BiasCurve& curve, Rate rate) {
+  return fmt::format("{}: {}", curve.filter, rate == &records::BiasPoint::acne ? "acne" : "contact gap");
+}
+
 /// The scene without its light's name, which a scene with one light does not have.
 std::string name_scene(const records::BiasSweepRecord& sweep) {
   const std::string end = "." + sweep.light;
@@ -295,7 +259,7 @@ document::ChartSeries make_rate_series(const records::BiasCurve& curve, Rate rat
                                        const document::ChartStyle& style) {
   const bool gap = rate == &records::BiasPoint::contact_gap;
   document::ChartSeries series;
-  series.title = curve.filter + (gap ? ": contact gap" : ": acne");
+  series.title = name_curve(curve, rate);
   series.color = style.color;
   series.mark = style.mark;
   series.filled = !gap;
@@ -317,21 +281,56 @@ double weigh_curve(const records::BiasCurve& curve) {
   return enough && enough->factor ? *enough->factor + enough->contact_gap.value_or(0.0) : kNeverEnough;
 }
 
-/// `prefix`: of ids, which a page has once.
-document::Section make_mode_section(const records::BiasModeRecord& mode, const records::BiasSweepRecord& sweep,
-                                    const std::string& heading, const std::string& prefix) {
-  document::Section section{prefix + mode.mode, heading, {document::Paragraph{mode.meaning, true}}};
-  if (mode.curves.empty()) section.blocks.emplace_back(document::Paragraph{"No filter of this run can use it."});
-  if (!mode.key.empty() && !mode.curves.empty()) {
-    document::Chart chart = make_bias_chart(mode, sweep.filters);
-    chart.id = "bias." + prefix + mode.mode;
-    section.blocks.emplace_back(std::move(chart));
-    section.blocks.emplace_back(
-        document::Table{"At theory: amount, move towards the light, rates", make_amount_table(mode)});
+/// A mode's rates over the amount: acne solid, contact gap dashed, theory as a vertical line. What is absent is left
+/// out, and said where a whole kind is. A filter's place in `filters` gives it its colour and its mark.
+document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters) {
+  document::Chart chart;
+  chart.title = mode.mode;
+  chart.x_name = "amount / theoretical amount";
+  chart.y_name = "rate";
+  const std::vector<double> factors = list_factors(mode);
+  chart.x = make_factor_axis(factors);
+  chart.y = make_rate_axis(mode);
+  for (const auto& [rate, name] : kRates) {
+    bool is_absent = true;
+    for (const records::BiasCurve& curve : mode.curves) {
+      const auto place = static_cast<std::size_t>(std::ranges::find(filters, curve.filter) - filters.begin());
+      document::ChartSeries series = make_rate_series(curve, rate, chart.x, document::style_of(place));
+      if (series.points.empty()) continue;
+      is_absent = false;
+      chart.series.push_back(std::move(series));
+    }
+    if (is_absent) chart.notes.push_back(fmt::format("{}: absent", name));
   }
-  if (!mode.left_out.empty())
-    section.blocks.emplace_back(document::Details{"Left out", {document::Sentences{{}, mode.left_out}}});
-  if (!mode.picture.empty()) section.blocks.emplace_back(document::Gallery{{}, {{mode.picture, mode.picture_caption}}});
+  if (std::ranges::find(factors, 1.0) == factors.end()) return chart;
+  document::ChartSeries theory;
+  theory.title = "theory";
+  theory.color = document::kInk;
+  theory.line = document::LineStyle::kTies;
+  for (const double y : {chart.y.low, chart.y.high}) theory.points.push_back(document::exact_point(1.0, y));
+  chart.series.push_back(std::move(theory));
+  return chart;
+}
+
+document::Details make_mode_details(const records::BiasModeRecord& mode) {
+  document::Details details{mode.mode, {document::Paragraph{mode.meaning, true}}};
+  if (mode.curves.empty()) details.blocks.emplace_back(document::Paragraph{"No filter of this run can use it."});
+  if (!mode.key.empty() && !mode.curves.empty())
+    details.blocks.emplace_back(
+        document::Table{"At theory: amount, move towards the light, rates", make_amount_table(mode)});
+  if (!mode.left_out.empty()) details.blocks.emplace_back(document::Sentences{"Left out:", mode.left_out});
+  if (!mode.picture.empty()) details.blocks.emplace_back(document::Gallery{{}, {{mode.picture, mode.picture_caption}}});
+  return details;
+}
+
+/// `prefix`: of ids, which a page has once.
+document::Section make_modes_section(const records::BiasSweepRecord& sweep, const std::string& prefix) {
+  document::Section section{prefix + "modes", "Acne and contact gap by mode", {}};
+  if (document::ChartChoice charts = make_bias_charts(sweep, prefix); !charts.charts.empty())
+    section.blocks.emplace_back(std::move(charts));
+  section.blocks.emplace_back(document::Details{
+      "Which modes are enough", {make_verdict_table(sweep), document::Paragraph{explain_amounts(), true}}});
+  for (const records::BiasModeRecord& mode : sweep.modes) section.blocks.emplace_back(make_mode_details(mode));
   return section;
 }
 
@@ -396,39 +395,25 @@ std::string name_factor(double factor) {
   return factor > 0.0 && factor < 1.0 ? fmt::format("1/{:.4g}", 1.0 / factor) : fmt::format("{:.4g}", factor);
 }
 
-document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters) {
-  document::Chart chart;
-  chart.id = "bias." + mode.mode;
-  chart.title = mode.mode + ": acne and contact gap over the amount";
-  chart.x_name = "amount / theoretical amount";
-  chart.y_name = "rate";
-  const std::vector<double> factors = list_factors(mode);
-  chart.x = make_factor_axis(factors);
-  chart.y = make_rate_axis(mode);
-  const std::pair<Rate, const char*> kinds[] = {{&records::BiasPoint::acne, "acne"},
-                                                {&records::BiasPoint::contact_gap, "contact gap"}};
-  std::vector<std::pair<double, std::string>> weights;
-  for (const records::BiasCurve& curve : mode.curves) {
-    const auto place = static_cast<std::size_t>(std::ranges::find(filters, curve.filter) - filters.begin());
-    for (const auto& [rate, name] : kinds) {
-      document::ChartSeries series = make_rate_series(curve, rate, chart.x, document::style_of(place));
-      if (series.points.empty()) continue;
-      weights.emplace_back(weigh_curve(curve), series.title);
-      chart.series.push_back(std::move(series));
-    }
+document::ChartChoice make_bias_charts(const records::BiasSweepRecord& sweep, const std::string& prefix) {
+  document::ChartChoice all{prefix + "bias", {}, {}};
+  std::map<std::string, double> weights;
+  for (const records::BiasModeRecord& mode : sweep.modes) {
+    if (mode.key.empty() || mode.curves.empty()) continue;
+    all.charts.push_back(make_bias_chart(mode, sweep.filters));
+    all.charts.back().id = "bias." + prefix + mode.mode;
+    for (const records::BiasCurve& curve : mode.curves)
+      for (const auto& [rate, name] : kRates) {
+        double& weight = weights[name_curve(curve, rate)];
+        weight = std::max(weight, weigh_curve(curve));
+      }
   }
-  for (const auto& [rate, name] : kinds)
-    if (std::ranges::none_of(weights, [&](const auto& each) { return each.second.ends_with(name); }))
-      chart.notes.push_back(fmt::format("{}: absent", name));
-  document::show_most_telling(chart, std::move(weights));
-  if (std::ranges::find(factors, 1.0) == factors.end()) return chart;
-  document::ChartSeries theory;
-  theory.title = "theory";
-  theory.color = document::kInk;
-  theory.line = document::LineStyle::kTies;
-  for (const double y : {chart.y.low, chart.y.high}) theory.points.push_back(document::exact_point(1.0, y));
-  chart.series.push_back(std::move(theory));
-  return chart;
+  for (document::Chart& chart : all.charts) {
+    std::vector<std::pair<double, std::string>> listed;
+    for (const auto& [title, weight] : weights) listed.emplace_back(weight, title);
+    document::show_most_telling(chart, std::move(listed));
+  }
+  return all;
 }
 
 document::Page make_bias_page(const std::vector<records::BiasSweepRecord>& sweeps) {
@@ -446,8 +431,8 @@ document::Page make_bias_page(const std::vector<records::BiasSweepRecord>& sweep
     page.sections.push_back(make_engine_section(sweep));
     page.sections.back().id = prefix + page.sections.back().id;
     page.sections.back().heading = name_light(sweeps, sweep, page.sections.back().heading);
-    for (const records::BiasModeRecord& mode : sweep.modes)
-      page.sections.push_back(make_mode_section(mode, sweep, name_light(sweeps, sweep, mode.mode), prefix));
+    page.sections.push_back(make_modes_section(sweep, prefix));
+    page.sections.back().heading = name_light(sweeps, sweep, page.sections.back().heading);
     settings.blocks.emplace_back(document::Facts{list_bias_facts(sweep)});
     settings.blocks.emplace_back(document::Sentences{{}, define_bias_terms(sweep)});
   }

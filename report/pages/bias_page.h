@@ -11,9 +11,10 @@ namespace shadowbench::pages {
 /// Names a factor: "0", "1/8", "4".
 std::string name_factor(double factor);
 
-/// Draws a mode's rates over the amount: acne solid, contact gap dashed, theory as a vertical line. What is absent is
-/// left out, and said where a whole kind is. A filter's place in `filters` gives it its colour and its mark.
-document::Chart make_bias_chart(const records::BiasModeRecord& mode, const std::vector<std::string>& filters);
+/// Draws for each mode that takes an amount its rates over the amount: acne solid, contact gap dashed, theory as a
+/// vertical line. What is absent is left out, and said where a whole kind is. A filter has the same colour and mark in
+/// all, and the same filters are shown at first. `prefix`: of ids, which a page has once.
+document::ChartChoice make_bias_charts(const records::BiasSweepRecord& sweep, const std::string& prefix = {});
 
 /// Recommends a bias for each filter under each light that has an answer: of the modes that leave less acne than
 /// a pixel in a thousand, at the least amount swept that does, the one with the smallest contact gap; of equal ones the

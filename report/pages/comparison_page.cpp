@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "report/document/blocks.h"
+#include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"
 
@@ -23,6 +24,14 @@ json write_side(const std::filesystem::path& dir, const std::string& stem, const
   if (rgb.empty()) return {{"picture", nullptr}, {"values", values}};
   images::write_picture_png(dir / picture, rgb);
   return {{"picture", picture}, {"values", values}};
+}
+
+/// The difference four times enlarged, where it is largest.
+json find_view(const ComparedPictures& pictures) {
+  const images::Image& grey = pictures.image_grey;
+  const images::Rect part = images::find_hardest_edge({&grey, &pictures.truth_grey}, 1,
+                                                      {std::max(1, grey.width / 4), std::max(1, grey.height / 4)});
+  return {{"x", part.x + part.width / 2}, {"y", part.y + part.height / 2}, {"zoom", part.width > 0 ? 4 : 1}};
 }
 
 /// The greatest magnitude in two pictures, where all is darker than white: tiny values are seen then too.
@@ -47,6 +56,7 @@ void write_comparison_page(const std::filesystem::path& dir, const ComparedPictu
   page.data = {{"places", {{{"title", "both"}}}},
                {"hatched", "left out by the mask, or not finite"},
                {"white", find_white(pictures)},
+               {"opens", find_view(pictures)},
                {"configurations", {{{"label", pictures.image}}}},
                {"truths", {write_side(dir, "second", pictures.truth_rgb, truth_planes)}},
                {"cells", {std::move(cell)}}};

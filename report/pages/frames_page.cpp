@@ -77,15 +77,32 @@ document::Table make_equivalence_table(const std::vector<analysis::CellGroup>& g
   return table;
 }
 
-/// A sentence for the fewest taps.
+/// What frames gain at most: of the filter whose noise falls by most, or whose error where none has noise.
+std::string describe_gain(const std::vector<analysis::CellGroup>& groups, std::size_t frames) {
+  std::string text;
+  double most = -1.0;
+  for (const analysis::CellGroup& group : groups)
+    for (const CellRecord& cell : group.cells) {
+      if (!cell.accumulation) continue;
+      const ResolveRecord& mean = find_resolve(*cell.accumulation, "mean", false);
+      const bool is_noisy = mean.noise && mean.noise->front() > 0.0;
+      const std::vector<double>& values = is_noisy ? *mean.noise : mean.rmse;
+      const double gain = (is_noisy ? 1e3 : 1.0) * (values.front() - values.back());
+      if (gain <= most) continue;
+      most = gain;
+      text = fmt::format("Over {} frames, {} gains most: its {} on {} goes from {} to {}.", frames,
+                         group.names.name(cell), is_noisy ? "noise" : "RMSE", cell.scene,
+                         records::format_number(values.front()), records::format_number(values.back()));
+    }
+  return text;
+}
+
+/// A sentence for the fewest taps; without fewer than 16 what frames gain.
 std::string summarize(const std::vector<analysis::CellGroup>& groups, std::size_t frames) {
   std::vector<TapEquivalence> all;
   for (const analysis::CellGroup& group : groups) std::ranges::copy(list_equivalences(group), std::back_inserter(all));
-  if (all.empty())
-    return fmt::format(
-        "No filter of this run has 16 taps beside other numbers of them: nothing to compare frames "
-        "with. Errors and noise after each of the {} frames stand below.",
-        frames);
+  std::erase_if(all, [](const TapEquivalence& each) { return each.taps == kReferenceTaps; });
+  if (all.empty()) return describe_gain(groups, frames);
   const int fewest = std::ranges::min_element(all, {}, &TapEquivalence::taps)->taps;
   std::vector<int> counts;
   std::set<std::string> late;
@@ -100,7 +117,7 @@ std::string summarize(const std::vector<analysis::CellGroup>& groups, std::size_
   std::string text = fmt::format("{} taps have the noise of 16 taps in one frame ", fewest);
   if (counts.empty()) return text + fmt::format("after more than {} frames.", frames);
   text += counts.front() == counts.back()
-              ? fmt::format("after {} frames", counts.front())
+              ? fmt::format("after {} frame{}", counts.front(), counts.front() == 1 ? "" : "s")
               : fmt::format("after {} to {} frames, by scene and rotation", counts.front(), counts.back());
   if (!late.empty()) text += fmt::format(", and after more than {}: {}", frames, fmt::join(late, "; "));
   return text + ".";
@@ -151,19 +168,24 @@ document::Chart make_chart(const analysis::CellGroup& group, const std::string& 
   return chart;
 }
 
+/// Of noise and error, the one that all groups have comes first.
 document::ChartChoice make_charts(const std::vector<analysis::CellGroup>& groups) {
-  document::ChartChoice choice{"frames", {{"of", {}}, {"shown", {"noise", "error"}}}, {}};
+  using Values = const std::vector<double>* (*)(const AccumulationRecord&);
+  std::vector<std::pair<const char*, Values>> kinds = {
+      {"noise",
+       [](const AccumulationRecord& record) {
+         const auto& noise = find_resolve(record, "mean", false).noise;
+         return noise ? &*noise : nullptr;
+       }},
+      {"RMSE", [](const AccumulationRecord& record) { return &find_resolve(record, "mean", false).rmse; }}};
+  if (std::ranges::any_of(groups,
+                          [&](const auto& group) { return make_chart(group, "", kinds[0].second).series.empty(); }))
+    std::ranges::reverse(kinds);
+  document::ChartChoice choice{"frames", {{"of", {}}, {"shown", {kinds[0].first, kinds[1].first}}}, {}};
   for (const analysis::CellGroup& group : groups) {
     choice.selectors[0].options.push_back(
         fmt::format("{}, {}", group.scene, records::describe_settings(group.cells.front())));
-    choice.charts.push_back(make_chart(
-        group, "noise",
-        [](const AccumulationRecord& record) {
-          const auto& noise = find_resolve(record, "mean", false).noise;
-          return noise ? &*noise : nullptr;
-        }));
-    choice.charts.push_back(make_chart(
-        group, "RMSE", [](const AccumulationRecord& record) { return &find_resolve(record, "mean", false).rmse; }));
+    for (const auto& [name, values] : kinds) choice.charts.push_back(make_chart(group, name, values));
   }
   return choice;
 }

@@ -21,7 +21,7 @@
 #include "report/document/chart.h"
 #include "report/files/file_name.h"
 #include "report/pages/bias_page.h"
-#include "report/pages/sections.h"
+#include "report/pages/tables.h"
 #include "report/pages/trade_section.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
@@ -97,16 +97,13 @@ Scope make_scope(std::vector<std::string> scenes, const std::vector<analysis::Co
   return scope;
 }
 
-/// Where a configuration is most wrong, why, and the worst fault that is seen; empty where nothing is known.
+/// Where a configuration is most wrong, with the worst fault that is seen, or else the cause; empty where nothing is
+/// known.
 std::string describe_wrong(const analysis::Configuration& configuration, const std::vector<analysis::Place>& places) {
   constexpr double kSeenRate = 0.01;
   const auto rmse_of = [](const records::CellRecord* cell) { return cell->error.rmse.value_or(0.0); };
   const records::CellRecord& worst = **std::ranges::max_element(configuration.cells, {}, rmse_of);
   if (rmse_of(&worst) <= 0.0) return {};
-  const auto shares = analysis::is_lost_in_truth(worst) ? std::nullopt : records::list_shares(worst);
-  const auto part = shares ? analysis::find_dominating_part(*shares) : std::nullopt;
-  std::string text = "most wrong on " + analysis::describe_place(analysis::place_of(worst), places);
-  if (part) text += fmt::format(": {}", records::list_error_parts()[*part].meaning);
   const records::CellRecord* where = nullptr;
   const metrics::Metric* fault = nullptr;
   double most = kSeenRate;
@@ -119,12 +116,19 @@ std::string describe_wrong(const analysis::Configuration& configuration, const s
       fault = &metric;
     }
   }
-  if (!fault) return text;
-  std::string name(fault->name());
-  std::ranges::replace(name, '_', ' ');
-  text += fmt::format("; {} {}", name, records::format_rate(most));
-  if (where != &worst) text += " on " + analysis::describe_place(analysis::place_of(*where), places);
-  return text;
+  const auto name_place = [&](const records::CellRecord& cell) {
+    return analysis::describe_place(analysis::place_of(cell), places);
+  };
+  const std::string at = places.size() > 1 ? "worst on " + name_place(worst) : "";
+  if (fault) {
+    std::string seen = fmt::format("{} {}", fault->name(), records::format_rate(most));
+    std::ranges::replace(seen, '_', ' ');
+    if (at.empty()) return seen;
+    return where == &worst ? at + ": " + seen : fmt::format("{}; {} on {}", at, seen, name_place(*where));
+  }
+  const auto shares = analysis::is_lost_in_truth(worst) ? std::nullopt : records::list_shares(worst);
+  const auto part = shares ? analysis::find_dominating_part(*shares) : std::nullopt;
+  return !part ? at : at + (at.empty() ? "" : ": ") + records::list_error_parts()[*part].meaning;
 }
 
 /// What a scope has of each configuration; null of those without a cell there.

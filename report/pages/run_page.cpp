@@ -16,7 +16,6 @@
 #include "report/pages/answer.h"
 #include "report/pages/grid_sheets.h"
 #include "report/pages/run_data.h"
-#include "report/pages/sections.h"
 #include "report/pages/tables.h"
 #include "report/pages/trade_section.h"
 #include "report/records/cell_key.h"
@@ -114,9 +113,8 @@ std::optional<document::Bars> make_bars(const analysis::CellGroup& group) {
   if (drawn.empty()) return std::nullopt;
   const images::BarScale scale = images::choose_bar_scale(drawn);
   document::Bars bars;
-  bars.title = fmt::format(
-      "RMSE of the first phase and its parts, to {}. The tick is the RMSE; parts left of the grey line offset others.",
-      records::format_number(scale.length));
+  bars.title = fmt::format("Parts of the RMSE, to {}; those left of the line offset others.",
+                           records::format_number(scale.length));
   for (const records::ErrorPart& part : records::list_error_parts())
     bars.legend.push_back({css_color(part.color), part.name});
   bars.low = -scale.below;
@@ -162,7 +160,7 @@ void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGrou
     blocks.emplace_back(document::Links{"The float images of all filters, first phase:", {{*exr, *exr}}});
 }
 
-/// What there is of each scene and map, folded away; of a large run its pictures alone.
+/// What there is of each scene and map, folded away, and all of them again; of a large run their pictures alone.
 void add_groups(std::vector<document::Block>& blocks, const records::RunRecord& run,
                 const std::vector<records::CellRecord>& cells) {
   const bool is_large = cells.size() > kMostCellsInDetail;
@@ -171,12 +169,14 @@ void add_groups(std::vector<document::Block>& blocks, const records::RunRecord& 
         fmt::format("The run has {} cells: of more than {}, tables of each scene are left out. timings.csv and "
                     "accuracy.csv have all numbers.",
                     cells.size(), kMostCellsInDetail)});
+  document::Details scenes{"Tables and images of each scene", {}};
   for (const analysis::CellGroup& group : analysis::group_cells(cells)) {
     document::Details details{head_group(run, cells, group.cells.front()), {}};
     if (!is_large) add_numbers(details.blocks, run, group);
     add_pictures(details.blocks, group);
-    if (!details.blocks.empty()) blocks.emplace_back(std::move(details));
+    if (!details.blocks.empty()) scenes.blocks.emplace_back(std::move(details));
   }
+  if (!scenes.blocks.empty()) blocks.emplace_back(std::move(scenes));
 }
 
 double find_worst_rmse(const analysis::CellGroup& group) {
@@ -193,6 +193,7 @@ std::optional<document::Section> make_causes_section(const records::RunRecord& r
   std::vector<analysis::CellGroup> groups = analysis::group_cells(cells);
   std::ranges::stable_sort(groups, std::greater(), find_worst_rmse);
   document::Section section{"causes", "Where the error comes from", {}};
+  document::Details others{"Other scenes", {}};
   for (const analysis::CellGroup& group : groups) {
     auto bars = make_bars(group);
     if (!bars) continue;
@@ -201,8 +202,10 @@ std::optional<document::Section> make_causes_section(const records::RunRecord& r
       section.blocks = {document::Heading{head}, std::move(*bars)};
       continue;
     }
-    section.blocks.emplace_back(document::Details{head, {std::move(*bars)}});
+    others.blocks.emplace_back(document::Heading{head});
+    others.blocks.emplace_back(std::move(*bars));
   }
+  if (!others.blocks.empty()) section.blocks.emplace_back(std::move(others));
   return section.blocks.empty() ? std::nullopt : std::optional(std::move(section));
 }
 
@@ -293,17 +296,15 @@ std::optional<document::Section> make_gpu_section(const std::vector<records::Cel
                       records::kGpuFrameWidth, records::kGpuFrameHeight),
           std::move(table)});
   }
-  if (!sentences.items.empty()) section.blocks.emplace_back(std::move(sentences));
+  if (!sentences.items.empty()) tables.blocks.emplace(tables.blocks.begin(), std::move(sentences));
   tables.blocks.emplace(tables.blocks.begin(), document::Paragraph{kGpuNote, true});
   if (!tables.blocks.empty()) section.blocks.emplace_back(std::move(tables));
   return section;
 }
 
 document::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                        bool is_whole) {
+                                        bool has_fronts, bool is_whole) {
   document::Section section{"evidence", "Behind the numbers", {}};
-  if (const std::string power = analysis::describe_power(cells); !power.empty())
-    section.blocks.emplace_back(document::Paragraph{power, true});
   add_groups(section.blocks, run, cells);
   if (const auto absences = analysis::count_absences(cells); !absences.empty()) {
     document::Sentences reasons;
@@ -311,10 +312,15 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
       reasons.items.push_back(fmt::format("{} ({} of {} cells)", reason, count, cells.size()));
     section.blocks.emplace_back(document::Details{"What is not there, and why", {reasons}});
   }
-  section.blocks.emplace_back(explain_columns("timings.csv", records::list_csv_columns(records::CsvTable::kTimings)));
-  section.blocks.emplace_back(explain_columns("accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy)));
-  section.blocks.emplace_back(
-      document::Details{"Machine, OpenGL, command and seed", {document::Facts{analysis::list_run_facts(run)}}});
+  document::Details columns{"Columns of the CSV files", {}};
+  explain_columns(columns, "timings.csv", records::list_csv_columns(records::CsvTable::kTimings));
+  explain_columns(columns, "accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy));
+  if (has_fronts) explain_columns(columns, "fronts.csv", list_front_columns());
+  section.blocks.emplace_back(std::move(columns));
+  document::Details machine{"Precision, machine and command", {document::Facts{analysis::list_run_facts(run)}}};
+  if (std::string power = analysis::describe_power(cells); !power.empty())
+    machine.blocks.emplace_back(document::Paragraph{std::move(power)});
+  section.blocks.emplace_back(std::move(machine));
   if (!is_whole) return section;
   section.blocks.emplace_back(document::Links{"Data:",
                                               {{"summary.md", "summary.md"},
@@ -358,7 +364,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
   if (trade) add(make_trade_section(run, own, *trade));
   if (auto cascades = make_cascade_section(own)) add(std::move(*cascades));
   if (auto gpus = make_gpu_section(own)) add(std::move(*gpus));
-  add(make_evidence_section(run, cells, so_far.empty()));
+  add(make_evidence_section(run, cells, trade && trade->has_fronts, so_far.empty()));
   return page;
 }
 

@@ -113,22 +113,40 @@ std::size_t count_filters(const StressRecord& record) {
   return filters.size();
 }
 
-/// Counts the cells that fail, axis by axis.
-std::string describe_failures(const document::Table& table, const StressRecord& record) {
-  std::ptrdiff_t failed = 0, all = 0;
+/// The case that breaks first on an axis; null where none does.
+const StressCase* find_first_broken(const StressAxis& axis) {
+  const StressCase* first = nullptr;
+  for (const StressCase& item : axis.cases)
+    if (item.level != "model" && item.broken && (!first || measure_reach(axis, item) < measure_reach(axis, *first)))
+      first = &item;
+  return first;
+}
+
+/// Where that is, and where theory puts it; empty where nothing breaks.
+std::string describe_break(const StressAxis& axis) {
+  const StressCase* item = find_first_broken(axis);
+  if (!item) return {};
+  std::string text = fmt::format("{} breaks at {} = {:.4g}", label_of(*item), axis.quantity, item->broken->value);
+  const auto limit = std::ranges::find_if(item->limits, [](const StressLimit& each) {
+    return each.predicts == StressVerdict::kBroken && each.onset.has_value();
+  });
+  return text + (limit == item->limits.end() ? "." : fmt::format("; theory {:.4g}.", *limit->onset));
+}
+
+/// The case that breaks first on any axis, and what else breaks.
+std::string describe_breaks(const StressRecord& record) {
   std::vector<std::string> where;
-  for (std::size_t row = 0; row < table.grades.size(); ++row) {
-    const std::ptrdiff_t here = std::ranges::count(table.grades[row], document::Grade::kBad),
-                         rated = std::ssize(table.grades[row]) -
-                                 std::ranges::count(table.grades[row], document::Grade::kNone);
-    const std::string& axis = table.table.rows[row].front();
-    if (here > 0) where.push_back(fmt::format("{} ({} of {})", axis.substr(0, axis.find(':')), here, rated));
-    failed += here;
-    all += rated;
+  const StressAxis* first = nullptr;
+  const auto reach_of = [](const StressAxis& axis) { return measure_reach(axis, *find_first_broken(axis)); };
+  for (const StressAxis& axis : record.axes) {
+    if (!find_first_broken(axis)) continue;
+    where.push_back(axis.id);
+    if (!first || reach_of(axis) < reach_of(*first)) first = &axis;
   }
-  return fmt::format(
-      "{} of {} cells fail{}{}; limits that are not where theory puts them, and that nothing explains: {}.", failed,
-      all, where.empty() ? "" : ": ", fmt::join(where, ", "), records::count_disagreements(record));
+  std::string text = first ? describe_break(*first) : "No filter breaks.";
+  if (where.size() > 1) text += fmt::format(" Filters break on {} of {} axes.", where.size(), record.axes.size());
+  const int unexplained = records::count_disagreements(record);
+  return text + (unexplained > 0 ? fmt::format(" Limits that disagree with theory: {}.", unexplained) : "");
 }
 
 document::Section make_stress_answer(const StressRecord& record) {
@@ -142,7 +160,7 @@ document::Section make_stress_answer(const StressRecord& record) {
                   found->first, found->second.describe(), found->second.grade());
     }
   }
-  std::string answer = describe_failures(table, record);
+  std::string answer = describe_breaks(record);
   return {
       "answer", "", {document::Paragraph{std::move(answer)}, std::move(table), document::Paragraph{kStressNote, true}}};
 }
@@ -216,6 +234,8 @@ document::Section make_axis_section(const StressAxis& axis, std::size_t filters)
   document::Section section{axis.id, fmt::format("{}: {}", axis.id, axis.title), {}};
   if (std::string reach = summarize_axis(axis, filters); !reach.empty())
     section.blocks.emplace_back(document::Paragraph{std::move(reach)});
+  if (std::string first = describe_break(axis); !first.empty())
+    section.blocks.emplace_back(document::Paragraph{std::move(first)});
   if (std::optional<document::Chart> chart = make_stress_chart(axis)) section.blocks.emplace_back(std::move(*chart));
   const std::string about =
       fmt::format("Over the {}, {:g} .. {:g}. Measured: {}; degraded where it is over {:g}. Broken: {}.",

@@ -4,13 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "reference/metrics/metric_table.h"
-#include "report/analysis/cells.h"
-#include "report/records/csv_tables.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -125,10 +124,12 @@ records::TextTable make_accuracy_table(const analysis::CellGroup& group) {
   return table;
 }
 
-document::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns) {
+void explain_columns(document::Details& details, const std::string& file,
+                     const std::vector<records::CsvColumn>& columns) {
   document::Facts facts;
   for (const records::CsvColumn& column : columns) facts.items.push_back({column.name, column.meaning});
-  return {"Columns of " + file, {facts}};
+  details.blocks.emplace_back(document::Heading{file});
+  details.blocks.emplace_back(std::move(facts));
 }
 
 namespace {
@@ -246,6 +247,221 @@ void write_fronts_csv(const std::vector<records::CellRecord>& cells, const std::
         for (std::size_t cost = 0; cost < scope.costs.size(); ++cost)
           if (scope.costs[cost].is(analysis::CostKind::kTime)) write(make_rows(scope, error, cost, times.renderer));
   }
+}
+
+namespace {
+
+using Cascades = std::vector<records::CascadeRecord>;
+
+std::string head_cascade(const records::CascadeRecord& cascade) {
+  return fmt::format("to {} m", records::format_number(cascade.end_m));
+}
+
+std::string say_share(const records::CascadeRecord& cascade) {
+  return cascade.share > 0.0 && cascade.share < 0.005 ? "under 1 %" : records::format_share(cascade.share);
+}
+
+/// What all filters share: one row for each cascade.
+document::Table make_facts(const Cascades& cascades) {
+  records::TextTable table;
+  table.header = {"cascade", "texels per metre", "texels per pixel", "receivers"};
+  for (const records::CascadeRecord& each : cascades)
+    table.rows.push_back({head_cascade(each), records::format_number(each.texels_per_m),
+                          records::format_number(each.texels_per_pixel), say_share(each)});
+  return {"Where each cascade ends along the camera's axis, and what it has to draw", std::move(table)};
+}
+
+/// One row for each filter, one column for each cascade, and perhaps one more.
+template <class Say>
+document::Table make_table(std::string caption, const analysis::CellGroup& group, const Say& say, bool has_seam) {
+  document::Table made{std::move(caption), {}};
+  made.table.header = {"filter"};
+  for (const records::CascadeRecord& each : *group.cells.front().cascades)
+    made.table.header.push_back(head_cascade(each));
+  if (has_seam) made.table.header.emplace_back("seam");
+  for (const records::CellRecord& cell : group.cells) {
+    auto& row = made.table.rows.emplace_back(std::vector<std::string>{group.names.name(cell)});
+    for (const records::CascadeRecord& each : *cell.cascades) row.push_back(say(each));
+    if (has_seam) row.push_back(records::format_number(cell.artefact.seam));
+  }
+  return made;
+}
+
+std::string say_faults(const records::CascadeRecord& cascade) {
+  std::vector<std::string> rates;
+  for (const auto& rate : {cascade.acne, cascade.leak, cascade.contact_gap})
+    rates.push_back(rate ? records::format_share(*rate) : records::kNothing);
+  return fmt::format("{}", fmt::join(rates, " / "));
+}
+
+document::Chart make_chart(const analysis::CellGroup& group, std::size_t number) {
+  document::Chart chart{fmt::format("cascades.{}", number),
+                        group.scene + ": RMSE of each cascade",
+                        "where the cascade ends, m from the camera",
+                        "RMSE over its receivers",
+                        {},
+                        {},
+                        {},
+                        {}};
+  std::vector<double> ends, errors;
+  for (const records::CellRecord& cell : group.cells) {
+    const document::ChartStyle style = document::style_of(chart.series.size());
+    document::ChartSeries& line = chart.series.emplace_back();
+    line.title = group.names.name(cell);
+    line.color = style.color;
+    line.mark = style.mark;
+    line.line = document::LineStyle::kSolid;
+    for (const records::CascadeRecord& each : *cell.cascades) {
+      if (!each.rmse) continue;
+      ends.push_back(each.end_m);
+      errors.push_back(*each.rmse);
+      document::ChartPoint& point = line.points.emplace_back(document::exact_point(each.end_m, *each.rmse));
+      point.details = {line.title, head_cascade(each), fmt::format("RMSE {}", records::format_number(*each.rmse)),
+                       say_share(each) + " of the receivers"};
+      point.opens = cell.key;
+    }
+  }
+  chart.x = document::choose_axis(ends, ends, document::TickKind::kNumber);
+  chart.y = document::choose_axis(errors, errors, document::TickKind::kNumber);
+  return chart;
+}
+
+/// The ratios of each cascade's length to that of the one before, from the camera on.
+std::string describe_ratios(const Cascades& cascades) {
+  std::vector<std::string> ratios;
+  for (std::size_t i = 1; i < cascades.size(); ++i) {
+    const double before = i == 1 ? 0.0 : cascades[i - 2].end_m;
+    ratios.push_back(
+        records::format_number((cascades[i].end_m - cascades[i - 1].end_m) / (cascades[i - 1].end_m - before)));
+  }
+  return fmt::format("{}", fmt::join(ratios, ", "));
+}
+
+/// The splits as engines ask for them: fractions of the farthest distance, or metres.
+document::Sentences list_engine_settings(const Cascades& cascades) {
+  const double far_m = cascades.back().end_m;
+  std::vector<std::string> metres, shares;
+  for (const records::CascadeRecord& each : cascades) {
+    metres.push_back(records::format_number(each.end_m));
+    if (&each != &cascades.back()) shares.push_back(fmt::format("{:.4f}", each.end_m / far_m));
+  }
+  const std::string far = records::format_number(far_m), list = fmt::format("{}", fmt::join(shares, ", "));
+  return {
+      "The same splits in engines, measured from the camera:",
+      {fmt::format("Unity (URP, HDRP): max distance {}, {} cascades, splits at {} of it", far, cascades.size(), list),
+       fmt::format("Godot: directional_shadow_max_distance {}, splits {}", far, list),
+       fmt::format("three.js CSM: maxFar {}, mode 'custom' with the breaks {}, 1", far, list),
+       fmt::format("Bevy: CascadeShadowConfig bounds [{}]", fmt::join(metres, ", ")),
+       fmt::format("Unreal: dynamic shadow distance {} ({} cm), {} cascades; it has no splits, but a distribution "
+                   "exponent: the ratio of one cascade's length to the one before, here {}",
+                   far, records::format_number(100.0 * far_m), cascades.size(), describe_ratios(cascades))}};
+}
+
+}  // namespace
+
+std::optional<document::Section> make_cascade_section(const std::vector<records::CellRecord>& cells) {
+  std::vector<records::CellRecord> own;
+  std::ranges::copy_if(cells, std::back_inserter(own), [](const auto& cell) { return cell.cascades.has_value(); });
+  if (own.empty()) return std::nullopt;
+  document::Section section{"cascades", "By cascade", {}};
+  std::size_t number = 0;
+  for (const analysis::CellGroup& group : analysis::group_cells(own)) {
+    const Cascades& cascades = *group.cells.front().cascades;
+    std::vector<document::Block> blocks = {
+        make_facts(cascades),
+        make_table(
+            "RMSE over the receivers of each cascade, and the seam between them", group,
+            [](const records::CascadeRecord& each) { return records::format_number(each.rmse); }, true),
+        make_table("Acne / leak / contact gap in each cascade", group, say_faults, false), make_chart(group, number),
+        list_engine_settings(cascades)};
+    const std::string head =
+        fmt::format("{}, map {}, {}", group.scene, group.cells.front().map_size, group.cells.front().fit);
+    if (number++ == 0) {
+      section.blocks.emplace_back(document::Heading{head});
+      std::ranges::move(blocks, std::back_inserter(section.blocks));
+    } else {
+      section.blocks.emplace_back(document::Details{head, std::move(blocks)});
+    }
+  }
+  return section;
+}
+
+namespace {
+
+constexpr const char* kNote =
+    "Each row is one picture, so that its errors stand beside those of our filters in the first phase of the map's "
+    "grid. Without silhouettes: receivers none of whose neighbours lies on another surface. Cost is what its user "
+    "says. Nothing is advised of these rows, for what they cost here is not known.";
+
+std::string format_shift(const records::ExternalRecord& external) {
+  if (!external.shift_x) return "not known";
+  return fmt::format("{:.3f} by {}{}", std::hypot(*external.shift_x, *external.shift_y), external.aligned_by,
+                     external.unaligned ? ": NOT our view" : "");
+}
+
+/// The run's filters about as good: the best that is worse, and the worst that is better.
+std::string describe_peers(const records::CellRecord& cell) {
+  if (!cell.error.rmse) return {};
+  const std::pair<const std::string, double>*better = nullptr, *worse = nullptr;
+  for (const auto& peer : cell.external->peers) {
+    if (peer.second <= *cell.error.rmse && (!better || peer.second > better->second)) better = &peer;
+    if (peer.second > *cell.error.rmse && (!worse || peer.second < worse->second)) worse = &peer;
+  }
+  std::vector<std::string> parts;
+  if (better) parts.push_back(fmt::format("{} {}", better->first, records::format_number(better->second)));
+  if (worse) parts.push_back(fmt::format("{} {}", worse->first, records::format_number(worse->second)));
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+}  // namespace
+
+std::string describe_engine(const records::ExternalRecord& external) {
+  std::vector<std::string> parts;
+  const std::string engine = fmt::format("{} {}", external.engine.value_or(""), external.version.value_or(""));
+  if (engine != " ") parts.push_back(engine);
+  for (const auto& [name, text] : {std::pair("map", &external.map), std::pair("bias", &external.bias),
+                                   std::pair("fit", &external.fit), std::pair("driver", &external.driver)})
+    if (*text) parts.push_back(fmt::format("{} {}", name, **text));
+  return fmt::format("{}", fmt::join(parts, " · "));
+}
+
+std::optional<document::Section> make_external_section(const std::vector<records::CellRecord>& cells) {
+  records::TextTable table{{"row", "scene", "RMSE", "without silhouettes", "our filters beside it",
+                            "nearest, and how far", "acne", "leak", "shift, pixels"},
+                           {}};
+  records::TextTable origins{{"row", "scene", "drawn by", "undefined receivers", "cost, as its user says"}, {}};
+  std::vector<const records::CellRecord*> rows;
+  for (const records::CellRecord& cell : cells)
+    if (cell.external) rows.push_back(&cell);
+  const std::vector<analysis::Place> places = analysis::list_places(rows);
+  const auto varies = [&](auto member) {
+    return std::ranges::any_of(rows, [&](const auto* row) { return row->*member != rows.front()->*member; });
+  };
+  for (const records::CellRecord* row : rows) {
+    const records::CellRecord& cell = *row;
+    const records::ExternalRecord& external = *cell.external;
+    std::string place = analysis::describe_place(analysis::place_of(cell), places);
+    if (varies(&records::CellRecord::map_size)) place += fmt::format(", beside map {}", cell.map_size);
+    if (varies(&records::CellRecord::width)) place += fmt::format(", {} x {}", cell.width, cell.height);
+    table.rows.push_back({cell.filter, place, records::format_number(cell.error.rmse),
+                          records::format_number(external.inside_rmse), describe_peers(cell),
+                          external.nearest
+                              ? fmt::format("{}, {}", *external.nearest, records::format_number(external.nearest_rmse))
+                              : "–",
+                          records::format_number(cell.artefact.acne), records::format_number(cell.artefact.leak),
+                          format_shift(external)});
+    origins.rows.push_back({cell.filter, place, describe_engine(external), fmt::format("{}", external.undefined),
+                            external.ms ? fmt::format("{} ms{}", records::format_number(external.ms),
+                                                      external.timed ? ", " + *external.timed : "")
+                                        : "–"});
+  }
+  if (table.rows.empty()) return std::nullopt;
+  return document::Section{
+      "external",
+      "Other renderers",
+      {document::Table{"What other renderers drew, against the same truth", std::move(table)},
+       document::Details{"What drew them", {document::Table{"As their users say", std::move(origins)}}},
+       document::Paragraph{kNote, true}}};
 }
 
 }  // namespace shadowbench::pages

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +22,8 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
 records::TextTable make_accuracy_table(const analysis::CellGroup& group);
 
 /// What the columns of a CSV file mean, for readers who unfold it.
-document::Details explain_columns(const std::string& file, const std::vector<records::CsvColumn>& columns);
+void explain_columns(document::Details& details, const std::string& file,
+                     const std::vector<records::CsvColumn>& columns);
 
 /// Lists the columns of fronts.csv with their meanings.
 std::vector<records::CsvColumn> list_front_columns();
@@ -32,5 +34,15 @@ std::vector<records::CsvColumn> list_front_columns();
 void write_fronts_csv(const std::vector<records::CellRecord>& cells, const std::vector<analysis::TradeScope>& scopes,
                       const std::vector<records::GpuTimes>& machines,
                       const std::function<void(std::string_view)>& write);
+
+/// Errors and faults by cascade, and where cascades end in the terms of engines: a table and a chart for each scene and
+/// fit. Nothing where no cell has cascades.
+std::optional<document::Section> make_cascade_section(const std::vector<records::CellRecord>& cells);
+
+/// What other renderers drew, held against the run's filters; nothing where the run has no such rows.
+std::optional<document::Section> make_external_section(const std::vector<records::CellRecord>& cells);
+
+/// What drew a row: "three.js r187 · map 1024 · bias -0.005"; empty where its user said nothing.
+std::string describe_engine(const records::ExternalRecord& external);
 
 }  // namespace shadowbench::pages

@@ -18,6 +18,9 @@ namespace {
 using Configuration = analysis::TradeConfiguration;
 using document::ChartSeries;
 
+constexpr const char* kFrontInk = "#a9aeb6";
+constexpr document::ChartStyle kMarkStyle{document::kInk, document::Mark::kCircle};
+
 /// An axis over all configurations of a scope that have the measure.
 document::ChartAxis choose_measure_axis(const analysis::TradeScope& scope, const auto& values_of, bool bytes) {
   std::vector<double> values, ends;
@@ -67,7 +70,7 @@ class FrontChart {
              const std::vector<records::CellRecord>& cells, const records::GlRecord& gl)
       : scope_(scope), front_(front), cells_(cells), gl_(gl) {}
 
-  document::Chart make(const std::vector<std::string>& filters) const {
+  document::Chart make() const {
     const auto cost_of = [this](const Configuration& each) -> const auto& { return each.costs[front_.cost]; };
     const auto error_of = [this](const Configuration& each) -> const auto& { return each.errors[front_.error]; };
     document::Chart chart{fmt::format("{}.{}.{}", scope_.id, error_.id, cost_.id),
@@ -79,7 +82,7 @@ class FrontChart {
                           {},
                           {}};
     add_fronts(chart);
-    for (const std::string& filter : filters) add_filter(chart.series, filter, style_among(filters, filter));
+    add_marks(chart);
     return chart;
   }
 
@@ -100,17 +103,14 @@ class FrontChart {
   }
 
   ChartSeries make_front(std::span<const std::size_t> members) const {
-    const Configuration& configuration = configuration_of(members.front());
-    const std::string name(analysis::name_class(configuration.width_class));
-    ChartSeries line = start_line("front, " + name, document::kInk, document::LineStyle::kSteps);
-    for (const std::size_t member : members) line.points.push_back(make_corner(member, configuration));
+    ChartSeries line = start_line({}, kFrontInk, document::LineStyle::kSteps);
+    for (const std::size_t member : members) line.points.push_back(make_corner(member));
     return line;
   }
 
-  /// A point of a line, of a configuration's class of width.
-  document::ChartPoint make_corner(std::size_t point, const Configuration& configuration) const {
+  document::ChartPoint make_corner(std::size_t point) const {
     document::ChartPoint made{front_.points[point].cost, front_.points[point].error};
-    made.group = analysis::name_class(configuration.width_class);
+    made.group = analysis::name_class(configuration_of(point).width_class);
     return made;
   }
 
@@ -127,7 +127,7 @@ class FrontChart {
   document::ChartPoint make_point(std::size_t point) const {
     const Configuration& configuration = configuration_of(point);
     const analysis::FrontPoint& values = front_.points[point];
-    document::ChartPoint made = make_corner(point, configuration);
+    document::ChartPoint made = make_corner(point);
     made.label = configuration.label;
     made.details = {configuration.label,
                     configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
@@ -142,41 +142,22 @@ class FrontChart {
     return made;
   }
 
-  /// A filter's cells: on a front; tied, with dotted lines to what they are tied with, or compared with nothing;
-  /// beaten.
-  void add_filter(std::vector<ChartSeries>& series, const std::string& filter,
-                  const document::ChartStyle& style) const {
-    ChartSeries members = start_series(filter, style), tied = start_series({}, style), beaten = start_series({}, style);
-    ChartSeries ties = start_line({}, style.color, document::LineStyle::kTies);
+  /// Configurations on a front; tied, or compared with nothing; beaten.
+  void add_marks(document::Chart& chart) const {
+    ChartSeries members = start_series({}, kMarkStyle), tied = members, beaten = members;
     tied.filled = beaten.filled = false;
     beaten.faint = true;
     for (std::size_t i = 0; i < front_.points.size(); ++i) {
-      const auto [standing, by] = front_.placements[i];
-      if (configuration_of(i).filter != filter || (is_large_ && standing == analysis::Standing::kDominated)) continue;
-      ChartSeries& own = standing == analysis::Standing::kFront       ? members
-                         : standing == analysis::Standing::kDominated ? beaten
-                                                                      : tied;
-      own.points.push_back(make_point(i));
-      if (standing != analysis::Standing::kTied) continue;
-      for (const std::size_t end : {i, by}) ties.points.push_back(make_corner(end, configuration_of(i)));
+      const analysis::Standing standing = front_.placements[i].standing;
+      if (standing == analysis::Standing::kFront)
+        members.points.push_back(make_point(i));
+      else if (standing != analysis::Standing::kDominated)
+        tied.points.push_back(make_point(i));
+      else if (cells_.size() <= kMostCellsInDetail)
+        beaten.points.push_back(make_point(i));
     }
-    if (members.points.empty() && tied.points.empty() && beaten.points.empty()) return;
-    series.push_back(std::move(members));
-    for (ChartSeries* more : {&tied, &beaten, &ties})
-      if (!more->points.empty()) series.push_back(std::move(*more));
-    for (const analysis::WidthSeries& each : widths_)
-      if (each.filter == filter && each.configurations.size() > 1) series.push_back(make_curve(each, style));
-  }
-
-  /// The line through a filter's cells from narrow to wide: its curve over the width.
-  ChartSeries make_curve(const analysis::WidthSeries& each, const document::ChartStyle& style) const {
-    ChartSeries curve = start_line({}, style.color, document::LineStyle::kSolid);
-    curve.faint = true;
-    for (const std::size_t i : each.configurations) {
-      const auto point = std::ranges::find(front_.configurations, i) - front_.configurations.begin();
-      curve.points.push_back(make_corner(static_cast<std::size_t>(point), scope_.configurations[i]));
-    }
-    return curve;
+    for (ChartSeries* each : {&beaten, &tied, &members})
+      if (!each->points.empty()) chart.series.push_back(std::move(*each));
   }
 
   const analysis::TradeScope& scope_;
@@ -185,10 +166,6 @@ class FrontChart {
   const records::GlRecord& gl_;
   const analysis::Quantity& error_ = analysis::list_error_measures()[front_.error];
   const analysis::Quantity& cost_ = scope_.costs[front_.cost];
-  const bool is_large_ = cells_.size() > kMostCellsInDetail;
-  const std::vector<analysis::WidthSeries> widths_ =
-      is_large_ ? std::vector<analysis::WidthSeries>()
-                : analysis::list_width_series(scope_.configurations, front_.configurations);
 };
 
 /// A logarithmic axis for what series have on the y axis.
@@ -282,7 +259,6 @@ document::Chart make_map_chart(const analysis::MapFamily& family, const analysis
 
 document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
                                         const std::vector<records::CellRecord>& cells, const records::GlRecord& gl) {
-  const std::vector<std::string> filters = analysis::list_filters(cells);
   document::ChartChoice choice{"front", {{"scene", {}}, {"error", {}}, {"cost", {}}}, {}};
   for (const analysis::Quantity& error : analysis::list_error_measures())
     choice.selectors[1].options.push_back(error.title);
@@ -295,7 +271,7 @@ document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>&
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
       for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) {
         const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
-        choice.charts.push_back(FrontChart(scope, front, cells, gl).make(filters));
+        choice.charts.push_back(FrontChart(scope, front, cells, gl).make());
       }
     }
   }
@@ -329,11 +305,10 @@ namespace {
 using Blocks = std::vector<document::Block>;
 
 constexpr const char* kFrontsNote =
-    "Lower left is better. Filled and joined: unbeaten in its class of width. Hollow: a tie. Faint: beaten. Click a "
-    "mark to look closer.";
+    "Lower left is better. Line: the Pareto front of a class of width. Hollow: tied. Pale: beaten. Ringed: the "
+    "answers.";
 constexpr const char* kLargeNote =
-    "The run has more than {} cells: beaten ones, and the lines from narrow to wide kernels, are left out of these "
-    "charts. fronts.csv has them.";
+    "The run has more than {} cells: beaten ones are left out of these charts. fronts.csv has them.";
 constexpr const char* kMapsNote =
     "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
     "stand still; every other fit follows a camera, and is drawn anew whenever it moves.";
@@ -371,14 +346,13 @@ void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector
       document::Details{"How to read the fronts",
                         {document::Sentences{{}, explain_fronts(trade.scopes.front().costs)},
                          document::Links{"All fronts, cell by cell:", {{"fronts.csv", "fronts.csv"}}}}});
-  blocks.emplace_back(explain_columns("fronts.csv", list_front_columns()));
 }
 
 void add_charts(Blocks& blocks, const char* heading, document::ChartChoice charts, const char* note) {
   if (charts.charts.empty()) return;
-  blocks.emplace_back(document::Heading{heading});
-  blocks.emplace_back(std::move(charts));
-  if (note) blocks.emplace_back(document::Paragraph{note, true});
+  document::Details details{heading, {std::move(charts)}};
+  if (note) details.blocks.emplace_back(document::Paragraph{note, true});
+  blocks.emplace_back(std::move(details));
 }
 
 }  // namespace

@@ -15,8 +15,7 @@ namespace shadowbench::pages {
 inline constexpr std::size_t kMostCellsInDetail = 2000;
 
 /// Draws the fronts of every scope, error and cost. Members are filled and joined; tied cells are hollow, dominated
-/// ones hollow and faint. Those, and curves over the width, are left out of a run of more than kMostCellsInDetail
-/// cells.
+/// ones hollow and faint; these are left out of a run of more than kMostCellsInDetail cells.
 document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
                                         const std::vector<records::CellRecord>& cells, const records::GlRecord& gl);
 

@@ -92,7 +92,7 @@ const std::vector<PageFile>& list_pages() {
 void write_page(const std::filesystem::path& dir, std::string_view command, document::Page page) {
   const PageFile& own = find_page(command);
   page.siblings = list_siblings(dir, own);
-  write_text_file(dir / own.html, document::write_html(page));
+  write_text_file(dir / own.html, document::write_html(page, dir));
   if (!own.details.empty()) {
     write_text_file(dir / own.details, document::write_markdown(page));
     page = summarise(std::move(page), own);
@@ -106,7 +106,7 @@ void write_early_page(const std::filesystem::path& dir, std::string_view command
   std::error_code ignored;
   for (const std::string_view name : {own.markdown, own.details})
     if (!name.empty()) std::filesystem::remove(dir / name, ignored);
-  write_text_file(dir / own.html, document::write_html(page));
+  write_text_file(dir / own.html, document::write_html(page, dir));
 }
 
 bool has_page(const std::filesystem::path& dir, std::string_view command) {
@@ -137,17 +137,16 @@ document::Links link_data(const std::vector<std::string>& files) {
 
 namespace {
 
-/// Adds the warnings of the cells to those of the run, each once, and that of their machines.
+/// Puts the warnings of the machines and of the cells, which change numbers, before those of the scenes, each once.
 void add_warnings(records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
-  for (const records::CellRecord& cell : cells) {
-    for (const std::string& warning : cell.warnings)
-      if (std::find(run.warnings.begin(), run.warnings.end(), warning) == run.warnings.end())
-        run.warnings.push_back(warning);
-  }
-  if (!analysis::mixes_machines(cells)) return;
-  const std::string warning = analysis::warn_of_mixed_machines(cells);
-  std::erase(run.warnings, warning);
-  run.warnings.insert(run.warnings.begin(), warning);
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::string& warning) {
+    if (std::ranges::count(warnings, warning) == 0) warnings.push_back(warning);
+  };
+  if (analysis::mixes_machines(cells)) add(analysis::warn_of_mixed_machines(cells));
+  for (const records::CellRecord& cell : cells) std::ranges::for_each(cell.warnings, add);
+  std::ranges::for_each(run.warnings, add);
+  run.warnings = std::move(warnings);
 }
 
 }  // namespace

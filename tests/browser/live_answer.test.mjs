@@ -116,7 +116,7 @@ test("ThePictureOfTheAnswer_IsTheStillOne_UntilItIsTurned", (context) => withBro
     context.diagnostic(`mean gap ${gap.mean} of 255, ${gap.share} of the values farther than 8`);
     assert.ok(gap.mean < 0.5 && gap.share < 0.003, JSON.stringify(gap));
     await drag(page, 60);
-    await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("mean of 256 maps"), null, { timeout: 60000 });
+    await page.waitForFunction(() => document.querySelector(".split figcaption").textContent.includes("mean of 256 maps"), null, { timeout: 60000 });
     assert.equal(await splitOf(page), "50");
     const turned = compareShots([still, await stageOf(page).screenshot()]);
     assert.ok(turned.share > 0.03, JSON.stringify(turned));
@@ -146,7 +146,7 @@ test("AGpu_DrawsThePictureOfTheAnswer_WhenAPointerComes", () => withBrowser(kMes
   const look = () => stageOf(page).screenshot(), before = await look();
   await page.locator(".answer").getByLabel("A drag turns").selectOption("light");
   await drag(page, 80);
-  await page.waitForFunction(() => document.querySelector(".answer figcaption").textContent.includes("maps"));
+  await page.waitForFunction(() => document.querySelector(".split figcaption").textContent.includes("maps"));
   assert.ok((compareShots([before, await look()])).share > 0.01);
   // Another filter is drawn with the same light.
   const shown = () => page.locator(".answer figure.split").innerText(), first = await shown();

@@ -21,7 +21,8 @@ after(() => common.close());
 export const folderOf = (run) => join(kFolder, "runs", run);
 export const pageOf = (run, file = "index.html") => join(folderOf(run), file);
 export const readResults = (run) => JSON.parse(readFileSync(pageOf(run, "results.json"), "utf8"));
-export const runProgram = (words, options = {}) => spawnSync(kProgram, words, { encoding: "utf8", ...options });
+// Where the commands that pages show are given.
+export const runProgram = (words, options = {}) => spawnSync(kProgram, words, { encoding: "utf8", cwd: join(kFolder, "runs"), ...options });
 // The words of a command of the program as a shell reads them.
 export const splitWords = (command) => execFileSync("sh", ["-c", command.replace("shadowbench", "printf '%s\\n'")], { encoding: "utf8" }).trimEnd().split("\n");
 

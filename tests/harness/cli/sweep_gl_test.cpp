@@ -81,6 +81,24 @@ TEST_F(Sweep, ReportIsThatOfItsCells_WhateverTheClockSaid) {
   EXPECT_EQ(read_cells()[0]["time_ms"]["lookup"]["median"], 12345.0);
 }
 
+TEST_F(Sweep, Grids_OfAFinishedRun_AreDrawnAgainInAnotherWidth) {
+  const std::string again =
+      "run --grids --pictures --scene cubes --filters none --size 64x36 --map-size 32 --rounds 1 --phases 1 --out out";
+  ASSERT_EQ(run(again).exit_code, 0);
+  const auto before = cell_times();
+  const std::filesystem::path grid = folder() / "out" / "cubes.grid.png";
+  const std::string usual = read_text(grid);
+  ASSERT_EQ(run(again + " --grid-width 700").exit_code, 0);
+  EXPECT_NE(read_text(grid), usual);
+  EXPECT_EQ(cell_times(), before) << "nothing is measured again";
+  EXPECT_THAT(run(again + " --grid-width=700").err, HasSubstr("nothing is left to do"));
+  ASSERT_EQ(run(again + " --grid-width 3.3in").exit_code, 0);
+  EXPECT_EQ(results()["cells"][0]["images"]["grid"], "cubes.grid.svg");
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.grid.svg"));
+  ASSERT_EQ(run(again).exit_code, 0);
+  EXPECT_EQ(read_text(grid), usual);
+}
+
 TEST_F(Sweep, Continued_MeasuresNothingTwice_UnlessSomethingChanged) {
   succeed("run e.toml --out out");
   const auto before = cell_times();

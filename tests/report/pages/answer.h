@@ -12,9 +12,20 @@ namespace shadowbench::document {
 /// What a page says first.
 inline std::string answer_of(const Page& page) { return std::get<Paragraph>(page.sections.at(0).blocks.at(0)).text; }
 
-/// The table below that: what it says of a thing under a filter, and its grade.
-inline std::pair<std::string, Grade> verdict_of(const Page& page, const std::string& thing, const std::string& filter) {
-  const Table& table = std::get<Table>(page.sections.at(0).blocks.at(1));
+/// The first table of blocks, folded ones included; null where there is none.
+inline const Table* find_table(const std::vector<Block>& blocks) {
+  for (const Block& block : blocks) {
+    if (const auto* table = std::get_if<Table>(&block)) return table;
+    const auto* details = std::get_if<Details>(&block);
+    if (const Table* inside = details ? find_table(details->blocks) : nullptr) return inside;
+  }
+  return nullptr;
+}
+
+/// What a section's first table says of a thing under a filter, and its grade.
+inline std::pair<std::string, Grade> verdict_of(const Page& page, const std::string& thing, const std::string& filter,
+                                                const std::string& id = "answer") {
+  const Table& table = *find_table(std::ranges::find(page.sections, id, &Section::id)->blocks);
   const auto column = std::ranges::find(table.table.header, filter) - table.table.header.begin();
   for (std::size_t r = 0; r < table.table.rows.size(); ++r)
     if (table.table.rows[r][0].starts_with(thing) && column < std::ssize(table.table.header))

@@ -67,7 +67,20 @@ TEST(FramesPage, SaysIt) {
                               "poisson (rotation blue-noise, taps 4)."));
   EXPECT_THAT(text, HasSubstr("more than 8"));
   const std::string alone = document::write_markdown(make_frames_page({make_accumulated(4, "none", 0.1)}, {}));
-  EXPECT_THAT(alone, HasSubstr("No filter of this run has 16 taps"));
+  EXPECT_THAT(alone, HasSubstr("Over 8 frames, poisson gains most: its noise on ball goes from 0.1 to 0.0354."));
+}
+
+TEST(FramesPage, ItsFirstChart_IsNeverEmpty) {
+  const auto find_first = [](const std::vector<records::CellRecord>& cells) {
+    const document::Page page = make_frames_page(cells, {});
+    for (const document::Block& block : page.sections.front().blocks)
+      if (const auto* choice = std::get_if<document::ChartChoice>(&block)) return choice->charts.front();
+    return document::Chart();
+  };
+  EXPECT_EQ(find_first(make_accumulated_cells()).y_name, "noise");
+  const document::Chart still = find_first({make_accumulated(4, "none", 0.0)});
+  EXPECT_EQ(still.y_name, "RMSE");
+  EXPECT_FALSE(still.series.empty());
 }
 
 /// What is measured of frames is written, and read again; a cell without it says nothing of it.

@@ -125,10 +125,8 @@ TEST(RunPage, Bars_HaveTheirNumbersAsText) {
               HasSubstr("role=\"img\" aria-label=\"vsm: 0.04 · numeric 0 %, estimator 75 %, discretisation -25 %, "
                         "model 50 %; parts below 0 offset the others\""));
   EXPECT_THAT(page, HasSubstr("in [0,1]; shares add up to 100 %: parts below 0 offset the others<"));
-  EXPECT_THAT(
-      page,
-      HasSubstr(
-          "RMSE of the first phase and its parts, to 0.06."));  // 0.01 to the left, 0.05 to the right of the zero line
+  EXPECT_THAT(page,
+              HasSubstr("Parts of the RMSE, to 0.06;"));  // 0.01 to the left, 0.05 to the right of the zero line
   EXPECT_THAT(page, HasSubstr("<rect x=\"167\" y=\"4\" width=\"500\" height=\"16\" fill=\"#f0bf30\">"));
   EXPECT_THAT(page, HasSubstr("discretisation and bias"));
   expect_balanced(page);
@@ -156,7 +154,7 @@ TEST(RunPage, BarsOfAnEstimate_AreWhatAddsUp_TheRestIsInWords) {
 
 TEST(RunPage, BarsLength_IsWrittenWithoutRoundingErrors) {
   const records::CellRecord cell = make_attributed_cell("vsm", 0.3, {0.0, 1.0, 0.0, 0.0});
-  EXPECT_THAT(make_html(make_run(), {cell}), HasSubstr("RMSE of the first phase and its parts, to 0.3."));
+  EXPECT_THAT(make_html(make_run(), {cell}), HasSubstr("Parts of the RMSE, to 0.3;"));
 }
 
 TEST(RunPage, WithoutAttribution_ThereAreNoBarsOrAReason) {

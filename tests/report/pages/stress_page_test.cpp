@@ -171,8 +171,7 @@ TEST(StressPage, BeginsWithTheAnswer_WhoHoldsFurthest_AndWhatFails) {
   record.axes[0].cases.push_back(other);
   const document::Page page = make_stress_page(record);
   EXPECT_EQ(document::answer_of(page),
-            "1 of 2 cells fail: esm-exponent (1 of 2); limits that are not where theory puts them, and that nothing "
-            "explains: 2.");
+            "esm: r16f, linear (GL) breaks at exponent c = 20; theory 11.09. Limits that disagree with theory: 2.");
   EXPECT_EQ(reach_of(page, "esm-exponent"),
             "The part of the range that holds with every variant: from 0 % with esm to 100 % with vsm.");
   EXPECT_EQ(document::verdict_of(page, "esm-exponent: exponent c, 1 .. 100", "esm"),
