@@ -113,7 +113,7 @@ void MapPanel::lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::
   }
   ImGui::SetNextWindowPos({20.0f * scale, 60.0f * scale}, ImGuiCond_Appearing);
   ImGui::Begin("Shadow map", &look.map, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  footprint_ = footprints_.find(last_side_, glm::clamp(last_place_ * pixels, glm::vec2(0.0f), pixels - 1.0f));
+  footprint_ = find_footprint(glm::clamp(last_place_ * pixels, glm::vec2(0.0f), pixels - 1.0f));
   const std::vector<std::string> contents = list_contents();
   auto chosen = static_cast<std::size_t>(std::ranges::find(contents, content_) - contents.begin()) % contents.size();
   widgets_.choose("map.content", "content", contents, chosen, "Linear depth, or what the side's filter stores.");
@@ -189,7 +189,10 @@ void MapPanel::show_map(int side_pixels, int layer) {
   if (!footprint_) return ImGui::TextDisabled("No receiver in the map under the pointer.");
   ImGui::Text("texel %.2f, %.2f of layer %d, depth %.6f", footprint_->place_texels.x, footprint_->place_texels.y,
               footprint_->receiver.layer, static_cast<double>(footprint_->receiver.depth));
-  std::string kernel = "kernel: " + footprint_->shape;
+  const double reach = footprint_->half_width_texels;
+  std::string kernel = "kernel: a point";
+  if (reach > 0.0)
+    kernel = fmt::format("kernel: a {} of {:.3g} texels to each side", footprint_->is_disk ? "disk" : "square", reach);
   if (!footprint_->reads.empty()) kernel += fmt::format("; {} texels read", footprint_->reads.size());
   ImGui::TextUnformatted(kernel.c_str());
 }
@@ -221,8 +224,8 @@ void MapPanel::draw_footprint(const glm::vec2& corner, int side_pixels, const gl
   list->PopClipRect();
 }
 
-std::optional<Footprint> FootprintFinder::find(std::size_t side, const glm::ivec2& pixel) {
-  const render::FilterPasses* passes = bench_.stage().passes(side);
+std::optional<Footprint> MapPanel::find_footprint(const glm::ivec2& pixel) {
+  const render::FilterPasses* passes = bench_.stage().passes(last_side_);
   if (passes == nullptr) return std::nullopt;
   const auto receiver = find_receiver(passes->light(), pixel);
   if (!receiver) return std::nullopt;
@@ -236,17 +239,13 @@ std::optional<Footprint> FootprintFinder::find(std::size_t side, const glm::ivec
   } else {
     footprint.half_width_texels = filters::radius_texels(request.spec, request.values);
   }
-  add_reads(footprint, side);
-  footprint.shape = footprint.half_width_texels > 0.0
-                        ? fmt::format("{} of {:.3g} texels to each side", footprint.is_disk ? "a disk" : "a square",
-                                      footprint.half_width_texels)
-                        : "a point";
+  add_reads(footprint);
   return footprint;
 }
 
 /// One pixel's receiver, with the bits that the lookup pass has.
-std::optional<filters::Receiver> FootprintFinder::find_receiver(const render::LightLayers& light,
-                                                                const glm::ivec2& pixel) const {
+std::optional<filters::Receiver> MapPanel::find_receiver(const render::LightLayers& light,
+                                                         const glm::ivec2& pixel) const {
   const render::GBuffer& seen = bench_.stage().gbuffer();
   const glm::ivec2 at(pixel.x, seen.height() - 1 - pixel.y);
   const auto place = bench_.stage().find_surface(pixel);
@@ -262,17 +261,17 @@ std::optional<filters::Receiver> FootprintFinder::find_receiver(const render::Li
   return found;
 }
 
-FootprintFinder::Prepared* FootprintFinder::prepare(std::size_t side, int layer) {
+MapPanel::Prepared* MapPanel::prepare(int layer) {
   if (drawing_ != bench_.drawings()) {
     drawing_ = bench_.drawings();
     prepared_.clear();
     prepared_.resize(kSides);
   }
   const render::ShadowMap& map = bench_.stage().light_map().map;
-  prepared_[side].resize(static_cast<std::size_t>(map.layers()));
-  std::unique_ptr<Prepared>& prepared = prepared_[side][static_cast<std::size_t>(layer)];
+  prepared_[last_side_].resize(static_cast<std::size_t>(map.layers()));
+  std::unique_ptr<Prepared>& prepared = prepared_[last_side_][static_cast<std::size_t>(layer)];
   if (prepared) return prepared.get();
-  const filters::FilterRequest& request = bench_.stage().passes(side)->request();
+  const filters::FilterRequest& request = bench_.stage().passes(last_side_)->request();
   const bool reads_depth = !request.spec.has_encode && request.spec.passes.empty();
   std::unique_ptr<filters::ScalarModel> model = reads_depth ? filters::make_model(request.spec) : nullptr;
   if (!model) return nullptr;
@@ -287,8 +286,8 @@ FootprintFinder::Prepared* FootprintFinder::prepare(std::size_t side, int layer)
   return prepared.get();
 }
 
-void FootprintFinder::add_reads(Footprint& footprint, std::size_t side) {
-  const Prepared* prepared = prepare(side, footprint.receiver.layer);
+void MapPanel::add_reads(Footprint& footprint) {
+  const Prepared* prepared = prepare(footprint.receiver.layer);
   if (prepared == nullptr) return;
   filters::ReadLog log;
   const filters::ModelResult result = prepared->lookup->at(footprint.receiver);

@@ -47,21 +47,25 @@ class Magnifier {
 struct Footprint {
   filters::Receiver receiver;
   glm::dvec2 place_texels{0.0};    ///< of the receiver in its layer, from the map's first row and column
-  std::string shape;               ///< of the kernel, in words
   double half_width_texels = 0.0;  ///< of the square that holds it; 0: a point
   bool is_disk = false;
   std::vector<glm::ivec2> reads;  ///< texels of the depth map that the lookup reads, each once; empty where it reads
                                   ///< maps that were made of it, or where only its GLSL knows
 };
 
-/// Finds footprints, and keeps what that needs until the next drawing.
-class FootprintFinder {
+/// Shows the depth map, or what a side's filter stores in its place, with the footprint of its kernel for the receiver
+/// under the pointer.
+class MapPanel {
  public:
-  explicit FootprintFinder(Workbench& bench) : bench_(bench) {}
+  MapPanel(Workbench& bench, Layers& layers, render::DisplayPass& display, Widgets widgets)
+      : bench_(bench), layers_(layers), display_(display), widgets_(widgets) {}
 
-  /// The footprint of a side's filter for the receiver that a pixel shows, row 0 on top; nothing where it shows none,
-  /// where the map does not reach, and for the truth. Cost: milliseconds; once a drawing, the map read back.
-  std::optional<Footprint> find(std::size_t side, const glm::ivec2& pixel);
+  /// Lays out a window of its own. `pixel` is the picture's under the pointer, row 0 on top, and `side` the side that
+  /// is seen there; nothing: the pointer is elsewhere, and what was under it last is shown.
+  void lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::size_t side, float scale);
+
+  /// Shows this from the next time on, until the pointer is over the picture.
+  void look_at(const MapReading& reading);
 
  private:
   /// A filter's model over a layer of the map.
@@ -73,34 +77,9 @@ class FootprintFinder {
   };
 
   Workbench& bench_;
-  std::uint64_t drawing_ = 0;
-  std::vector<std::vector<std::unique_ptr<Prepared>>> prepared_;  ///< by side and layer
-
-  std::optional<filters::Receiver> find_receiver(const render::LightLayers& light, const glm::ivec2& pixel) const;
-  Prepared* prepare(std::size_t side, int layer);
-  void add_reads(Footprint& footprint, std::size_t side);
-};
-
-/// Shows the depth map, or what a side's filter stores in its place, with the footprint of its kernel for the receiver
-/// under the pointer.
-class MapPanel {
- public:
-  MapPanel(Workbench& bench, Layers& layers, render::DisplayPass& display, Widgets widgets)
-      : bench_(bench), layers_(layers), display_(display), widgets_(widgets), footprints_(bench) {}
-
-  /// Lays out a window of its own. `pixel` is the picture's under the pointer, row 0 on top, and `side` the side that
-  /// is seen there; nothing: the pointer is elsewhere, and what was under it last is shown.
-  void lay_out(Look& look, const std::optional<glm::ivec2>& pixel, std::size_t side, float scale);
-
-  /// Shows this from the next time on, until the pointer is over the picture.
-  void look_at(const MapReading& reading);
-
- private:
-  Workbench& bench_;
   Layers& layers_;
   render::DisplayPass& display_;
   Widgets widgets_;
-  FootprintFinder footprints_;
   std::optional<render::ImageTarget> target_;
   std::string content_ = "depth";  ///< as MapReading has it
   std::size_t infinite_ = 0;       ///< texels of what is shown
@@ -108,7 +87,15 @@ class MapPanel {
   glm::vec2 last_place_{0.0f};  ///< in parts of the picture
   std::size_t last_side_ = 0;
   std::optional<Footprint> footprint_;
+  std::uint64_t drawing_ = 0;                                     ///< that the models are of
+  std::vector<std::vector<std::unique_ptr<Prepared>>> prepared_;  ///< by side and layer
 
+  /// The footprint of the last side's filter for the receiver that a pixel shows, row 0 on top; nothing where it shows
+  /// none, where the map does not reach, and for the truth. Cost: milliseconds; once a drawing, the map read back.
+  std::optional<Footprint> find_footprint(const glm::ivec2& pixel);
+  std::optional<filters::Receiver> find_receiver(const render::LightLayers& light, const glm::ivec2& pixel) const;
+  Prepared* prepare(int layer);
+  void add_reads(Footprint& footprint);
   std::vector<std::string> list_contents() const;
   images::Image read_content(int layer);
   void show_map(int side_pixels, int layer);

@@ -15,6 +15,7 @@ namespace shadowbench::view {
 namespace {
 
 constexpr double kSecondsBeforeError = 0.1;
+constexpr std::size_t kRoundsOfADrawing = 40;
 
 }  // namespace
 
@@ -48,20 +49,18 @@ std::string ErrorMeter::describe(std::size_t side) const {
 
 namespace {
 
-constexpr std::size_t kRoundsOfADrawing = 40;
-
 void show_history(const std::string& name, const TimeHistory& history) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(name.c_str());
   ImGui::TableNextColumn();
-  const auto median = history.median();
-  ImGui::TextUnformatted(median ? fmt::format("{:.3f}", *median).c_str() : "-");
+  const bool is_timed = !history.empty();
+  ImGui::TextUnformatted(
+      is_timed ? fmt::format("{:.3f}", measure::summarise({history.begin(), history.end()}).median).c_str() : "-");
   ImGui::TableNextColumn();
-  const std::vector<float>& values = history.values();
-  const float most = values.empty() ? 1.0f : *std::ranges::max_element(values);
   ImGui::PushID(name.c_str());
-  ImGui::PlotLines("##history", values.data(), static_cast<int>(values.size()), 0, nullptr, 0.0f, most,
+  ImGui::PlotLines("##history", history.data(), static_cast<int>(history.size()), 0, nullptr, 0.0f,
+                   is_timed ? std::ranges::max(history) : 1.0f,
                    {ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight()});
   ImGui::PopID();
 }
@@ -100,7 +99,7 @@ void show_times(const Workbench& bench, const TimeMeter& meter) {
       if (shown.truth) continue;
       const char* name = kSideNames[side];
       const TimeMeter::Side& times = meter.side(side);
-      if (times.prefilter.count() > 0) show_history(fmt::format("{} prefilter", name), times.prefilter);
+      if (!times.prefilter.empty()) show_history(fmt::format("{} prefilter", name), times.prefilter);
       show_history(fmt::format("{} filter alone", name), times.filter);
       show_history(fmt::format("{} lookup", name), times.lookup);
     }
@@ -111,16 +110,6 @@ void show_times(const Workbench& bench, const TimeMeter& meter) {
   ImGui::TextDisabled("%s", bench.is_busy() ? "Times wait until the truth is traced and the run is finished."
                                             : "Medians, while nothing moves. Filter alone: less an empty lookup.");
   ImGui::PopTextWrapPos();
-}
-
-void TimeHistory::add(double ms) {
-  if (ms_.size() == kMost) ms_.erase(ms_.begin());
-  ms_.push_back(static_cast<float>(ms));
-}
-
-std::optional<double> TimeHistory::median() const {
-  if (ms_.empty()) return std::nullopt;
-  return measure::summarise({ms_.begin(), ms_.end()}).median;
 }
 
 bool TimeMeter::step() {
@@ -141,7 +130,7 @@ bool TimeMeter::step() {
 }
 
 void TimeMeter::plan_round() {
-  round_.emplace_back([this] { map_.add(time([this] { bench_.stage().redraw_map(bench_.state()); })); });
+  round_.emplace_back([this] { map_.push_back(time([this] { bench_.stage().redraw_map(bench_.state()); })); });
   for (std::size_t side = 0; side < kSides; ++side)
     if (bench_.stage().passes(side) != nullptr) plan_side(side, round_);
   std::reverse(round_.begin(), round_.end());
@@ -152,14 +141,16 @@ void TimeMeter::plan_side(std::size_t side, std::vector<std::function<void()>>& 
   Side& times = sides_[side];
   if (stage.passes(side)->has_prefilter()) {
     round.emplace_back(
-        [&, side] { times.prefilter.add(time([&] { stage.passes(side)->prefilter(stage.light_map().map); })); });
+        [&, side] { times.prefilter.push_back(time([&] { stage.passes(side)->prefilter(stage.light_map().map); })); });
     for (int i = 0; i < measure::kSettlingLookups; ++i)
       round.emplace_back([&, side] { time([&] { stage.look_up(side); }); });
   }
-  round.emplace_back([&, side] { times.lookup.add(lookup_ms_ = time([&] { stage.look_up(side); })); });
-  round.emplace_back([&, side] { times.filter.add(lookup_ms_ - time([&] { stage.look_up_nothing(side); })); });
+  round.emplace_back([&, side] { times.lookup.push_back(lookup_ms_ = time([&] { stage.look_up(side); })); });
+  round.emplace_back([&, side] { times.filter.push_back(lookup_ms_ - time([&] { stage.look_up_nothing(side); })); });
 }
 
-double TimeMeter::time(const std::function<void()>& work) const { return gl::time_ms(bench_.renderer().timer, work); }
+float TimeMeter::time(const std::function<void()>& work) const {
+  return static_cast<float>(gl::time_ms(bench_.renderer().timer, work));
+}
 
 }  // namespace shadowbench::view

@@ -34,20 +34,8 @@ class ErrorMeter {
   std::array<std::optional<double>, kSides> rmse_;
 };
 
-/// The last times of one kind, milliseconds.
-class TimeHistory {
- public:
-  static constexpr std::size_t kMost = 60;
-
-  void add(double ms);
-  void clear() { ms_.clear(); }
-  std::size_t count() const { return ms_.size(); }
-  std::optional<double> median() const;
-  const std::vector<float>& values() const { return ms_; }  ///< the oldest first
-
- private:
-  std::vector<float> ms_;
-};
+/// Times of one kind since the last drawing, milliseconds, the oldest first.
+using TimeHistory = std::vector<float>;
 
 /// Times the passes of what is shown as a run does: one by one, each closed, a lookup four lookups after its prefilter.
 /// It runs one pass a frame, and only while nothing moves and nothing else works: such times compare.
@@ -74,11 +62,11 @@ class TimeMeter {
   std::vector<std::function<void()>> round_;  ///< passes of the round that are still to be run, the last one first
   std::uint64_t drawing_ = 0;
   std::size_t rounds_ = 0;
-  double lookup_ms_ = 0.0;
+  float lookup_ms_ = 0.0f;
 
   void plan_round();
   void plan_side(std::size_t side, std::vector<std::function<void()>>& round);
-  double time(const std::function<void()>& work) const;
+  float time(const std::function<void()>& work) const;
 };
 
 /// Lays out the times of both sides, with their history, in the current ImGui window.

@@ -41,7 +41,8 @@ void require_lesson(const ViewOptions& options) {
 
 /// As large as the screen allows, but for a picture that keeps its size: then no larger than it and the panels are.
 glm::ivec2 choose_window_size(const ViewOptions& options, const glm::ivec2& picture) {
-  const glm::ivec2 panels = Gui::panel_size(options.scale > 0.0f ? options.scale : 1.0f), room = Window::find_room();
+  const glm::ivec2 panels = Gui::panel_size(options.scale > 0.0 ? static_cast<float>(options.scale) : 1.0f),
+                   room = Window::find_room();
   const glm::ivec2 wanted = options.keeps_size || room.x <= 0 ? glm::max(picture + panels, glm::ivec2(0, kLeastHeight))
                                                               : kLargestPicture + panels;
   return room.x > 0 ? glm::min(wanted, room) : wanted;
@@ -87,7 +88,7 @@ void run_view(const ViewOptions& options) {
   gl::GlfwContext& shown = *context;
   const gl::TimerKind timer = gl::choose_timer(shown);
   measure::Renderer renderer{std::move(context), {}, timer, render::ShaderLibrary(options.run.resources.shaders)};
-  Window window(shown, options.scale);
+  Window window(shown, static_cast<float>(options.scale));
   ViewLog log = options.log.empty() ? ViewLog() : ViewLog(options.log);
   Workbench bench(renderer, std::move(state), std::move(catalogue), options.filter_files);
   bench.draw();

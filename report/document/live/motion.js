@@ -1,7 +1,7 @@
 // Moves a light: its map is drawn by the run's own steps, with other matrices for each of its layers. A sun turns about
 // the scene's middle, and its windows become as large as they must be: fitted to the scene as the program fits them, or
-// around what the camera sees of it where the run's windows follow that. A spot light goes round the middle and keeps looking at what it looked at; a
-// point light goes round it too, and the faces of its cube stay parallel to the axes.
+// around what the camera sees of it where the run's windows follow that. A spot light goes round the middle and keeps
+// looking at what it looked at; a point light goes round it too, and the faces of its cube stay parallel to the axes.
 const kOfLight = [
   ...["clip_from_world", "uv_depth_from_world", "light_direction_ws", "light_right_ws", "light_up_ws"],
   ...["texel_size_ws", "depth_range_ws", "bias_constant", "bias_slope", "light_position_ws", "far_over_near"],
@@ -9,7 +9,8 @@ const kOfLight = [
 const kWindowMargin = 1.05; // for kernels beyond the border
 const kNearestShare = 1 / 500; // of a lamp's far plane, as the program has it
 
-const lengthOfRow = (m, row) => Math.hypot(m[row], m[4 + row], m[8 + row]);
+const rowOf = (m, row, length = 4) => Array.from({ length }, (_, i) => m[4 * i + row]);
+const lengthOfRow = (m, row) => Math.hypot(...rowOf(m, row, 3));
 const setRow = (m, row, values) => m.map((value, i) => ((i & 3) === row ? values[i >> 2] : value));
 const add = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
 const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
@@ -29,7 +30,7 @@ const axisLeastParallel = (direction) => {
   return x <= y ? [1, 0, 0] : [0, 1, 0];
 };
 // A sun's axes, which depend on its direction alone, and its scene's extent along them, from the scene's middle.
-const fitScene = ({ middle, radius, farthest, forEach }, direction, fit) => {
+const fitScene = ({ middle, farthest, forEach }, direction, fit) => {
   const back = direction.map((value) => -value);
   const right = normalise(cross(axisLeastParallel(direction), back));
   const axes = [right, cross(back, right), back];
@@ -65,27 +66,11 @@ const frameScene = (uv, { middle }, { axes, side, low, high, deep }, own) => {
   const fitted = Array.from({ length: 16 }, (_, i) => rows[i & 3][i >> 2]);
   // Rows of clip space are multiples of those of the map's, with something added.
   const clipOf = (clip) =>
-    [0, 1, 2].reduce(
-      (matrix, r) => {
-        const along = [0, 4, 8].map((i) => clip[i + r]);
-        const factor =
-          dot(
-            along,
-            [0, 4, 8].map((i) => uv[i + r]),
-          ) /
-          lengthOfRow(uv, r) ** 2;
-        const added = [0, 0, 0, clip[12 + r] - factor * uv[12 + r]];
-        return setRow(
-          matrix,
-          r,
-          add(
-            rows[r].map((value) => factor * value),
-            added,
-          ),
-        );
-      },
-      [...fitted],
-    );
+    [0, 1, 2].reduce((matrix, r) => {
+      const factor = dot(rowOf(clip, r, 3), rowOf(uv, r, 3)) / lengthOfRow(uv, r) ** 2;
+      const added = add(rowOf(clip, r), rowOf(uv, r), -factor);
+      return setRow(matrix, r, add(added, rows[r], factor));
+    }, fitted);
   return { wide: side / own.side, deep: deep * lengthOfRow(uv, 2), uv: fitted, clipOf, axes };
 };
 
@@ -106,14 +91,10 @@ const frameLamp = (uv, back, range, distance, { radius }) => {
   const far = 1.001 * (distance + radius);
   const near = Math.max((distance - radius) / Math.sqrt(3), kNearestShare * far);
   const turned = multiply(uv, back);
-  const along = [0, 1, 2, 3].map((column) => turned[4 * column + 3]);
+  const along = rowOf(turned, 3);
   const past = add(along, [0, 0, 0, near], -1).map((value) => value / (far - near));
   const clipOf = (clip) => {
-    const isReversed =
-      dot(
-        [0, 4, 8].map((i) => clip[i + 2]),
-        [0, 4, 8].map((i) => clip[i + 3]),
-      ) < 0;
+    const isReversed = dot(rowOf(clip, 2, 3), rowOf(clip, 3, 3)) < 0;
     const depth = past.map((value) => far * value);
     return setRow(multiply(clip, back), 2, isReversed ? add(along, depth, -1) : depth);
   };

@@ -70,12 +70,4 @@ class ViewTest : public ProgramTest {
   }
 };
 
-/// How many texels differ in any bit.
-inline std::size_t count_different(const images::Image& a, const images::Image& b) {
-  if (a.texels.size() != b.texels.size()) return std::max(a.texels.size(), b.texels.size());
-  std::size_t different = 0;
-  for (std::size_t i = 0; i < a.texels.size(); ++i) different += a.texels[i] == b.texels[i] ? 0 : 1;
-  return different;
-}
-
 }  // namespace shadowbench::test
