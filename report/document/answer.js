@@ -59,7 +59,7 @@ const startAnswer = (holder) => {
   const setting = element(holder, "p", { className: "note" }, `${run.setting} · `);
   const controls = element(holder, "form", { className: "limits", "aria-label": "Limits", onsubmit: () => false });
   const table = element(element(holder, "div", { className: "scroll picks" }), "table");
-  holder.append(...holder.querySelectorAll(":scope > figure:not(.split)")); // the grid
+  holder.append(...holder.querySelectorAll(":scope > figure")); // the grid
   const picture = startPicture(holder);
   const folded = element(holder, "details", { className: "reasons" });
   element(folded, "summary", {}, "Why, limits and commands");

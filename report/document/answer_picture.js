@@ -99,17 +99,15 @@ const startLivePicture = ({ figure, stage, slider, line, sayTruth, say }) => {
   };
 };
 // The picture of the answer: the truth at the left of a line that the reader moves, a filter at the right, where the
-// filter's picture differs most. The page has one before its scripts run.
+// filter's picture differs most.
 const startPicture = (holder) => {
-  const old = holder.querySelector("figure.split");
-  const figure = old ?? element(holder, "figure", { className: "split" });
-  if (old) holder.append(old);
-  const stage = figure.querySelector(".stage") ?? element(figure, "div", { className: "stage" });
-  const images = [0, 1].map((i) => stage.querySelectorAll("img")[i] ?? element(stage, "img", { alt: "" }));
-  const line = stage.querySelector("i") ?? element(stage, "i");
+  const figure = element(holder, "figure", { className: "split" });
+  const stage = element(figure, "div", { className: "stage" });
+  const images = [0, 1].map(() => element(stage, "img", { alt: "" }));
+  const line = element(stage, "i");
   const slider = element(stage, "input", { type: "range", min: 0, max: 100, value: 50 });
   slider.addEventListener("input", () => stage.style.setProperty("--split", `${slider.value}%`));
-  const caption = figure.querySelector("figcaption") ?? element(figure, "figcaption");
+  const caption = element(figure, "figcaption");
   let shown = null;
   const button = addButton(figure, "Look closer", () => shadowbench.openViewer(shown));
   let isSmooth = true;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -83,14 +82,6 @@ struct Gallery {
   bool wide = false;  ///< fewer beside each other
 };
 
-/// A part of two pictures of one size, one over the other, with a line between them that a script moves.
-struct Split {
-  Picture left, right;
-  int width = 0;  ///< of the pictures, pixels
-  int height = 0;
-  std::array<double, 4> rect{};  ///< the part: left, top, width, height, pixels
-};
-
 /// Stacked bars with signed segments on a common scale, one row for each thing compared.
 struct Bars {
   struct Segment {
@@ -115,8 +106,8 @@ struct Details;
 struct Mount;
 
 /// Everything that a page is made of.
-using Block = std::variant<Facts, Sentences, Paragraph, Heading, Links, Table, Gallery, Split, Bars, Chart, ChartChoice,
-                           Details, Mount>;
+using Block =
+    std::variant<Facts, Sentences, Paragraph, Heading, Links, Table, Gallery, Bars, Chart, ChartChoice, Details, Mount>;
 
 /// Blocks that the reader unfolds.
 struct Details {

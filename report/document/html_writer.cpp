@@ -266,23 +266,6 @@ class HtmlWriter {
                        escape_html(gallery.title), gallery.wide ? " wide" : "", figures);
   }
 
-  /// Both pictures lie in one place, larger than the stage that shows a part of them.
-  std::string write(const Split& split) {
-    const auto [left, top, width, height] = split.rect;
-    const std::string place = fmt::format("width:{:.3f}%;left:{:.3f}%;top:{:.3f}%", 100.0 * split.width / width,
-                                          -100.0 * left / width, -100.0 * top / height);
-    std::string pictures;
-    for (const Picture* each : {&split.left, &split.right})
-      pictures += fmt::format("<img src=\"{}\" alt=\"{}\" style=\"{}\">", files::encode_url_path(each->path),
-                              escape_html(each->caption), place);
-    return fmt::format(
-        "<figure class=\"split\"><div class=\"stage\" "
-        "style=\"aspect-ratio:{}/{};--before:{:.3f}%;--share:{:.5f}\">{}<i></i>"
-        "</div><figcaption><bdi>{}</bdi><bdi>{}</bdi></figcaption></figure>\n",
-        width, height, 100.0 * left / split.width, width / split.width, pictures, escape_html(split.left.caption),
-        escape_html(split.right.caption));
-  }
-
   std::string write(const Bars& bars) {
     std::string html = "<figure class=\"bars\">\n<figcaption>" + escape_html(bars.title) + "<span class=\"legend\">";
     for (const auto& [color, name] : bars.legend)

@@ -59,8 +59,6 @@ std::string write_block(const Gallery& gallery) {
   return links.items.empty() ? std::string() : write_block(links);
 }
 
-std::string write_block(const Split& split) { return write_block(Gallery{{}, {split.left, split.right}}); }
-
 std::string write_block(const Bars& bars) {
   std::vector<std::string> labels;
   for (const Bars::Row& row : bars.rows)

@@ -99,20 +99,6 @@ std::optional<document::Gallery> make_grid_picture(const std::vector<records::Ce
   return document::Gallery{"", {{*worst->images.grid, "filters on " + worst->scene + " by their error"}}};
 }
 
-/// The picture to begin with: the fast one against the truth, on the scene where it differs most from it.
-std::optional<document::Split> make_picture(const analysis::Advice& advice) {
-  const analysis::Candidate& shown = advice.keeping.front();
-  const records::CellRecord* worst = find_worst_picture(shown.configuration);
-  if (!worst) return std::nullopt;
-  const std::string on = " on " + analysis::describe_place(analysis::place_of(*worst), advice.places);
-  const records::ImagesRecord& images = worst->images;
-  return document::Split{{images.truth_supersampled.value_or(*images.truth_picture), "truth" + on},
-                         {images.supersampled.value_or(*images.picture), shown.configuration.name + on},
-                         worst->width,
-                         worst->height,
-                         choose_part(*worst)};
-}
-
 }  // namespace
 
 analysis::AdviceRequest choose_request(const std::vector<records::CellRecord>& cells) {
@@ -160,7 +146,6 @@ document::Section make_answer_section(const records::RunRecord& run, const std::
       mount.blocks.emplace_back(document::Paragraph{judged + "."});
     mount.blocks.emplace_back(document::Paragraph{describe_setting(cells), true});
     mount.blocks.emplace_back(make_table(run, cells, advice, biases));
-    if (auto picture = make_picture(advice)) mount.blocks.emplace_back(std::move(*picture));
   }
   if (auto grid = make_grid_picture(cells)) mount.blocks.emplace_back(std::move(*grid));
   mount.blocks.emplace_back(document::Paragraph{analysis::describe_cost(advice), true});

@@ -29,9 +29,10 @@ struct FirstPicture {
 /// Those that the page of these cells shows: one of each answer, where it differs most from the truth.
 std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRecord>& measured);
 
-/// Says which filters are fast, balanced and best, over all scenes and on each, at what cost and error and why, with a
-/// picture of one beside the truth. In the browser a script makes the same of limits that the reader moves.
-/// `biases`: what a sweep of the bias recommends, which has a row where it is of the filters and maps that are named.
+/// Says which filters are fast, balanced and best, over all scenes and on each, at what cost and error and why, with
+/// the grid of the scene with the largest error. In the browser a script makes the same of limits that the reader
+/// moves. `biases`: what a sweep of the bias recommends, which has a row where it is of the filters and maps that are
+/// named.
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                       const analysis::AdviceRequest& request,
                                       const std::vector<records::BiasToShip>& biases);

@@ -25,7 +25,8 @@ TEST(PictureHeader, ClaimsThatNoMemoryHolds_AreRefusedBeforeDecoding) {
   const auto complaint = [](const std::vector<unsigned char>& picture) {
     return error_of([&] { decode_texture(picture, "huge", "a.gltf", {}); }).message();
   };
-  EXPECT_THAT(complaint(bytes(kHugePng)), HasSubstr("'huge' cannot be decoded: use PNG or JPEG, 1 to 16384 pixels a side"));
+  EXPECT_THAT(complaint(bytes(kHugePng)),
+              HasSubstr("'huge' cannot be decoded: use PNG or JPEG, 1 to 16384 pixels a side"));
   EXPECT_THAT(complaint(bytes(kHugeTga)), testing::AllOf(HasSubstr("65535 x 65535"), HasSubstr("16384")));
   EXPECT_THAT(complaint(bytes("P6 99999 99999 255\n")), HasSubstr("99999 x 99999"));
   EXPECT_THAT(complaint(bytes("\0\0\2\0\0\0\0\0\0\0\0\0\1\x20\1\x20\x20\x28")), HasSubstr("8193 x 8193"));
