@@ -1,4 +1,4 @@
-#include "filters/warped_variance.h"
+#include "filters/moments.h"
 
 namespace shadowbench::filters {
 

@@ -1,7 +1,7 @@
-#include "filters/disk_points.h"
+#include "filters/encoded_map.h"
+#include "filters/moments.h"
 #include "filters/penumbra.h"
-#include "filters/summed_area.h"
-#include "filters/warped_variance.h"
+#include "filters/random.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -13,8 +13,8 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "base/toml.h"
-#include "filters/disk_points.h"
 #include "filters/glsl_words.h"
+#include "filters/random.h"
 #include "filters/store_format.h"
 
 namespace shadowbench::filters {

@@ -12,8 +12,8 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "filters/disk_points.h"
 #include "filters/model.h"
+#include "filters/random.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -1,4 +1,4 @@
-#include "filters/packed_moments.h"
+#include "filters/moments.h"
 
 namespace shadowbench::filters {
 

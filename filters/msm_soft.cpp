@@ -1,4 +1,4 @@
-#include "filters/packed_moments.h"
+#include "filters/moments.h"
 #include "filters/penumbra.h"
 
 namespace shadowbench::filters {

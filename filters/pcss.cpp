@@ -1,6 +1,6 @@
-#include "filters/disk_points.h"
 #include "filters/model.h"
 #include "filters/penumbra.h"
+#include "filters/random.h"
 
 namespace shadowbench::filters {
 namespace {

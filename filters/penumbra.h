@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
+#include "filters/encoded_map.h"
 #include "filters/map_reader.h"
 #include "filters/model.h"
 #include "filters/random.h"
-#include "filters/summed_area.h"
 
 namespace shadowbench::filters {
 

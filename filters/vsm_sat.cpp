@@ -1,6 +1,5 @@
 #include "filters/encoded_map.h"
 #include "filters/model.h"
-#include "filters/summed_area.h"
 
 namespace shadowbench::filters {
 namespace {

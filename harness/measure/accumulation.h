@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/render/picture_passes.h"
 #include "report/images/grid.h"

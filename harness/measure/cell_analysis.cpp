@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"
 #include "report/records/absence.h"

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "filters/model.h"
-#include "harness/measure/model_images.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"

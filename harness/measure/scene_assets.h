@@ -2,16 +2,43 @@
 
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "harness/measure/renderer.h"
+#include "filters/scalar.h"
+#include "harness/gl/context/context.h"
+#include "harness/gl/recorder.h"
+#include "harness/gl/survey.h"
 #include "harness/measure/scene_truth.h"
 #include "harness/options/options.h"
+#include "harness/render/filter_passes.h"
 #include "harness/render/gbuffer.h"
+#include "harness/render/geometry.h"
+#include "harness/render/shader_library.h"
 #include "harness/render/shadow_map.h"
 
 namespace shadowbench::measure {
+
+/// The GL context of a run with what was found out about it.
+struct Renderer {
+  std::unique_ptr<gl::Context> context;
+  std::vector<std::string> refused;  ///< contexts that `auto` could not use, and why
+  gl::TimerKind timer = gl::TimerKind::kWallClock;
+  render::ShaderLibrary shaders;
+  std::optional<filters::GlAccuracy> accuracy = std::nullopt;  ///< see measure_accuracy()
+  std::unique_ptr<gl::Recorder> recorder = nullptr;            ///< only where what is drawn is written down
+};
+
+/// Makes a context and chooses its timer by measurement.
+/// Throws Error(kContext).
+Renderer make_renderer(gl::Backend backend, const options::Resources& resources);
+
+/// How exact the GL's functions and filtering weights are, by experiment: what propagated rounding bounds start
+/// from. Cost: under 2 s when first asked for, nothing then.
+filters::GlAccuracy measure_accuracy(Renderer& renderer);
 
 /// A light's depth map with the frusta that its layers were drawn in.
 struct LightMap {
@@ -113,5 +140,39 @@ double limit_padding(double pad_texels, int map_size);
 /// or else those of the run's own filters.
 double padding_texels(const options::RunOptions& options);
 double widest_kernel_texels(const options::RunOptions& options);
+
+/// A light as one filter sees it: with the run's bias, resolved for the filter's kernel in each layer of its map.
+render::LightLayers make_filter_light(const options::RunOptions& options, const scene::Light& light,
+                                      const std::vector<scene::LightFrustum>& layers,
+                                      const filters::FilterRequest& request);
+
+/// The layers of a light's map without bias: where receivers lie in it, whatever the filter.
+render::LightLayers make_unbiased_light(const options::RunOptions& options, const scene::Light& light,
+                                        const std::vector<scene::LightFrustum>& layers);
+
+/// Compiles one filter over a light's map.
+/// Throws as render::FilterPasses.
+std::unique_ptr<render::FilterPasses> make_filter_passes(Renderer& renderer, const options::RunOptions& options,
+                                                         const scene::Scene& scene, const LightMap& light,
+                                                         const filters::FilterRequest& request);
+
+/// Runs a filter's prefilter and lookup, and reads the visibility; `target` is of the G-buffer's size.
+images::Image draw_visibility(render::FilterPasses& filter, const render::ShadowMap& map,
+                              const render::GBuffer& gbuffer, render::ImageTarget& target);
+
+/// Calls `draw` with a filter that has no bias, in its receivers and in the map; both are as before afterwards.
+void draw_without_bias(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets, LightMap& light,
+                       render::FilterPasses& filter, const std::function<void()>& draw);
+
+/// Lookups that read what filters read of their receivers, and nothing of the map: what a lookup takes longer than its
+/// empty one is the filter's own time.
+struct EmptyLookups {
+  std::vector<std::unique_ptr<render::FilterPasses>> passes;  ///< no two read the same
+  std::vector<std::size_t> of_filter;                         ///< index into `passes`, one per filter
+};
+
+/// Compiles those that these filters need, over the light's map.
+EmptyLookups make_empty_lookups(Renderer& renderer, const options::RunOptions& options, const scene::Scene& scene,
+                                const LightMap& light, const std::vector<render::FilterPasses*>& filters);
 
 }  // namespace shadowbench::measure

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
+#include "harness/measure/scene_truth.h"
 #include "harness/options/options.h"
 #include "harness/render/filter_passes.h"
 #include "harness/scene/scene.h"
@@ -84,5 +84,15 @@ records::ParamMap record_params(const filters::ParamValues& values);
 /// The record of a cell with its settings and key, nothing measured yet.
 records::CellRecord make_record(const options::RunOptions& options, const SceneTask& task,
                                 const filters::FilterRequest& request);
+
+// A wrong filter gets a score like any other. These checks mark its cell: the status is `suspect`, and a warning says
+// what was found and what to do. Its pictures and errors stay.
+
+/// Checks what needs no truth: that visibility is finite and in [0,1], that the filter reads the map, no farther than
+/// it declares, and nothing that nobody wrote. Requires the cell's `nan`.
+void check_drawing(MeasuredCell& cell, gl::Context& context);
+
+/// Checks that visibility is not the same at all receivers where some are wholly lit in truth, and some wholly blocked.
+void check_against_truth(MeasuredCell& cell, const SceneTruth& truth);
 
 }  // namespace shadowbench::measure

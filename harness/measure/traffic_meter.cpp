@@ -11,7 +11,7 @@
 
 #include "filters/map_reader.h"
 #include "harness/gl/objects.h"
-#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
 #include "report/records/gpu_frame.h"
 
 namespace shadowbench::measure {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "harness/measure/model_images.h"
 #include "harness/measure/scene_measurement.h"
+#include "harness/measure/view_receivers.h"
 
 namespace shadowbench::measure {
 

@@ -7,8 +7,8 @@
 #include <cctype>
 
 #include "base/error.h"
-#include "filters/disk_points.h"
 #include "filters/kernel.h"
+#include "filters/random.h"
 #include "filters/store_format.h"
 #include "harness/gl/objects.h"
 

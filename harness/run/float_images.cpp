@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "harness/live/frame_file.h"
-#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/run/provenance.h"
 #include "harness/run/task_images.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "harness/measure/renderer.h"
+#include "harness/measure/scene_assets.h"
 #include "report/records/records.h"
 
 namespace shadowbench::run {

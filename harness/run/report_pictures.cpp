@@ -13,7 +13,6 @@
 #include <tuple>
 
 #include "base/bytes.h"
-#include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/picture_passes.h"

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "harness/measure/renderer.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/options/options.h"
 #include "harness/run/run_plan.h"
 #include "reference/truth/cached_tracer.h"

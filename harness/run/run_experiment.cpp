@@ -15,7 +15,6 @@
 #include "base/files.h"
 #include "harness/gl/objects.h"
 #include "harness/measure/cell_analysis.h"
-#include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/run/provenance.h"
 #include "harness/run/report_pictures.h"

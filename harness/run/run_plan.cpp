@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "filters/kernel.h"
-#include "harness/measure/light_width.h"
+#include "harness/measure/map_coverage.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/options/run_options.h"
 #include "harness/run/provenance.h"

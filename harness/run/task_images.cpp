@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/render/picture_passes.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/findings.h"

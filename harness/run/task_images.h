@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "harness/measure/map_coverage.h"
-#include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"

@@ -12,10 +12,10 @@
 
 #include "harness/measure/accumulation.h"
 #include "harness/measure/cell_analysis.h"
-#include "harness/measure/filter_setup.h"
 #include "harness/measure/map_coverage.h"
+#include "harness/measure/scene_assets.h"
+#include "harness/measure/scene_measurement.h"
 #include "harness/measure/stability_meter.h"
-#include "harness/measure/suspects.h"
 #include "harness/measure/traffic_meter.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/picture_passes.h"

@@ -11,10 +11,9 @@
 
 #include "base/error.h"
 #include "harness/measure/cell_analysis.h"
-#include "harness/measure/filter_setup.h"
-#include "harness/measure/map_limits.h"
-#include "harness/measure/phases.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_truth.h"
+#include "harness/measure/stability_meter.h"
 #include "harness/render/picture_passes.h"
 #include "report/images/picture_io.h"
 

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "filters/front_matter.h"
 #include "harness/measure/map_coverage.h"
-#include "harness/measure/phases.h"
+#include "harness/measure/scene_truth.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/picture_passes.h"
 

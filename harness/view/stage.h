@@ -5,8 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "harness/measure/filter_setup.h"
-#include "harness/measure/renderer.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/render/filter_passes.h"
 #include "harness/view/view_state.h"

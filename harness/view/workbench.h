@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "filters/catalogue.h"
-#include "harness/measure/renderer.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/view/side_measurement.h"
 #include "harness/view/stage.h"
 #include "harness/view/view_state.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/disk_points.h"
+#include "filters/random.h"
 
 namespace shadowbench::truth {
 namespace {

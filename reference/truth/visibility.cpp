@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/disk_points.h"
+#include "filters/random.h"
 #include "reference/truth/adaptive_tracer.h"
 
 namespace shadowbench::truth {

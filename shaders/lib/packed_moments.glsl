@@ -1,6 +1,6 @@
 // Four moments of depth as whole numbers: two depths, the share of the farther one, and how far depths spread around
 // them. The idea is that of Peters 2017, Non-linearly Quantized Moment Shadow Maps, HPG; the formulas are our own, from
-// Gauss quadrature. filters/packed_moments.h does the same.
+// Gauss quadrature. filters/moments.h does the same.
 //
 // A filter that includes this says in `levels` how many values each number can take, declares the parameters `lookup`
 // and `moment_bias`, and defines `uvec4 load_packed(ivec2 texel)`.

@@ -1,4 +1,4 @@
-// Exponential warps of depth, and what their variance says; filters/warped_variance.h does the same.
+// Exponential warps of depth, and what their variance says; filters/moments.h does the same.
 
 // The largest exponent whose squares the store keeps, with room for sums of them in the lookup.
 float fit_exponent(float c) { return min(c, store_largest < 1e5 ? 5.54 : 42.0); }

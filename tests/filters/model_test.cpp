@@ -8,7 +8,7 @@
 #include <random>
 
 #include "filters/catalogue.h"
-#include "filters/disk_points.h"
+#include "filters/random.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -1,3 +1,5 @@
+#include "filters/moments.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -5,7 +7,6 @@
 
 #include "filters/catalogue.h"
 #include "filters/model.h"
-#include "filters/packed_moments.h"
 #include "filters/percentage_closer.h"
 
 namespace shadowbench::filters {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "harness/stress/axis.h"
-#include "harness/stress/drawn_maps.h"
+#include "harness/stress/synthetic_scene.h"
 #include "report/records/text_table.h"
 
 namespace shadowbench::stress {

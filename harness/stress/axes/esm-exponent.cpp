@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "filters/store_format.h"
-#include "harness/stress/exhibits.h"
+#include "harness/stress/axis.h"
 #include "harness/stress/run_stress.h"
 #include "harness/stress/synthetic_scene.h"
 

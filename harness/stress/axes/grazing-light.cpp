@@ -9,8 +9,7 @@
 #include "filters/model.h"
 #include "harness/render/bias.h"
 #include "harness/stress/axis.h"
-#include "harness/stress/drawn_maps.h"
-#include "harness/stress/exhibits.h"
+#include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {
 namespace grazing_light {

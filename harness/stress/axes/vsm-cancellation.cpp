@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/encoded_map.h"
 #include "filters/store_format.h"
-#include "filters/summed_area.h"
 #include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {

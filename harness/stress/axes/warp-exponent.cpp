@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "filters/store_format.h"
-#include "harness/stress/exhibits.h"
+#include "harness/stress/axis.h"
 #include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {

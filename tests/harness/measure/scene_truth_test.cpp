@@ -2,7 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "harness/scene/mesh_tools.h"
+#include "reference/metrics/error_stats.h"
+#include "reference/metrics/metric_table.h"
 #include "reference/truth/occluders.h"
 
 namespace shadowbench::measure {
@@ -31,6 +35,97 @@ TEST(WideScene, IsToldWhereRaysStartATenthOfATexelOffSurfaces) {
 TEST(WideScene, UnderAMapOfAllOfIt_IsNone) {
   constexpr float kSize_m = 1e6f;
   EXPECT_EQ(describe_wide_scene(make_floor_of(kSize_m), double{kSize_m} / 16384.0), "");
+}
+
+TEST(Phases, ASingleOneIsNotMoved_AndNoneIsMovedByMoreThanHalfATexel) {
+  EXPECT_EQ(list_phase_shifts(1, 7).front(), glm::dvec2(0.0));
+  for (int count = 1; count <= 64; ++count) {
+    const std::vector<glm::dvec2> shifts = list_phase_shifts(count, 1);
+    ASSERT_EQ(shifts.size(), static_cast<std::size_t>(count));
+    for (const glm::dvec2& shift : shifts) {
+      for (const int axis : {0, 1}) {
+        EXPECT_GE(shift[axis], -0.5);
+        EXPECT_LT(shift[axis], 0.5);
+      }
+    }
+  }
+}
+
+TEST(Phases, FromEightOn_TwoOfAGroupAreHalfATexelApart) {
+  for (const std::size_t count : {8u, 10u, 64u}) {
+    ASSERT_EQ(count_phases_of_group(count), 2u);
+    const std::vector<glm::dvec2> shifts = list_phase_shifts(static_cast<int>(count), 3);
+    for (std::size_t i = 0; i < count; i += 2)
+      for (const int axis : {0, 1})
+        EXPECT_NEAR(std::abs(shifts[i][axis] - shifts[i + 1][axis]), 0.5, 1e-12) << count << " " << i;
+  }
+  for (const std::size_t count : {1u, 2u, 4u, 7u, 9u}) EXPECT_EQ(count_phases_of_group(count), 1u);
+}
+
+TEST(Phases, MoreOfThem_BeginWithTheSame_AndOtherSeedsGiveOthers) {
+  const std::vector<glm::dvec2> eight = list_phase_shifts(8, 1), many = list_phase_shifts(64, 1),
+                                other = list_phase_shifts(8, 2);
+  for (std::size_t i = 0; i < eight.size(); ++i) EXPECT_EQ(eight[i], many[i]);
+  for (std::size_t i = 0; i < eight.size(); ++i) EXPECT_NE(eight[i], other[i]);
+}
+
+/// Groups begin anywhere, the first as any other: over many seeds, each quarter of a texel along each axis as often as
+/// the others.
+TEST(Phases, GroupsBeginAnywhere) {
+  constexpr int kSeeds = 1000;
+  for (const std::size_t group : {0u, 2u}) {
+    int counts[2][4] = {};
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+      const glm::dvec2 shift = list_phase_shifts(4, seed)[group];
+      for (const int axis : {0, 1}) ++counts[axis][static_cast<int>(4.0 * (shift[axis] + 0.5))];
+    }
+    for (const auto& axis : counts)
+      for (const int count : axis) EXPECT_NEAR(count, kSeeds / 4, 60) << group;
+  }
+}
+
+TEST(Phases, BelowEight_FlickerIsAbsent) {
+  const metrics::Change change{0.01, 0.002};
+  records::CellRecord few, enough;
+  note_errors(few, std::vector<metrics::ErrorStats>(4), 1);
+  note_flicker(few, change);
+  EXPECT_FALSE(few.error.flicker);
+  EXPECT_FALSE(few.flicker_ci95);
+  EXPECT_NE(few.absent.at("error.flicker"), "");
+  EXPECT_NE(few.absent.at("error.flicker_ci95"), "");
+  note_errors(enough, std::vector<metrics::ErrorStats>(8), 2);
+  note_flicker(enough, change);
+  EXPECT_EQ(enough.error.flicker, 0.01);
+  EXPECT_TRUE(enough.absent.empty());
+}
+
+TEST(Phases, FlickerOfAStep_NeedsNoOthers_AndHasNoInterval) {
+  records::CellRecord record;
+  note_step(record, metrics::Change{0.01});
+  EXPECT_EQ(record.error.flicker, 0.01);
+  EXPECT_NE(record.absent.at("error.flicker_ci95"), "");
+  note_step(record, std::nullopt);
+  EXPECT_NE(record.absent.at("error.flicker"), "");
+}
+
+TEST(Phases, EveryErrorOfTheTable_IsItsMeanOverThem_AndTheLargestIsTheLargest) {
+  std::vector<metrics::ErrorStats> phases(4);
+  for (const metrics::Metric& metric : metrics::metric_table())
+    if (metric.statistic) phases[0].*metric.statistic = 8.0;
+  records::CellRecord record;
+  note_errors(record, phases, 1);
+  for (const metrics::Metric& metric : metrics::metric_table())
+    if (metric.statistic) EXPECT_EQ(metric.read(record), metric.path == "error.max" ? 8.0 : 2.0) << metric.path;
+  EXPECT_EQ(record.phases, 4);
+}
+
+TEST(MeanInterval, IsStudents) {
+  EXPECT_FALSE(metrics::find_mean_interval(std::vector{1.0}));
+  const auto interval = metrics::find_mean_interval(std::vector{1.0, 2.0, 3.0, 4.0});
+  ASSERT_TRUE(interval);
+  EXPECT_DOUBLE_EQ(interval->mean, 2.5);
+  EXPECT_NEAR(interval->high - 2.5, 3.8960 * std::sqrt(5.0 / 3.0 / 4.0), 1e-4);  // t of 3 degrees, 98.5 %
+  EXPECT_NEAR(2.5 - interval->low, interval->high - 2.5, 1e-12);
 }
 
 }  // namespace

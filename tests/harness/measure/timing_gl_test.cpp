@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "filters/front_matter.h"
-#include "harness/measure/filter_setup.h"
+#include "harness/measure/scene_assets.h"
 #include "harness/measure/timing.h"
 #include "reference/truth/cached_tracer.h"
 #include "tests/harness/render/bench_fixture.h"

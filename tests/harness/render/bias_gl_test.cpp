@@ -10,7 +10,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <tuple>
 
-#include "harness/measure/model_images.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/bias.h"
 #include "harness/scene/mesh_tools.h"

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "filters/model.h"
-#include "harness/measure/model_images.h"
+#include "harness/measure/view_receivers.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {

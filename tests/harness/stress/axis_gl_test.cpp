@@ -17,7 +17,6 @@
 
 #include "base/error.h"
 #include "harness/stress/axis.h"
-#include "harness/stress/drawn_maps.h"
 #include "harness/stress/synthetic_scene.h"
 #include "tests/harness/stress/stress_fixture.h"
 

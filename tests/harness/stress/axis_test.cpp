@@ -14,7 +14,6 @@
 #include "base/error.h"
 #include "filters/model.h"
 #include "harness/options/options.h"
-#include "harness/stress/exhibits.h"
 #include "harness/stress/run_stress.h"
 #include "harness/stress/synthetic_scene.h"
 #include "tests/harness/stress/stress_fixture.h"

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "filters/catalogue.h"
-#include "harness/measure/filter_setup.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/view/view_state.h"
 #include "tests/harness/cli/program.h"

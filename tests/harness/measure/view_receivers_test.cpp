@@ -1,6 +1,6 @@
 // Scalar models over a view: rows are turned, excused receivers are counted.
 
-#include "harness/measure/model_images.h"
+#include "harness/measure/view_receivers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // A filter whose visibility is the same everywhere is suspect, by a truth made by hand.
 
-#include "harness/measure/suspects.h"
+#include "harness/measure/scene_measurement.h"
 
 #include <gtest/gtest.h>
 

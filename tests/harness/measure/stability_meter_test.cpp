@@ -1,4 +1,4 @@
-#include "harness/measure/map_limits.h"
+#include "harness/measure/stability_meter.h"
 
 #include <gmock/gmock.h>
 
