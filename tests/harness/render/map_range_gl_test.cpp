@@ -152,12 +152,14 @@ TEST(MapRangeVariants, RightRule_CompilesNothingMore) {
   EXPECT_EQ(render::range_defines(wrong).size(), 1u) << "an orthographic map has no behind";
 }
 
-/// A deck over the lamp: depth divided by a negative w is more than 1, so that either test alone lights it.
-TEST(BehindALamp, ADeckIsLit_UnlessNeitherTestIsMade) {
+/// Projected through the lamp, a deck over it lies in the mirrored cone: without the test of what is behind, the map is
+/// asked about it, at depths before its near plane.
+TEST(BehindALamp, ADeckIsNotAskedAbout_UnlessTheTestIsOff) {
   scene::Scene scene = load_builtin("lamp");
   scene.meshes.push_back(scene::make_plane({4.0f, 4.0f}, 1));
   for (scene::Vertex& v : scene.meshes.back().vertices) v.position_ws.y = 6.0f;
-  scene.cameras = {look_down({0.0f, 9.0f, 0.0f})};
+  scene.cameras = {look_down({-1.5f, 3.5f, 1.0f})};
+  scene.cameras.front().forward_ws = {0.0f, 1.0f, 0.0f};  // sees the side that is turned to the lamp
   Bench bench(shared_context(), scene, kRangeMapSize);
   const auto request = catalogue().parse_requests("none").front();
   const auto find_deck = [&](const RangeRule& rule) {
@@ -166,15 +168,10 @@ TEST(BehindALamp, ADeckIsLit_UnlessNeitherTestIsMade) {
     std::erase_if(deck, [](const Receiver& r) { return r.position_ws.y < 5.0f; });
     return deck;
   };
+  EXPECT_EQ(find_deck({Border::kBorder, false, true}).size(), 0u);
   const std::vector<Receiver> deck = find_deck({Border::kBorder, false, false});
-  ASSERT_GT(deck.size(), 1000u);
-  for (const auto& [far, behind] : {std::pair(true, true), {true, false}, {false, true}, {false, false}}) {
-    const float expected = far || behind ? 1.0f : 0.0f;
-    EXPECT_EQ(find_deck({Border::kBorder, far, behind}).size(), expected == 1.0f ? 0 : deck.size());
-    const std::vector<float> image = bench.draw(request);
-    EXPECT_TRUE(std::ranges::all_of(deck, [&](const Receiver& r) { return image[bench.index(r)] == expected; }))
-        << far << behind;
-  }
+  EXPECT_GT(deck.size(), 1000u);
+  EXPECT_TRUE(std::ranges::all_of(deck, [](const Receiver& r) { return r.depth < 0.0f; }));
 }
 
 constexpr int kShapeMap = 1024;
