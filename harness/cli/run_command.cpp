@@ -17,7 +17,6 @@
 #include "report/files/folder_lock.h"
 #include "report/pages/advice_text.h"
 #include "report/pages/answer.h"
-#include "report/records/filter_mistakes.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::cli {

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "report/records/gpu_frame.h"
+#include "report/records/records.h"
 
 namespace shadowbench::gpu {
 namespace {

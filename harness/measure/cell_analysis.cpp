@@ -10,8 +10,8 @@
 #include "harness/measure/scene_assets.h"
 #include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"
-#include "report/records/absence.h"
 #include "report/records/format.h"
+#include "report/records/records.h"
 
 namespace shadowbench::measure {
 namespace {

@@ -16,8 +16,8 @@
 #include "reference/truth/occluders.h"
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
-#include "report/records/absence.h"
 #include "report/records/format.h"
+#include "report/records/records.h"
 
 namespace shadowbench::measure {
 

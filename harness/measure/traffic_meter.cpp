@@ -12,7 +12,7 @@
 #include "filters/map_reader.h"
 #include "harness/gl/objects.h"
 #include "harness/measure/scene_assets.h"
-#include "report/records/gpu_frame.h"
+#include "report/records/records.h"
 
 namespace shadowbench::measure {
 namespace {

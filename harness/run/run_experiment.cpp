@@ -26,7 +26,6 @@
 #include "report/analysis/findings.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"
-#include "report/records/filter_mistakes.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
 

@@ -258,8 +258,8 @@ class Tuner {
     std::string values;
     for (std::size_t i = 0; i < params.size(); ++i)
       values += fmt::format("{}{}={}", i > 0 ? " " : "", params[i].name, evaluation.values[i]);
-    evaluations_ += fmt::format("{},{},{},{},{}\r\n", id, evaluation.number, evaluation.stage,
-                                records::quote_csv(values), evaluation.error);
+    evaluations_ += records::make_csv_row(
+        {id, fmt::format("{}", evaluation.number), evaluation.stage, values, fmt::format("{}", evaluation.error)});
   }
 
   static void note_filter(TunedFilter& filter) {
@@ -323,7 +323,8 @@ class Tuner {
     const document::Page page = pages::make_tune_page(record_);
     pages::write_page(options_.run.out, "tune", page);
     write_text_file(options_.run.out / "evaluations.csv",
-                    fmt::format("filter,evaluation,stage,parameters,{}\r\n", metric_.name) + evaluations_);
+                    records::make_csv_row({"filter", "evaluation", "stage", "parameters", std::string(metric_.name)}) +
+                        evaluations_);
     write_text_file(options_.run.out / "tuned.json", records::make_tuned_json(record_));
     return document::write_markdown(page);
   }

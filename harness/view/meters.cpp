@@ -9,7 +9,7 @@
 #include "harness/gl/survey.h"
 #include "harness/measure/timing.h"
 #include "reference/metrics/error_stats.h"
-#include "report/records/gpu_frame.h"
+#include "report/records/records.h"
 
 namespace shadowbench::view {
 namespace {

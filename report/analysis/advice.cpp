@@ -19,8 +19,8 @@
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
-#include "report/records/absence.h"
 #include "report/records/format.h"
+#include "report/records/records.h"
 
 namespace shadowbench::analysis {
 namespace {

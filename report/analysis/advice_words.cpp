@@ -11,9 +11,8 @@
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
 #include "report/analysis/trade.h"
-#include "report/records/absence.h"
 #include "report/records/format.h"
-#include "report/records/gpu_frame.h"
+#include "report/records/records.h"
 
 namespace shadowbench::analysis {
 namespace {

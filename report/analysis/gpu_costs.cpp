@@ -9,7 +9,7 @@
 
 #include "report/analysis/advice.h"
 #include "report/records/format.h"
-#include "report/records/gpu_frame.h"
+#include "report/records/records.h"
 
 namespace shadowbench::analysis {
 namespace {

@@ -16,9 +16,8 @@
 
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/cells.h"
-#include "report/records/absence.h"
 #include "report/records/format.h"
-#include "report/records/gpu_frame.h"
+#include "report/records/records.h"
 
 namespace shadowbench::analysis {
 namespace {

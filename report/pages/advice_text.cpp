@@ -11,10 +11,10 @@
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cells.h"
 #include "report/document/markdown.h"
-#include "report/records/absence.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
+#include "report/records/records.h"
 
 namespace shadowbench::pages {
 namespace {

@@ -20,8 +20,8 @@
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
 #include "report/pages/answer.h"
-#include "report/records/absence.h"
 #include "report/records/format.h"
+#include "report/records/records.h"
 
 namespace shadowbench::pages {
 namespace {

@@ -20,7 +20,7 @@
 #include "report/pages/trade_section.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
-#include "report/records/gpu_frame.h"
+#include "report/records/records.h"
 
 namespace shadowbench::pages {
 namespace {

@@ -134,11 +134,6 @@ void explain_columns(document::Details& details, const std::string& file,
 
 namespace {
 
-std::string join_front_row(std::vector<std::string> fields) {
-  for (std::string& field : fields) field = records::quote_csv(field);
-  return fmt::format("{}\r\n", fmt::join(fields, ","));
-}
-
 std::string join_keys(const analysis::TradeConfiguration& configuration) {
   std::vector<std::string> keys;
   for (const records::CellRecord* cell : configuration.cells) keys.push_back(cell->key);
@@ -188,7 +183,7 @@ std::string make_row(const analysis::TradeScope& scope, const analysis::TradeFro
   const auto place = describe_place(scope, front, i);
   fields.insert(fields.end(), place.begin(), place.end());
   fields.push_back(renderer);
-  return join_front_row(fields);
+  return records::make_csv_row(fields);
 }
 
 std::string make_rows(const analysis::TradeScope& scope, std::size_t error, std::size_t cost,
@@ -235,7 +230,7 @@ void write_fronts_csv(const std::vector<records::CellRecord>& cells, const std::
                       const std::function<void(std::string_view)>& write) {
   std::vector<std::string> names;
   for (const records::CsvColumn& column : list_front_columns()) names.push_back(column.name);
-  write(join_front_row(names));
+  write(records::make_csv_row(names));
   for (const analysis::TradeScope& scope : scopes)
     for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error)
       for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) write(make_rows(scope, error, cost, {}));

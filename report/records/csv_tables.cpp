@@ -85,7 +85,7 @@ void visit_columns(const RunRecord& run, const CellRecord& cell, const auto& emi
                value ? describe_clock(*value) : describe_clock(run.gl));
           emit_part("", "", value ? describe_machine_kind(*value) : std::string());
         } else if constexpr (std::is_same_v<T, bool>) {
-          about.column.starts_with("1:") ? emit_part("", "", value ? 1 : 0) : emit_part("", "", value);
+          about.as_number ? emit_part("", "", value ? 1 : 0) : emit_part("", "", value);
         } else if constexpr (!std::is_same_v<T, Group>) {
           visit_parts(value, emit_part);
         }
@@ -150,11 +150,6 @@ std::vector<std::size_t> choose_columns(CsvTable table, const std::vector<Column
   return chosen;
 }
 
-std::string join_row(std::vector<std::string> fields) {
-  for (std::string& field : fields) field = quote_csv(field);
-  return fmt::format("{}\r\n", fmt::join(fields, ","));
-}
-
 }  // namespace
 
 std::string quote_csv(std::string_view text) {
@@ -165,6 +160,11 @@ std::string quote_csv(std::string_view text) {
   return quoted + "\"";
 }
 
+std::string make_csv_row(std::vector<std::string> fields) {
+  for (std::string& field : fields) field = quote_csv(field);
+  return fmt::format("{}\r\n", fmt::join(fields, ","));
+}
+
 std::vector<CsvColumn> list_csv_columns(CsvTable table) {
   const std::vector<Column> columns = list_columns();
   std::vector<CsvColumn> listed;
@@ -173,8 +173,8 @@ std::vector<CsvColumn> list_csv_columns(CsvTable table) {
 }
 
 std::string make_csv(const TextTable& table) {
-  std::string csv = join_row(table.header);
-  for (const std::vector<std::string>& row : table.rows) csv += join_row(row);
+  std::string csv = make_csv_row(table.header);
+  for (const std::vector<std::string>& row : table.rows) csv += make_csv_row(row);
   return csv;
 }
 

@@ -14,6 +14,9 @@ namespace shadowbench::records {
 /// Source: RFC 4180.
 std::string quote_csv(std::string_view text);
 
+/// Writes a row, each field as it is quoted, with its end.
+std::string make_csv_row(std::vector<std::string> fields);
+
 /// Writes a table, each field as it is quoted. Source: RFC 4180.
 std::string make_csv(const TextTable& table);
 

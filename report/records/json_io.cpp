@@ -23,6 +23,54 @@ namespace {
 
 using nlohmann::json;
 
+constexpr int kDeepest = 100;
+constexpr const char* kMistakesFile = "filter_mistakes.json";
+
+void require_shallow(int depth) {
+  if (depth > kDeepest) throw std::invalid_argument("nested more than 100 deep");
+}
+
+void check_depth(const json& value, int depth = 0) {
+  if (!value.is_structured()) return;
+  require_shallow(depth);
+  for (const json& each : value) check_depth(each, depth + 1);
+}
+
+}  // namespace
+
+json parse_json(std::istream& stream, const json::parser_callback_t& keep) {
+  if (keep) {
+    return json::parse(
+        stream,
+        [&](int depth, json::parse_event_t event, json& value) {
+          require_shallow(depth);
+          return keep(depth, event, value);
+        });
+  }
+  // With a callback, the parser goes through all that an object holds whenever one of its members ends.
+  json value = json::parse(stream);
+  check_depth(value);
+  return value;
+}
+
+json number_json(double value) {
+  constexpr double kLargestExactInteger = 9007199254740992.0;  // 2^53
+  if (std::nearbyint(value) == value && std::abs(value) <= kLargestExactInteger)
+    return static_cast<std::int64_t>(value);
+  return value;
+}
+
+std::string dump_line(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+std::string dump_file(const json& value) { return value.dump(1, ' ', false, json::error_handler_t::replace) + "\n"; }
+
+json::json_pointer make_pointer(std::string path) {
+  std::replace(path.begin(), path.end(), '.', '/');
+  return json::json_pointer("/" + path);
+}
+
+namespace {
+
 bool is_finite(const json& value) {
   if (value.is_structured()) return std::ranges::all_of(value, is_finite);
   return !value.is_number_float() || std::isfinite(value.get<double>());
@@ -488,6 +536,35 @@ std::string make_metric_json() {
                       {"diff", metric.source != metrics::MetricSource::kRun}});
   }
   return listed.dump(2) + "\n";
+}
+
+void write_filter_mistakes(const std::filesystem::path& folder, const std::vector<filters::FilterMistake>& mistakes) {
+  std::error_code ignored;
+  if (mistakes.empty()) {
+    std::filesystem::remove(folder / kMistakesFile, ignored);
+    return;
+  }
+  json list = json::array();
+  for (const filters::FilterMistake& each : mistakes)
+    list.push_back({{"filter", each.id}, {"file", each.file}, {"message", each.message}});
+  write_text_file(folder / kMistakesFile, dump_file(list));
+}
+
+std::vector<filters::FilterMistake> read_filter_mistakes(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / kMistakesFile, ignored)) return {};
+  require_plain_file(folder / kMistakesFile, kMebibyte);
+  std::vector<filters::FilterMistake> mistakes;
+  try {
+    std::ifstream stream(folder / kMistakesFile, std::ios::binary);
+    const json list = parse_json(stream);
+    for (const json& each : list)
+      mistakes.push_back({each.at("filter").get<std::string>(), each.at("file").get<std::string>(),
+                          each.at("message").get<std::string>()});
+  } catch (const std::exception&) {
+    fail_input("this file is damaged; run again, or remove it", (folder / kMistakesFile).string());
+  }
+  return mistakes;
 }
 
 }  // namespace shadowbench::records

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/filter_spec.h"
 #include "report/records/records.h"
 
 namespace shadowbench::records {
@@ -66,5 +67,12 @@ std::string make_metric_text();
 
 /// Lists them as a JSON array.
 std::string make_metric_json();
+
+/// Leaves in a run's folder, as filter_mistakes.json, why the run measured nothing; none: takes that away again.
+/// Throws Error(kOutput).
+void write_filter_mistakes(const std::filesystem::path& folder, const std::vector<filters::FilterMistake>& mistakes);
+
+/// Reads what was left there; none where nothing was. Throws Error(kInput) for a file that is none of ours.
+std::vector<filters::FilterMistake> read_filter_mistakes(const std::filesystem::path& folder);
 
 }  // namespace shadowbench::records

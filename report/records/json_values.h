@@ -111,11 +111,7 @@ struct MemberReader {
   template <class T>
   void operator()(const std::string& path, T& value, const About& about = {}) const {
     if (about.may_lack && !root.contains(make_pointer(path))) return;
-    const std::size_t dot = path.find('.');
-    if (dot == path.npos)
-      value = read_value<T>(root.at(path));
-    else
-      MemberReader{root.at(path.substr(0, dot))}(path.substr(dot + 1), value);
+    value = read_value<T>(root.at(make_pointer(path)));
   }
 };
 

@@ -1,13 +1,57 @@
 #pragma once
 
+#include <concepts>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "reference/metrics/metric_table.h"
-#include "report/records/description.h"
-#include "report/records/gpu_frame.h"
 #include "report/records/records.h"
 
 namespace shadowbench::records {
+
+// One description of every record that is read again: writing, reading, `absent`, the schema and the CSV columns follow
+// from it. `visit_fields(record, visit)` calls `visit(path, value, about)` for each field, or without the last where
+// there is nothing to say; a dot in the path is a group.
+
+/// What a description says of a field beside its name and type.
+struct About {
+  std::string_view text = {};                  ///< what the schema says of it
+  std::optional<double> least = std::nullopt;  ///< of a number, or of the length of a list; counts are never negative
+  std::optional<double> most = std::nullopt;   ///< of a number
+  std::string_view pattern = {};               ///< that a text matches
+  std::string_view one_of = {};                ///< texts that it may be, with commas
+  bool filled = false;    ///< a text, or each of a list, is not empty; what may be null is filled where it is not
+  bool is_path = false;   ///< in the report's folder, and does not leave it
+  bool may_lack = false;  ///< what is not there is not written, and is no gap that needs a reason
+  std::string_view column = {};       ///< what its column in CSV holds; empty: it has none
+  bool as_number = false;             ///< its column holds 1 or 0, not on or off
+  std::string_view column_name = {};  ///< empty: it follows from the path
+  std::string_view unit = {};         ///< of a metric; empty: it is none
+};
+
+/// What is visited instead of a value where a description speaks of a group.
+struct Group {};
+inline constexpr Group kGroup;
+
+/// A record of this type, constant or not.
+template <class Given, class Record>
+concept Is = std::same_as<std::remove_const_t<Given>, Record>;
+
+/// A text that is null in JSON where it is empty.
+inline std::optional<std::string> null_if_empty(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(text);
+}
+
+/// Visits the fields of a record as a group: they are fields of the record that it is in.
+void visit_group(const std::string& name, auto& record, auto&& visit, const About& about = {}) {
+  visit(name, kGroup, about);
+  visit_fields(record, [&](const std::string& member, auto& value, const About& field = {}) {
+    visit(name + "." + member, value, field);
+  });
+}
 
 inline constexpr About kPositive{.least = 0};
 
@@ -124,11 +168,13 @@ void visit_fields(Is<BiasRecord> auto& bias, auto&& visit) {
         {.column = "the same, in reaches of the filter: to the centre of the farthest texel that it compares"});
   visit("normal_offset_texels", bias.normal_offset.texels, {.column = "normal offset, texels"});
   visit("normal_offset_world", bias.normal_offset.world, {.column = "normal offset, metres"});
-  visit("receiver_plane", bias.receiver_plane, {.column = "1: the receiver plane's gradient is added for every tap"});
+  visit("receiver_plane", bias.receiver_plane,
+        {.column = "1: the receiver plane's gradient is added for every tap", .as_number = true});
   visit("polygon_factor", bias.polygon_factor, {.column = "glPolygonOffset in the depth pass, factor"});
   visit("polygon_units", bias.polygon_units, {.column = "glPolygonOffset in the depth pass, units"});
-  visit("front_cull", bias.front_cull, {.column = "1: front faces are left out of the depth map"});
-  visit("midpoint", bias.midpoint, {.column = "1: the depth map lies half-way between first and second surface"});
+  visit("front_cull", bias.front_cull, {.column = "1: front faces are left out of the depth map", .as_number = true});
+  visit("midpoint", bias.midpoint,
+        {.column = "1: the depth map lies half-way between first and second surface", .as_number = true});
 }
 
 void visit_fields(Is<RangeRecord> auto& range, auto&& visit) {
@@ -326,6 +372,32 @@ void visit_settings(Is<CellRecord> auto& cell, auto&& visit) {
   visit("size", kGroup, {.text = "pixels"});
   visit("size.width", cell.width, {.least = 1, .column = "picture, pixels"});
   visit("size.height", cell.height, {.least = 1, .column = "picture, pixels"});
+}
+
+void visit_fields(Is<ResolveRecord> auto& resolve, auto&& visit) {
+  visit("rule", resolve.rule, {.text = "newest: the last frame; mean: of all; exponential, clamped: of weight 0.1"});
+  visit("jitter", resolve.jitter,
+        {.text = "the camera moved by parts of a pixel, and the truth is the mean over them"});
+  visit("rmse", resolve.rmse, {.text = "to the truth, after each frame"});
+  visit("noise", resolve.noise, {.text = "RMS difference from what very many frames converge to", .may_lack = true});
+  visit("flicker", resolve.flicker, {.text = "RMS change from frame to frame, in the second half", .may_lack = true});
+}
+
+void visit_fields(Is<GhostRecord> auto& ghost, auto&& visit) {
+  visit("texels", ghost.texels, {.text = "that shadows moved by in each frame"});
+  visit("rule", ghost.rule);
+  visit("pixels", ghost.pixels, {.text = "dark before the motion and lit after it"});
+  visit("at_stop", ghost.at_stop, {.text = "their mean error in the last frame of the motion", .may_lack = true});
+  visit("frames_until", ghost.frames_until, {.text = "that error was 0.02 or less", .may_lack = true});
+}
+
+void visit_fields(Is<AccumulationRecord> auto& accumulation, auto&& visit) {
+  visit("resolves", accumulation.resolves);
+  visit("ghosts", accumulation.ghosts);
+  visit("no_ghosts", accumulation.no_ghosts, {.text = "why there are none; empty where there are"});
+  visit("exponential_ms", accumulation.exponential_ms, {.text = "the pass that accumulates; in no other time"});
+  visit("clamped_ms", accumulation.clamped_ms);
+  visit("picture", accumulation.picture, {.text = "relative to the report folder", .is_path = true, .may_lack = true});
 }
 
 void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -8,7 +9,6 @@
 #include <vector>
 
 #include "reference/metrics/metric_table.h"
-#include "report/records/accumulation_record.h"
 
 namespace shadowbench::records {
 
@@ -251,6 +251,35 @@ struct ExternalRecord {
   std::map<std::string, double> peers;     ///< RMSE of the run's filters in the one picture of the first phase
 };
 
+/// How visibility fares that is accumulated over frames by one rule, in a view that stands still.
+struct ResolveRecord {
+  std::string rule;                          ///< "newest", "mean", "exponential" or "clamped"
+  bool jitter = false;                       ///< the camera moved by parts of a pixel
+  std::vector<double> rmse;                  ///< after each frame, against the truth
+  std::optional<std::vector<double>> noise;  ///< after each frame, against what very many frames converge to
+  std::optional<double> flicker;             ///< root mean square of its change from frame to frame, in the second half
+};
+
+/// How long a shadow lags behind that moved.
+struct GhostRecord {
+  double texels = 0.0;              ///< that it moved by in each frame
+  std::string rule;                 ///< as ResolveRecord's
+  std::int64_t pixels = 0;          ///< behind its edges
+  std::optional<double> at_stop;    ///< mean error of these pixels in the last frame of the motion; nothing without any
+  std::optional<int> frames_until;  ///< that the shadow then stood still, until it was within kGhostLimit of the truth
+};
+inline constexpr double kGhostLimit = 0.02;
+
+/// What accumulation over frames makes of a filter.
+struct AccumulationRecord {
+  std::vector<ResolveRecord> resolves;
+  std::vector<GhostRecord> ghosts;
+  std::string no_ghosts;        ///< why there are none; empty where there are
+  double exponential_ms = 0.0;  ///< of the pass that accumulates, which is in no other time
+  double clamped_ms = 0.0;
+  std::optional<std::string> picture;  ///< of all cells of the view, relative to the report folder
+};
+
 /// Everything measured of one scene x view x filter x parameters x map settings.
 ///
 /// What does not exist stays empty, and `absent` says why: dotted field name, or the name of a whole group
@@ -381,5 +410,53 @@ struct Provenance {
   std::vector<std::string> command;  ///< one entry per argument
   double seconds = 0.0;              ///< wall time
 };
+
+/// Why a value is absent.
+struct Absence {
+  std::string why;
+  bool nothing_to_see = false;  ///< its fault cannot occur in the view: that is not a value that nobody measured
+};
+
+/// Says why a field, or a group of them, is absent.
+inline void explain(CellRecord& cell, const std::string& field, const Absence& absence) {
+  cell.absent[field] = absence.why;
+  if (absence.nothing_to_see) cell.nothing_to_see.push_back(field);
+}
+
+/// Whether the fault that a field measures cannot occur in the cell's view.
+inline bool has_nothing_to_see(const CellRecord& cell, std::string field) {
+  for (;; field.resize(field.rfind('.'))) {
+    if (cell.absent.contains(field)) return std::ranges::count(cell.nothing_to_see, field) > 0;
+    if (field.find('.') == std::string::npos) return false;
+  }
+}
+
+/// Why a cell lacks a value: what `absent` holds for the field, for a group that it is in, or for a part of it;
+/// "not measured" where it holds nothing.
+inline std::string explain_absence(const CellRecord& cell, const std::string& field) {
+  for (std::string name = field;; name.resize(name.rfind('.'))) {
+    if (const auto found = cell.absent.find(name); found != cell.absent.end()) return found->second;
+    if (name.find('.') == std::string::npos) break;
+  }
+  const auto part = cell.absent.lower_bound(field + ".");
+  return part != cell.absent.end() && part->first.starts_with(field + ".") ? part->second : "not measured";
+}
+
+/// The frame that a cost on a GPU is of: each of its pixels is a receiver that is looked up.
+inline constexpr int kGpuFrameWidth = 1920, kGpuFrameHeight = 1080;
+
+/// By which factor estimates missed published times at most; harness/gpu/README.md has them side by side.
+inline constexpr double kEstimateFactor = 1.6;
+
+/// Milliseconds that the lookups of such a frame take of what a million receivers take, microseconds.
+inline constexpr double lookups_ms(double million_us) {
+  return million_us * (1e-6 * kGpuFrameWidth * kGpuFrameHeight) * 1e-3;
+}
+
+/// What such a frame costs by an estimate, milliseconds: its lookups, and where light or casters move the prefilter of
+/// one map and a lower bound of drawing it. What every lookup pays is in no estimate.
+inline double frame_ms(const GpuEstimateRecord& estimate, bool is_moving) {
+  return lookups_ms(estimate.lookup_us) + (is_moving ? 1e-3 * (estimate.prefilter_us + estimate.map_us) : 0.0);
+}
 
 }  // namespace shadowbench::records

@@ -19,10 +19,9 @@
 #include "report/images/hardest_edge.h"
 #include "report/images/picture_io.h"
 #include "report/pages/write_page.h"
-#include "report/records/filter_mistakes.h"
 #include "report/records/format.h"
+#include "report/records/json_io.h"
 #include "report/regress/comparison.h"
-#include "report/regress/regress_text.h"
 
 namespace shadowbench::regress {
 namespace {

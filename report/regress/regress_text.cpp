@@ -1,5 +1,3 @@
-#include "report/regress/regress_text.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,6 +12,7 @@
 
 #include "base/text.h"
 #include "report/pages/write_page.h"
+#include "report/regress/regress.h"
 
 namespace shadowbench::regress {
 namespace {

@@ -8,8 +8,8 @@
 #include <type_traits>
 
 #include "base/toml.h"
-#include "report/records/absence.h"
 #include "report/records/record_fields.h"
+#include "report/records/records.h"
 
 namespace shadowbench::regress {
 namespace {

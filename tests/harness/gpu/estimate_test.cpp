@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "report/records/gpu_frame.h"
+#include "report/records/records.h"
 
 namespace shadowbench::gpu {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "report/analysis/advice_words.h"
-#include "report/records/absence.h"
+#include "report/records/records.h"
 #include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
 

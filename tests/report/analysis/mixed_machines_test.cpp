@@ -5,7 +5,7 @@
 #include "report/analysis/advice_words.h"
 #include "report/analysis/findings.h"
 #include "report/analysis/trade.h"
-#include "report/records/absence.h"
+#include "report/records/records.h"
 #include "tests/report/analysis/mixed_cells.h"
 
 namespace shadowbench::analysis {

@@ -6,7 +6,7 @@
 
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cells.h"
-#include "report/records/absence.h"
+#include "report/records/records.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::pages {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "report/regress/regress_text.h"
+#include "report/regress/regress.h"
 #include "tests/report/pages/answer.h"
 
 namespace shadowbench::regress {
