@@ -93,7 +93,7 @@ TEST_F(Sweep, Grids_OfAFinishedRun_AreDrawnAgainInAnotherWidth) {
   EXPECT_EQ(cell_times(), before) << "nothing is measured again";
   EXPECT_THAT(run(again + " --grid-width=700").err, HasSubstr("nothing is left to do"));
   ASSERT_EQ(run(again + " --grid-width 3.3in").exit_code, 0);
-  EXPECT_EQ(results()["cells"][0]["images"]["grid"], "cubes.grid.svg");
+  EXPECT_EQ(read_results()["cells"][0]["images"]["grid"], "cubes.grid.svg");
   EXPECT_TRUE(std::filesystem::exists(folder() / "out" / "cubes.grid.svg"));
   ASSERT_EQ(run(again).exit_code, 0);
   EXPECT_EQ(read_text(grid), usual);
