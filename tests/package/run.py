@@ -67,7 +67,7 @@ def check_shell(prefix):
         options = set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", call(prefix / "bin/shadowbench", *words, "--help-all"), re.MULTILINE))
         missing = {option for option in options if option not in text}
         expect(options and not missing, f"{page.name} lacks {missing}")
-    for words, offered in ((["reg"], ["regress"]), (["list", ""], ["filters", "presets", "scenes", "metrics", "gpus", "gl"]),
+    for words, offered in ((["reg"], ["regress"]), (["list", ""], ["filters", "presets", "scenes", "lessons", "metrics", "gpus", "gl"]),
                            (["run", "--map"], ["--map-size", "--map-format"]), (["run", "--no-tr"], ["--no-truth"]),
                            (["run", "--border", ""], ["border", "edge", "repeat"]), (["run", "--border", "=", "e"], ["edge"]),
                            (["run", "--filters", "none,tent3"], ["none,tent3x3"]), (["bias", "--scene", "cub"], ["cubes"]),
