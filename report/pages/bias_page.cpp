@@ -40,8 +40,8 @@ std::string name_light(const std::vector<records::BiasSweepRecord>& sweeps, cons
   return sweeps.size() > 1 ? sweep.light + ": " + text : text;
 }
 
-/// For comparison: an absent gap, of which nothing is known, is wider than any other.
-double weigh_gap(const std::optional<double>& gap) { return gap.value_or(2.0); }
+/// For comparison: an absent gap, of which nothing is known, is worse than a small one and better than a wide one.
+double weigh_gap(const std::optional<double>& gap) { return gap.value_or(kWideGap); }
 
 std::string explain_amounts() {
   return fmt::format(

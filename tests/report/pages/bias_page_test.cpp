@@ -228,6 +228,9 @@ TEST(BiasPage, TheBiasToShip_OpensTheNarrowestGap_OfThoseThatAreEnough) {
   EXPECT_EQ(find("pcf2x2"), "constant:depth=0.25, contact gap 1 %");
   for (records::BiasPoint& point : sweeps[0].modes[2].curves[0].points) point.acne = 0.5;
   EXPECT_EQ(find("none"), "constant:depth=0.5, contact gap 1 %");
+  // A gap that nobody knows is better than one that is surely wide.
+  for (records::BiasPoint& point : sweeps[0].modes[0].curves[0].points) point.contact_gap = 1.0;
+  EXPECT_EQ(find("none"), "midpoint, contact gap \u2013");
   sweeps[0].modes.resize(1);
   for (records::BiasPoint& point : sweeps[0].modes[0].curves[0].points) point.acne = 0.5;
   EXPECT_EQ(find("none"), "no mode removes its acne");
