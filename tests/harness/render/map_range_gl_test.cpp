@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "harness/scene/mesh_tools.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
