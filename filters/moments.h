@@ -248,6 +248,13 @@ double change_by_rounding(const std::array<Tracked, 4>& stored, double bias, dou
   return largest;
 }
 
+/// The map of a filter that blurs four moments.
+template <class T>
+EncodedMap<T, 4> make_map(const ModelInput& input) {
+  return EncodedMap<T, 4>(
+      input, static_cast<int>(number(input.values, "radius")), [](const EncodeInput<T>& e) { return encode(e.depth); });
+}
+
 }  // namespace four_moments
 
 /// The scalar model of moment shadow maps.
@@ -258,10 +265,7 @@ struct FourMoments {
     using P = Position<T>;
 
    public:
-    explicit Filter(const ModelInput& input)
-        : map_(input, static_cast<int>(number(input.values, "radius")),
-               [](const EncodeInput<T>& e) { return four_moments::encode(e.depth); }),
-          bias_(fit_bias(input.values)) {}
+    explicit Filter(const ModelInput& input) : map_(four_moments::make_map<T>(input)), bias_(fit_bias(input.values)) {}
 
     static Kernel kernel(const ParamValues& values) { return EncodedMap<T, 4>::kernel(values); }
 
@@ -384,8 +388,7 @@ struct PackedMoments {
 
    public:
     explicit Filter(const ModelInput& input)
-        : map_(input, static_cast<int>(number(input.values, "radius")),
-               [](const EncodeInput<T>& e) { return four_moments::encode(e.depth); }),
+        : map_(four_moments::make_map<T>(input)),
           grid_(input.map.size, Border::kEdge, store_bytes(input.spec.passes.back().store)),
           bias_(static_cast<float>(number(input.values, "moment_bias"))),
           mean_of_four_(text_or(input.values, "lookup", "") == "bilinear"),

@@ -54,6 +54,7 @@ struct DisplayedValues {
   Colors colors = Colors::kPicture;
   float low = 0.0f;  ///< gets the first of the colours, and `high` the last; not of a picture
   float high = 1.0f;
+  std::size_t infinite = 0;  ///< how many of the values are, as far as that was counted
 };
 
 /// Where pixels of the pictures are shown.

@@ -5,7 +5,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <span>
 
@@ -147,11 +146,10 @@ std::vector<std::string> MapPanel::list_contents() const {
   return contents;
 }
 
-images::Image MapPanel::read_content(int layer) {
+images::Image MapPanel::read_content(int layer) const {
   const render::ShadowMap& map = bench_.stage().light_map().map;
   const int size = map.size();
   images::Image image(size, size, 1);
-  infinite_ = 0;
   if (content_ == "depth") {
     const filters::DepthMap depth = map.read(layer);
     for (int y = 0; y < size; ++y)
@@ -163,9 +161,8 @@ images::Image MapPanel::read_content(int layer) {
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
       const auto* texel = &stored.values[static_cast<std::size_t>((y * size + x) * stored.channels)];
-      const auto value = content_ == "variance" ? texel[1] - texel[0] * texel[0] : texel[content_.back() - '1'];
-      *image.at(x, size - 1 - y) = value;
-      infinite_ += std::isinf(value);
+      *image.at(x, size - 1 - y) =
+          content_ == "variance" ? texel[1] - texel[0] * texel[0] : texel[content_.back() - '1'];
     }
   return image;
 }
@@ -185,7 +182,7 @@ void MapPanel::show_map(int side_pixels, int layer) {
   widgets_.show("map.image", target_->texture());
   draw_footprint({corner.x, corner.y}, side_pixels, first);
   ImGui::Text("%.4g (dark) .. %.4g", static_cast<double>(values.low), static_cast<double>(values.high));
-  if (infinite_ > 0) ImGui::Text("%zu texels hold infinity, shown white", infinite_);
+  if (values.infinite > 0) ImGui::Text("%zu texels hold infinity, shown white", values.infinite);
   if (!footprint_) return ImGui::TextDisabled("No receiver in the map under the pointer.");
   ImGui::Text("texel %.2f, %.2f of layer %d, depth %.6f", footprint_->place_texels.x, footprint_->place_texels.y,
               footprint_->receiver.layer, static_cast<double>(footprint_->receiver.depth));

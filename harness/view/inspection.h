@@ -82,7 +82,6 @@ class MapPanel {
   Widgets widgets_;
   std::optional<render::ImageTarget> target_;
   std::string content_ = "depth";  ///< as MapReading has it
-  std::size_t infinite_ = 0;       ///< texels of what is shown
   double zoom_ = 1.0;
   glm::vec2 last_place_{0.0f};  ///< in parts of the picture
   std::size_t last_side_ = 0;
@@ -97,7 +96,7 @@ class MapPanel {
   Prepared* prepare(int layer);
   void add_reads(Footprint& footprint);
   std::vector<std::string> list_contents() const;
-  images::Image read_content(int layer);
+  images::Image read_content(int layer) const;
   void show_map(int side_pixels, int layer);
   void draw_footprint(const glm::vec2& corner, int side_pixels, const glm::dvec2& first_texel) const;
 };

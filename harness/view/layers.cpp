@@ -143,6 +143,8 @@ DisplayedValues Layers::upload(const std::string& id, std::uint64_t version,
     kept.texture.reset();
     kept.texture.emplace(render::upload_image(image));
     kept.low = kept.high = 0.0f;
+    kept.infinite =
+        static_cast<std::size_t>(std::ranges::count_if(image.texels, [](float v) { return std::isinf(v); }));
     for (const float value : image.texels) {
       if (!std::isfinite(value)) continue;
       kept.low = std::min(kept.low, value);
@@ -150,7 +152,11 @@ DisplayedValues Layers::upload(const std::string& id, std::uint64_t version,
     }
     if (kept.high <= kept.low) kept.high = kept.low + 1.0f;
   }
-  return {.values = &*kept.texture, .colors = Colors::kSequential, .low = kept.low, .high = kept.high};
+  return {.values = &*kept.texture,
+          .colors = Colors::kSequential,
+          .low = kept.low,
+          .high = kept.high,
+          .infinite = kept.infinite};
 }
 
 namespace {

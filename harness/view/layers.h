@@ -59,6 +59,7 @@ class Layers {
     std::uint64_t version = 0;
     std::optional<gl::Texture> texture;
     float low = 0.0f, high = 1.0f;
+    std::size_t infinite = 0;
   };
 
   Workbench& bench_;

@@ -112,8 +112,8 @@ const makeMeasuring = (engine) => {
   };
   // How far the reference is from the traced truth.
   const checkReference = async (place) => {
+    references.set(place, references.get(place)); // asked for once, and undefined until it is known
     const reference = await engine.findReference(kAsRun, place);
-    references.set(place, references.get(place));
     if (!reference || !run.truths[place]) return;
     while (engine.refine(reference, kAsRun) && !isStopped()) await pause();
     if (isStopped()) return;

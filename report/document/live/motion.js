@@ -138,6 +138,15 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
   };
   const isOfScene = !lamp && /^(tight|sphere)$/.test(fit);
   const ofScene = isOfScene && direction && fitScene(bounds, direction, fit);
+  const fits = new Map(); // the last one, by direction: a reference draws many maps of one
+  const fitAt = (towards) => {
+    const key = String(towards);
+    if (!fits.has(key)) {
+      fits.clear();
+      fits.set(key, fitScene(bounds, towards, fit));
+    }
+    return fits.get(key);
+  };
   const restore = () => {
     for (const index of steps)
       if (!uniformsOf(index).camera_forward_ws || !uniformsOf(index).clip_from_world)
@@ -163,7 +172,7 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => 
     const own = ({ uv }) => ({ wide: 1, deep: 1, uv: multiply(uv, back), clipOf: (clip) => multiply(clip, back) });
     const tilted = (sign) => multiply(turn.forth, multiply(about(sign * tilt), turn.back));
     const refit = ({ uv }) => {
-      const fitted = frameScene(uv, bounds, fitScene(bounds, transform(turn.forth, direction, 0), fit), ofScene);
+      const fitted = frameScene(uv, bounds, fitAt(transform(turn.forth, direction, 0)), ofScene);
       if (off === 0) return fitted;
       const clipOf = (clip) => multiply(fitted.clipOf(clip), tilted(-1));
       const axes = fitted.axes.map((axis) => transform(tilted(1), axis, 0));
