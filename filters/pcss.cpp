@@ -18,6 +18,8 @@ class Pcss {
         search_points_(bail_.order(generate_disk_points(input.spec, input.values, "search_points"))),
         disk_(input.values),
         rotation_(text_or(input.values, "rotation", "none")),
+        reads_one_(text_or(input.values, "read", "bilinear") == "nearest"),
+        interpolates_(text_or(input.values, "read", "bilinear") == "interpolated"),
         seed_(input.seed) {}
 
   /// Every receiver has a disk of its own.
@@ -25,16 +27,16 @@ class Pcss {
 
   T visibility(const Receiver& r, Tally& tally) const {
     const P search = disk_.radius(r, static_cast<P>(r.depth_unbiased), tally);
-    if (search < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
+    if (search < Disk::kOneFetch) return compare_tap(r, {}, tally);
     const DiskTurn<T> turn(rotation_, r, seed_);
     const std::optional<P> blocker = find_blocker(r, search, turn, tally);
     if (!blocker) return T(P(1));
     const P radius = disk_.radius(r, static_cast<P>(r.depth) - *blocker, tally);
-    if (radius < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
+    if (radius < Disk::kOneFetch) return compare_tap(r, {}, tally);
     tally.disk_radius_texels = static_cast<double>(radius);
     return bail_.template average<T>(points_, tally, [&](const glm::vec2& point) {
       const Offset<T> offset = turn.place(radius, point);
-      return map_.compare_2x2(r, offset, Disk::biased(r, offset), tally);
+      return compare_tap(r, offset, tally);
     });
   }
 
@@ -45,7 +47,15 @@ class Pcss {
   std::vector<glm::vec2> search_points_;
   Disk disk_;
   std::string rotation_;
+  bool reads_one_;
+  bool interpolates_;
   std::uint32_t seed_;
+
+  T compare_tap(const Receiver& r, const Offset<T>& offset, Tally& tally) const {
+    if (interpolates_) return T(P(find_blocker_at(r, offset, tally) ? 0 : 1));
+    const float z = Disk::biased(r, offset);
+    return reads_one_ ? map_.compare_nearest(r, offset, z, tally) : map_.compare_2x2(r, offset, z, tally);
+  }
 
   /// The mean depth of the blockers found.
   std::optional<P> find_blocker(const Receiver& r, P search, const DiskTurn<T>& turn, Tally& tally) const {
@@ -62,14 +72,31 @@ class Pcss {
     return blockers > P(0) ? std::optional(depths / blockers) : std::nullopt;
   }
 
-  /// A texel of the search, if it blocks.
+  /// What a tap of the search reads, if it blocks.
   std::optional<P> find_blocker_at(const Receiver& r, const Offset<T>& offset, Tally& tally) const {
     Tally own;
+    if (interpolates_) return interpolate_blocker(r, offset, tally);
     const float plane = map_.nearest_depth(r, offset, Disk::biased(r, offset), own);
     const float depth = Disk::read_depth(
         map_, r, offset, [&](float d) { return std::min(d, plane); }, tally);
     if (Disk::is_close(depth, plane)) tally.excused = true;
     return depth < plane ? std::optional(static_cast<P>(depth)) : std::nullopt;
+  }
+
+  /// The depth between four texels, if it blocks.
+  std::optional<P> interpolate_blocker(const Receiver& r, const Offset<T>& offset, Tally& tally) const {
+    const P x = map_.grid().fraction(r.uv.x) + offset.x, y = map_.grid().fraction(r.uv.y) + offset.y;
+    const P u = x - std::floor(x), v = y - std::floor(y);
+    const Offset<T> corner{offset.x + P(0.5) - u, offset.y + P(0.5) - v};
+    const std::array<float, 4> depths = map_.gather_depth(r, corner, tally);
+    const float plane = map_.corner_depth(r, corner, Disk::biased(r, offset), tally);
+    const P weights[4] = {(1 - u) * v, u * v, u * (1 - v), (1 - u) * (1 - v)};
+    P depth{};
+    for (std::size_t i = 0; i < 4; ++i) depth += weights[i] * static_cast<P>(depths[i]);
+    const auto [low, high] = std::ranges::minmax(depths);
+    if (std::abs(depth - static_cast<P>(plane)) <= 4 * Disk::kRounding * static_cast<P>(high - low) + P(1e-7))
+      tally.excused = true;
+    return depth < static_cast<P>(plane) ? std::optional(depth) : std::nullopt;
   }
 };
 

@@ -27,6 +27,10 @@ text = "limit of both radii; too small hardens wide penumbrae, too large pads th
 default = "per-pixel"
 choices = ["none", "per-pixel", "interleaved-gradient", "blue-noise"]
 text = "turn of both disks at each pixel: none shows bands, per-pixel white noise, interleaved-gradient a regular dither, blue-noise one without a pattern"
+[param.read]
+default = "bilinear"
+choices = ["bilinear", "nearest", "interpolated"]
+text = "what a tap of the average compares: bilinear 2x2 texels, weighted by the hardware; nearest one texel, so that edges are stepped and noisier; interpolated, in the search too, one depth between four texels, which widens casters by up to a texel"
 [param.bail]
 default = "none"
 choices = ["none", "agree"]
@@ -41,16 +45,38 @@ seed = 2
 #include "lib/early_bail.glsl"
 #include "lib/penumbra.glsl"
 
+const float no_blocker = 2.0;
+
+// The depth that a tap of the search reads, if it blocks.
+float find_blocker(Receiver r, vec2 offset) {
+  float z = biased_depth(r, offset), depth, plane;
+  if (read == READ_INTERPOLATED) {
+    Corner corner = find_corner(r, offset);
+    depth = dot(gather_depth(r, corner.offset), corner.weights);
+    plane = corner_depth(r, corner.offset, z);
+  } else {
+    depth = fetch_depth(r, offset);
+    plane = nearest_depth(r, offset, z);
+  }
+  return depth < plane ? depth : no_blocker;
+}
+
+float compare_tap(Receiver r, vec2 offset) {
+  if (read == READ_INTERPOLATED) return find_blocker(r, offset) == no_blocker ? 1.0 : 0.0;
+  float z = biased_depth(r, offset);
+  return read == READ_NEAREST ? compare_nearest(r, offset, z) : compare_2x2(r, offset, z);
+}
+
 float visibility(Receiver r) {
   float search = min(penumbra_radius(r, r.depth_unbiased), max_radius);
-  if (search < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
+  if (search < one_fetch) return compare_tap(r, vec2(0.0));
   vec2 turn = find_turn(r.pixel);
   float depths = 0.0;
   float blockers = 0.0;
   for (int i = 0; i < search_taps; ++i) {
     vec2 offset = search * rotate(search_points[order_tap(i, search_taps)], turn);
-    float depth = fetch_depth(r, offset);
-    if (depth < nearest_depth(r, offset, biased_depth(r, offset))) {
+    float depth = find_blocker(r, offset);
+    if (depth != no_blocker) {
       depths += depth;
       blockers += 1.0;
     }
@@ -58,11 +84,11 @@ float visibility(Receiver r) {
   }
   if (blockers == 0.0) return 1.0;
   float radius = min(penumbra_radius(r, r.depth - depths / blockers), max_radius);
-  if (radius < one_fetch) return compare_2x2(r, vec2(0.0), r.depth);
+  if (radius < one_fetch) return compare_tap(r, vec2(0.0));
   float sum = 0.0;
   for (int i = 0; i < taps; ++i) {
     vec2 offset = radius * rotate(disk_points[order_tap(i, taps)], turn);
-    sum += compare_2x2(r, offset, biased_depth(r, offset));
+    sum += compare_tap(r, offset);
     if (agrees(i, sum)) return sum / float(first_taps);
   }
   return sum / float(taps);
