@@ -22,12 +22,17 @@
 #include "harness/scene/scene.h"
 #include "reference/truth/cached_tracer.h"
 #include "reference/truth/embree.h"
-#include "tests/bench/median.h"
 
 namespace shadowbench::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// The median of some values, of an even number the upper one. Requires one or more.
+double median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + std::ssize(values) / 2);
+  return values[values.size() / 2];
+}
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 

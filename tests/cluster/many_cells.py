@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
-"""Makes the shards of a sweep of many cells from a small real run, for what `merge` and the report cost.
+"""Merges a sweep of many cells that nobody measured, and fails where that takes more than it may or loses a file.
 
-    python3 tests/cluster/many_cells.py --program build/release/shadowbench --cells 10000 --out sweep
-    build/release/shadowbench merge sweep/shard* --out sweep/whole
+    python3 tests/cluster/many_cells.py --program build/release/shadowbench --cells 10000 --seconds 30 --mebibytes 1024
 
-The real run (--base, or one that this script makes) has cells of two scenes, without grids. Each is repeated under other lights,
-map sizes, and values of one of its filter's parameters: settings and key say so, errors and times are those of the real cell
-times a random factor, and pictures are hard links to the real ones, under a name of each cell's own. `merge` copies them all,
-as it does those of a real run. Only Python's standard library is used; --seed repeats the numbers.
+The cells are those of a small real run without grids, repeated under other lights, map sizes, and values of one of their filter's
+parameters: settings and key say so, errors and times are those of the real cell times a random factor, and pictures are hard links
+to the real ones, under a name of each cell's own. Seconds are of processor time. Only Python's standard library is used.
 """
 
 import argparse
@@ -20,11 +18,14 @@ import random
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 EXPERIMENT = ["run", "--scene", "stack", "--scene", "cubes", "--filters",
               "none,pcf2x2,tent3x3,poisson:radius=2,poisson:radius=4,vsm:radius=2,vsm:radius=4,esm:radius=2,esm:radius=4,evsm4,pcss",
               "--map-size", "512", "--size", "240x135", "--rounds", "4", "--width", "own", "--no-grids", "--yes"]
+SHARDS = 4
+REPORT = {".shadowbench-folder", "index.html", "summary.md", "details.md", "results.json", "results.schema.json", "timings.csv", "accuracy.csv", "fronts.csv"}
 # What a cell has of its own, and what cells of one view and map share.
 OWN_IMAGES, SHARED_IMAGES = ("picture", "visibility", "values"), ("truth_picture", "truth_values")
 RATES = ("error.flip", "artefact.acne", "artefact.leak", "artefact.contact_gap", "artefact.noise")
@@ -76,7 +77,7 @@ def list_settings(cell, count):
 
 def list_cells(base, arguments):
     """The first so many cells of the product, each as (cell, images of the real one by the name that they get)."""
-    rng = random.Random(arguments.seed)
+    rng = random.Random(1)
     made = 0
     for light in itertools.count():
         name = "scene" if light == 0 else f"{(light * 137.508) % 360:.3f},{25 + light % 50}"
@@ -106,52 +107,76 @@ def list_cells(base, arguments):
 
 def write_shards(base, folder, arguments):
     """Every so many'th cell is one shard's, as `run --shard` deals them out."""
-    out = arguments.out
-    shards = [out / f"shard{i + 1}" for i in range(arguments.shards)]
+    shards = [folder / f"shard{i + 1}" for i in range(SHARDS)]
     texts = [[] for _ in shards]
     for shard in shards:
         (shard / "cells").mkdir(parents=True)
         (shard / "images").mkdir()
-        if (folder / "live").exists():
-            shutil.copytree(folder / "live", shard / "live", copy_function=os.link)
+        if (folder / "base/live").exists():
+            shutil.copytree(folder / "base/live", shard / "live", copy_function=os.link)
     for i, (cell, links) in enumerate(list_cells(base, arguments)):
-        shard = shards[i % len(shards)]
+        shard = shards[i % SHARDS]
         for name, real in links.items():
             if not (shard / name).exists():
-                os.link(folder / real, shard / name)
+                os.link(folder / "base" / real, shard / name)
         (shard / "cells" / f"{cell['key']}.json").write_text(json.dumps({"cell": cell, "schema_version": base["schema_version"]}, indent=1))
-        texts[i % len(shards)].append(dump_line(cell))
+        texts[i % SHARDS].append(dump_line(cell))
     run = {name: value for name, value in base.items() if name != "cells"}
     for i, (shard, cells) in enumerate(zip(shards, texts)):
-        run["experiment"] = {**run["experiment"], "title": "many cells", "cells": arguments.cells, "shard": i + 1, "shards": len(shards)}
+        run["experiment"] = {**run["experiment"], "title": "many cells", "cells": arguments.cells, "shard": i + 1, "shards": SHARDS}
         head = json.dumps(run, indent=1)[:-2]
         (shard / "results.json").write_text(head + ",\n \"cells\": [\n  " + ",\n  ".join(cells) + "\n ]\n}\n")
     return shards
+
+
+def list_files(folder):
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def measure(command):
+    """Runs a command. Returns seconds of processor time and MiB at most."""
+    child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode != 0:
+        sys.exit(f"{command[1]}: exit code {child.returncode}")
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def list_faults(shards, whole, cells):
+    expected, found = REPORT.union(*(list_files(shard) for shard in shards)), list_files(whole)
+    faults = [f"{name} is missing" for name in sorted(expected - found)] + [f"{name} is too much" for name in sorted(found - expected)]
+    dealt = [[cell["key"] for cell in json.loads((shard / "results.json").read_text())["cells"]] for shard in shards]
+    wanted = [dealt[i % SHARDS][i // SHARDS] for i in range(cells)]
+    if [cell["key"] for cell in json.loads((whole / "results.json").read_text())["cells"]] != wanted:
+        faults.append("results.json has other cells than the shards, or another order")
+    return faults + [f"{table} does not have a row for every cell" for table in ("timings.csv", "accuracy.csv")
+                     if (whole / table).read_bytes().count(b"\n") != cells + 1]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=os.path.abspath, required=True)
     parser.add_argument("--cells", type=int, required=True)
-    parser.add_argument("--out", type=Path, required=True, help="a folder that is not there; it gets shard1, shard2 and so on")
-    parser.add_argument("--base", type=Path, help="the folder of a finished run on the same file system")
-    parser.add_argument("--shards", type=int, default=4)
+    parser.add_argument("--seconds", type=float, required=True)
+    parser.add_argument("--mebibytes", type=float, required=True)
     parser.add_argument("--maps", type=int, default=4, help="map sizes, from 256 on")
     parser.add_argument("--settings", type=int, default=4, help="values of one parameter of a filter")
     parser.add_argument("--no-pictures", action="store_true", help="cells that name no picture")
-    parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
-    arguments.out.mkdir(parents=True)
-    base = arguments.base or arguments.out / "base"
-    if not arguments.base:
-        run = subprocess.run([arguments.program, *EXPERIMENT, "--out", base], capture_output=True, text=True)
-        if run.returncode != 0:
-            sys.exit(f"the real run ended with exit code {run.returncode}: {run.stderr[-2000:]}")
-    results = json.loads((base / "results.json").read_text())
-    wrong = [cell["key"] for cell in results["cells"] if find_key(cell) != cell["key"]]
-    if wrong:
-        sys.exit(f"the program makes keys in another way than this script: {wrong[0]}")
-    write_shards(results, base, arguments)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        subprocess.run([arguments.program, *EXPERIMENT, "--out", folder / "base"], capture_output=True, check=True)
+        base = json.loads((folder / "base/results.json").read_text())
+        assert all(find_key(cell) == cell["key"] for cell in base["cells"]), "the program makes keys in another way than this script"
+        shards, whole = write_shards(base, folder, arguments), folder / "whole"
+        seconds, mebibytes = measure([arguments.program, "merge", *shards, "--out", whole])
+        faults = list_faults(shards, whole, arguments.cells)
+        print(f"{arguments.cells} cells: {seconds:.1f} s, {mebibytes:.0f} MiB, a page of {(whole / 'index.html').stat().st_size / 1e6:.1f} MB")
+    for what, taken, most in (("seconds", seconds, arguments.seconds), ("MiB", mebibytes, arguments.mebibytes)):
+        if taken > most:
+            faults.append(f"merging took {taken:.1f} {what}; it may take {most}")
+    sys.exit("\n".join(faults[:20]) or 0)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 """Uses the window of `shadowbench view` as a person does, on a display that nobody sees.
 
-    python3 tests/view/run.py --program build/tests/shadowbench [--only NAME] [--figures]
+    python3 tests/view/run.py --program build/tests/shadowbench [--only NAME]
 
-Needs Xvfb, xdotool and oiiotool. With --figures it measures times as well, for which the machine should do nothing else.
+Needs Xvfb, xdotool and oiiotool.
 """
 
 import argparse
 import os
 import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -300,55 +299,10 @@ def test_saved_picture_says_what_its_colours_mean(program, folder):
     assert first[2] > first[0] and last[0] > last[2], f"blue is darker, red lighter: {first} to {last}"
 
 
-def measure_figures(program, folder):
-    size = ["--size", "960x540"]
-    window = Window(program, folder, ["stack", *size, "--left", "vsm:radius=6", "--right", "tent3x3"])
-    window.wait("the whole truth", lambda frame: frame["busy"] == 0.0, 120.0)
-    for what, shift in (("camera", False), ("light", True)):
-        if shift:
-            window.send("keydown", "shift")
-        window.move(300, 300)
-        window.send("mousedown", 1)
-        window.pause(0.3)
-        since = window.now()
-        window.send(*["mousemove_relative", "--", 1, 0, "sleep", 0.015] * 300)  # in one process, which costs little
-        window.send("mouseup", 1)
-        if shift:
-            window.send("keyup", "shift")
-        window.pause(0.5)
-        frames = [frame for frame in window.frames[since:] if frame["drawn"]]
-        gaps = [b["t"] - a["t"] for a, b in zip(frames, frames[1:])]
-        print(f"{what} moves: {1 / statistics.median(gaps):.1f} frames a second, median of {len(frames)}; "
-              f"longest frame {max(frame['ms'] for frame in frames):.0f} ms")
-    window.close()
-    # While truth is traced, which takes seconds under so wide a sun: from a key to the frame that shows what it does.
-    window = Window(program, folder, ["fence", *size])
-    window.click("light.angular diameter", 0.5)
-    waits = []
-    for turn in range(3):
-        window.drag((300, 300), (10, 0), steps=2)
-        window.wait("a trace", lambda frame: frame["truth"] == 0.0, since=window.now())
-        for _ in range(12):
-            if window.last()["truth"] == 1.0:
-                break
-            since, layer, begun = window.now(), window.last()["layer"], time.monotonic()
-            window.key("Next")
-            frame = window.wait("another layer", lambda frame: frame["layer"] != layer, since=since)
-            waits.append(1e3 * (frame["t"] - begun) + frame["ms"])
-            window.pause(0.1)
-            window.key("Prior")
-            window.pause(0.1)
-    waits.sort()
-    print(f"while truth is traced: answers within {statistics.median(waits):.0f} ms, nine in ten within "
-          f"{waits[len(waits) * 9 // 10]:.0f} ms, the longest of {len(waits)} {waits[-1]:.0f} ms")
-    window.close()
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", type=Path, required=True)
     parser.add_argument("--only", default="")
-    parser.add_argument("--figures", action="store_true")
     arguments = parser.parse_args()
     program = arguments.program.resolve()
     missing = [tool for tool in ("Xvfb", "xdotool", "oiiotool") if shutil.which(tool) is None]
@@ -358,8 +312,6 @@ def main():
     display = Display()
     failed = []
     tests = [(name[5:], test) for name, test in globals().items() if name.startswith("test_") and arguments.only in name]
-    if arguments.figures:
-        tests = [("figures", measure_figures)]
     for name, test in tests:
         with tempfile.TemporaryDirectory() as folder:
             begun = time.monotonic()

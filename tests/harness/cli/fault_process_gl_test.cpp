@@ -57,36 +57,6 @@ TEST_F(FaultFolder, OfARunThatGoesOn_IsRefusedToAllOthers_AndFreeOnceItIsKilled)
   expect_same("whole", "out");
 }
 
-/// What somebody else put there stays, be it named as files of ours are.
-TEST_F(FaultFolder, OfSomebodyElse_IsRefusedToAll_UnlessItIsForced) {
-  run_whole();
-  std::vector<std::string> commands = list_commands();
-  commands.insert(commands.end(), {"export cubes", "regress whole --baseline none"});
-  for (const char* name : {"index.html", "results.json", ".worker-99999999/a", "b.shadowbench-tmp-99999999.png"})
-    write(std::string("out/") + name, "mine");
-  for (const std::string& command : commands) {
-    const Outcome outcome = run(command + " --out out");
-    EXPECT_EQ(outcome.exit_code, 6) << command << "\n" << outcome.err;
-    expect_one_message(outcome.err, {"out: ", "--force"});
-    EXPECT_EQ(list_files("out").size(), 4u) << command;
-  }
-  succeed("export cubes --force --out out");
-  EXPECT_EQ(read("out/results.json"), "mine");
-}
-
-/// A report that is meant to be sent would hold what the link leads to.
-TEST_F(FaultFolder, WithLinks_IsNeitherMergedNorWritten) {
-  run_whole();
-  const std::filesystem::path images = folder() / "whole" / "images";
-  std::filesystem::rename(images, folder() / "elsewhere");
-  std::filesystem::create_directory_symlink("../elsewhere", images);
-  expect_refusal("merge whole --out out", 3, {"whole/images", "a link"});
-  EXPECT_THAT(list_files("out"), IsEmpty());
-  const Outcome outcome = run("run --fresh --no-grids --out whole " + std::string(kSmallFolderRun));
-  EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
-  expect_one_message(outcome.err, {"whole/images", "a link"});
-}
-
 TEST_F(FaultFolder, OfAMergeThatWasStopped_IsGoneOnWith_AndThatOfAnotherIsNot) {
   run_whole();
   EXPECT_EQ(run_script("", "ulimit -f 20\nshadowbench merge whole --out out"), 6) << "the schema is larger";
@@ -102,27 +72,6 @@ TEST_F(FaultFolder, OfAMergeThatWasStopped_IsGoneOnWith_AndThatOfAnotherIsNot) {
   const Outcome refused = run("merge whole --out other");
   EXPECT_EQ(refused.exit_code, 2) << refused.err;
   expect_one_message(refused.err, {"other", "there is a report in this folder already"});
-}
-
-TEST_F(FaultFolder, TakenByManyAtOnce_BelongsToOne) {
-  run_whole();
-  std::vector<pid_t> all;
-  for (int i = 0; i < 5; ++i)
-    all.push_back(
-        start("run " + std::string(kSmallFolderRun) + "--no-grids --out out", "many" + std::to_string(i) + ".txt"));
-  int done = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Ending ending = wait_for(all[i]);
-    if (ending.exit_code == 0) {
-      ++done;
-      continue;
-    }
-    EXPECT_EQ(ending.exit_code, 6) << ending.signal;
-    expect_one_message(read_text(folder() / ("many" + std::to_string(i) + ".txt")), {"writes into this folder"});
-  }
-  EXPECT_GE(done, 1);
-  expect_no_leftovers("out");
-  expect_same("whole", "out");
 }
 
 TEST_F(FaultFolder, SharedCache_ServesManyAtOnce) {

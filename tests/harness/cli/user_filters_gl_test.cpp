@@ -1,9 +1,5 @@
 // What a user meets whose filter copies a built-in one, declares its kernel, has mistakes, or is wrong.
 
-#include <set>
-#include <tuple>
-
-#include "filters/catalogue.h"
 #include "report/images/picture_io.h"
 #include "tests/harness/cli/program.h"
 
@@ -14,32 +10,6 @@ class UserKernel : public ProgramTest {
  protected:
   json measure(const std::string& rest) const { return ProgramTest::measure("--size 96x54 --map-size 128 " + rest); }
 };
-
-/// A copy is known by its text, whichever filter it is of: one of each sort will do.
-TEST_F(UserKernel, OfACopy_OfAnySortOfBuiltInFilter_GivesTheBuiltInsNumbers) {
-  const filters::Catalogue built_in(SHADOWBENCH_SOURCE_DIR "/filters");
-  std::set<std::tuple<filters::FilterKind, bool, bool>> sorts;
-  std::string filters, files;
-  for (const filters::FilterSpec& spec : built_in.filters()) {
-    if (!sorts.emplace(spec.kind, spec.has_encode, spec.passes.empty()).second) continue;
-    copy_filter(spec.id, "my_" + spec.id, "# mine\n");
-    filters += (filters.empty() ? "" : ",") + spec.id + ",my_" + spec.id;
-    files += " --filter-file my_" + spec.id + ".glsl";
-  }
-  std::map<std::string, json> cells;
-  for (const json& cell : measure("--stability --filters " + filters + files)) cells[cell["filter"]] = cell;
-  ASSERT_GT(sorts.size(), 5u);
-  ASSERT_EQ(cells.size(), 2 * sorts.size());
-  for (const auto& [id, cell] : cells) {
-    if (id.starts_with("my_")) continue;
-    SCOPED_TRACE(id);
-    const json& copy = cells.at("my_" + id);
-    for (const char* group : {"error", "attribution", "artefact", "kernel", "excused", "cost", "status"})
-      EXPECT_EQ(copy[group], cell[group]) << group;
-    EXPECT_EQ(copy["stability"]["bound_violations"], cell["stability"]["bound_violations"]);
-    EXPECT_FALSE(copy["attribution"]["numeric"]["rms"].is_null());
-  }
-}
 
 TEST_F(UserKernel, AloneInARun_HasTheMapsPicturesAsWell) {
   copy_filter("tent5x5", "mine", "# mine\n");

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -91,6 +92,9 @@ TEST_F(Cache, DamagedFiles_AreNotTaken_AndCanBeReplaced) {
     std::filesystem::resize_file(file("a"), kept);
     EXPECT_FALSE(load(cache, "a")) << kept << " of " << size;
   }
+  std::filesystem::remove(file("a"));
+  ASSERT_EQ(mkfifo(file("a").c_str(), 0600), 0);
+  EXPECT_FALSE(load(cache, "a"));
   cache.store("a", make_layers(0.5f));
   ASSERT_TRUE(load(cache, "a"));
 }

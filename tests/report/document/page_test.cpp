@@ -52,12 +52,6 @@ TEST(Page, Markdown_SaysTheSame_InColumnsThatLineUp) {
     EXPECT_THAT(text, HasSubstr(part));
 }
 
-TEST(Page, BeginsWithWhatHasNoHeading_ThenTheContents) {
-  const std::string html = write_html(make_example_page());
-  EXPECT_LT(html.find("<dt>machine</dt>"), html.find("<a href=\"#warnings\">"));
-  EXPECT_LT(html.find("<a href=\"#warnings\">"), html.find("<h2>Warnings</h2>"));
-}
-
 TEST(Page, WithoutCharts_HasNoScript) {
   const Page page{"t", {{"a", "A", {Paragraph{"text"}}}}, {}};
   EXPECT_THAT(write_html(page), Not(HasSubstr("<script")));
@@ -67,12 +61,6 @@ TEST(Page, LoadsNothingFromElsewhere) {
   const std::string html = write_html(make_example_page());
   EXPECT_THAT(html, Not(HasSubstr("@import")));
   EXPECT_THAT(html, Not(::testing::ContainsRegex("(src|href)=\"(http|//)")));
-}
-
-TEST(Page, StyleSheet_KnowsDarkScreensPhonesAndPaper) {
-  const std::string style(page_style());
-  for (const char* media : {"prefers-color-scheme: dark", "max-width: 600px", "@media print"})
-    EXPECT_THAT(style, HasSubstr(media));
 }
 
 /// Relative luminance of "#rrggbb" (WCAG 2.1).

@@ -9,31 +9,6 @@ namespace shadowbench::images {
 using namespace records;
 namespace {
 
-// Lightness L* of a display colour. Source: IEC 61966-2-1, CIE 1976.
-double lightness(const images::Rgb& color) {
-  double y = 0.0;
-  const double weights[] = {0.2126, 0.7152, 0.0722};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double c = static_cast<double>(color[i]);
-    y += weights[i] * (c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-  }
-  return y > 0.008856 ? 116.0 * std::cbrt(y) - 16.0 : 903.3 * y;
-}
-
-TEST(ErrorParts, Colours_DifferInLightnessAloneAndFromTheHeatMaps) {
-  const auto& parts = records::list_error_parts();
-  for (std::size_t i = 0; i < metrics::kErrorParts; ++i) {
-    for (std::size_t j = 0; j < i; ++j)
-      EXPECT_GT(std::abs(lightness(parts[i].color) - lightness(parts[j].color)), 15.0) << i << " " << j;
-    for (const float end : {-1.0f, 1.0f}) {
-      const images::Rgb heat = map_diverging(end, 1.0f);
-      const double distance =
-          std::hypot(parts[i].color[0] - heat[0], parts[i].color[1] - heat[1], parts[i].color[2] - heat[2]);
-      EXPECT_GT(distance, 0.35) << i;
-    }
-  }
-}
-
 TEST(ErrorParts, Percentages_HaveNoNegativeZero) {
   EXPECT_EQ(records::format_share(-0.001), "0 %");
   EXPECT_EQ(records::format_share(-0.12), "-12 %");
@@ -138,27 +113,6 @@ TEST(DrawBar, Lengths_AreInPixelsOfTheScale) {
   EXPECT_EQ(find_color(bar, 15, parts[1].color), std::pair(100, 198)) << "up to the tick, which lies over it";
   EXPECT_EQ(find_color(bar, 15, parts[2].color), std::pair(50, 99));
   EXPECT_EQ(find_color(bar, 15, parts[3].color), std::pair(202, 249));
-}
-
-TEST(DrawBar, LinesAtTheEnds_AreWhole) {
-  for (const double below : {0.0, 0.3, 1.0}) {
-    const Image bar = draw_bar({{0.0, -below, 0.0, 1.0}}, {below, below + 1.0}, kSize);
-    const auto tick = find_color(bar, 0, kBlack);
-    EXPECT_EQ(tick.second - tick.first, 2) << below;
-    int lines = 0;
-    for (int x = 0; x < bar.width; ++x) lines += color_at(bar, x, 0) != kWhite ? 1 : 0;
-    EXPECT_EQ(lines, below == 1.0 ? 3 : 4) << "tick and zero line, which the tick hides where the parts cancel";
-  }
-}
-
-TEST(DrawBar, TickStandsOutAboveAndBelowTheParts) {
-  const Image bar = draw_bar({{0.0, 1.0, 0.0, 0.0}}, {0.0, 1.0}, kSize);
-  const int x = find_color(bar, 0, kBlack).first;
-  EXPECT_EQ(color_at(bar, x, kSize.height - 1), kBlack);
-  for (const int row : {0, 3, kSize.height - 4, kSize.height - 1})
-    EXPECT_EQ(find_color(bar, row, list_error_parts()[1].color).first, -1) << row;
-  for (const int row : {4, kSize.height - 5})
-    EXPECT_EQ(find_color(bar, row, list_error_parts()[1].color).first, 0) << row;
 }
 
 }  // namespace

@@ -137,13 +137,6 @@ TEST(Grid, LongTextsAndFailedTile_NothingOverlapsAndNothingIsCut) {
   expect_sound(failed);
 }
 
-TEST(Grid, AnyNumberOfBars_NothingOverlapsAndNothingIsCut) {
-  for (int tiles = 1; tiles <= 9; ++tiles) {
-    SCOPED_TRACE(tiles);
-    expect_sound(make_attributed_grid(tiles, 96, 54));
-  }
-}
-
 TEST(Grid, BarsBesideFailedTilesAndLongReasons_NothingOverlapsAndNothingIsCut) {
   Grid grid = make_hard_attributed_grid();
   expect_sound(grid);
@@ -185,16 +178,6 @@ TEST(Grid, EveryFinishedFilter_HasItsPanels) {
   }
 }
 
-TEST(Grid, DefaultRun_IsAbout1500PixelsWideInThreeColumns) {
-  const Drawn drawn(make_grid(6, 960, 540));
-  EXPECT_NEAR(drawn.layout.canvas.width, 1500, 20);
-  const Rect first = drawn.find(0, kPictureCell), third = drawn.find(2, kPictureCell),
-             fourth = drawn.find(3, kPictureCell);
-  EXPECT_EQ(first.y, third.y);
-  EXPECT_LT(third.y, fourth.y);
-  EXPECT_EQ(first.x, fourth.x);
-}
-
 TEST(Grid, MagnifiedCrop_ShowsWholeTexelsOfThatCrop) {
   const Grid grid = make_grid(2, 96, 54);
   const Drawn drawn(grid);
@@ -212,20 +195,6 @@ TEST(Grid, MagnifiedCrop_ShowsWholeTexelsOfThatCrop) {
       }
     }
     EXPECT_NE(drawn.canvas.at(left - 1, top)[0], drawn.canvas.at(left - 1, top)[2]) << "the outline";
-  }
-}
-
-TEST(Grid, EqualTiles_LookEqual) {
-  Grid grid = make_grid(2, 960, 540);
-  grid.tiles[1].picture = grid.tiles[0].picture;
-  grid.exposure = 1.5;
-  const Drawn drawn(grid);
-  const Rect first = drawn.find(0, kPictureCell), second = drawn.find(1, kPictureCell);
-  ASSERT_GT(first.height, 200);
-  for (int y = 0; y < first.height; ++y) {
-    const float* a = drawn.canvas.at(first.x, first.y + y);
-    const float* b = drawn.canvas.at(second.x, second.y + y);
-    ASSERT_TRUE(std::equal(a, a + first.width * 3, b)) << y;
   }
 }
 
@@ -286,28 +255,6 @@ TEST(Grid, OutsideTheBoxes_TheCanvasIsEmpty) {
   }
 }
 
-TEST(Grid, CropIsOutlinedOnThePicture) {
-  const Grid grid = make_grid(1, 468, 260);
-  const Drawn drawn(grid);
-  const Rect box = drawn.find(0, kVisibilityCell);
-  ASSERT_EQ(box.width, 468);
-  const float* left = drawn.canvas.at(box.x + grid.crop.x - 1, box.y + grid.crop.y + 5);
-  const float* inside = drawn.canvas.at(box.x + grid.crop.x, box.y + grid.crop.y + 5);
-  EXPECT_NE(left[0], left[2]);
-  EXPECT_EQ(inside[0], *grid.tiles[0].visibility.at(grid.crop.x, grid.crop.y + 5));
-}
-
-TEST(Grid, File_HoldsTheDrawnPicture) {
-  const TemporaryFolder folder("grid_file");
-  const Grid grid = make_grid(2, 64, 36);
-  write_grid(folder.path() / "cubes.grid.png", grid);
-  const Image back = read_picture(folder.path() / "cubes.grid.png");
-  const Image drawn = draw_figure(make_figure(grid));
-  ASSERT_EQ(back.width, drawn.width);
-  ASSERT_EQ(back.height, drawn.height);
-  for (std::size_t i = 0; i < drawn.texels.size(); ++i) ASSERT_NEAR(back.texels[i], drawn.texels[i], 0.51f / 255.0f);
-}
-
 TEST(Grid, TilesWithErrors_GetAHeatMapAndOneColourBar) {
   Grid grid;
   grid.title = "t";
@@ -358,17 +305,6 @@ TEST(Grid, BarsLengths_AreInPixelsOfOneScale) {
   }
 }
 
-TEST(Grid, Bars_LieBetweenTheErrorAndTheCrop) {
-  const Drawn drawn(make_attributed_grid(3, 96, 54));
-  EXPECT_GT(drawn.count(kBarCell), 0u);
-  for (std::size_t tile = 0; tile < 3; ++tile) {
-    const Rect bar = drawn.find(tile, kBarCell);
-    if (bar.width == 0) continue;
-    EXPECT_GT(bar.y, drawn.find(tile, kErrorCell).y);
-    EXPECT_LT(bar.y, drawn.find(tile, kCropCell).y);
-  }
-}
-
 TEST(Grid, BarsLegend_NamesThePartsBesideTheirColoursAndTheLength) {
   const Grid grid = make_attributed_grid(4, 96, 54);
   const std::string text = all_text(grid);
@@ -384,12 +320,6 @@ TEST(Grid, BarsLegend_NamesThePartsBesideTheirColoursAndTheLength) {
     const float* above = drawn.canvas.at(name->box.x + name->box.width / 2, key.y);
     EXPECT_TRUE(std::equal(above, above + 3, part.color.begin())) << part.name;
   }
-}
-
-TEST(Grid, BarsLength_IsWrittenWithoutRoundingErrors) {
-  Grid grid = make_grid(1, 96, 54);
-  grid.tiles[0].attribution = AttributionBar{{0.0, 0.3, 0.0, 0.0}};
-  EXPECT_THAT(all_text(grid), HasSubstr("thefullwidth0.3."));
 }
 
 TEST(Grid, ReasonForNoBar_IsSaidOnlyWhereThereAreBars) {

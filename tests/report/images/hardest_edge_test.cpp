@@ -54,19 +54,6 @@ TEST(HardestEdge, WithoutAnyEdge_HoldsTheDisagreement) {
   EXPECT_TRUE(contains(find_hardest_edge({&lit, &other}, 0, {5, 5}), 55, 20));
 }
 
-TEST(HardestEdge, WithOneFilter_HoldsAnEdge) {
-  const Image reference = make_two_edges();
-  const Rect crop = find_hardest_edge({&reference}, 0, {12, 9});
-  EXPECT_NE(*reference.at(crop.x, crop.y), *reference.at(crop.x + crop.width - 1, crop.y));
-}
-
-TEST(HardestEdge, EqualRectangles_GoToTheTopLeft) {
-  Image flat(30, 20, 1);
-  const Rect crop = find_hardest_edge({&flat}, 0, {12, 9});
-  EXPECT_EQ(crop.x, 0);
-  EXPECT_EQ(crop.y, 0);
-}
-
 TEST(HardestEdge, TexelThatIsNotFinite_DoesNotSpoilTheSearch) {
   const Image reference = make_two_edges();
   Image other = reference;

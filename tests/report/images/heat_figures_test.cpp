@@ -58,13 +58,12 @@ Image make_constant(int side, float value) {
   return image;
 }
 
-int count_stability_pixels(const Image& canvas, const images::Rgb& color) {
+/// Pixels of a colour, to half a code of 8 bits.
+int count_color(const Image& image, const Rgb& color) {
   int count = 0;
-  for (std::size_t i = 0; i < canvas.texels.size(); i += 3) {
-    bool equal = true;
-    for (std::size_t c = 0; c < 3; ++c) equal = equal && std::abs(canvas.texels[i + c] - color[c]) < 0.5f / 255.0f;
-    count += equal ? 1 : 0;
-  }
+  for (std::size_t i = 0; i < image.texels.size(); i += 3)
+    count += std::equal(color.begin(), color.end(), &image.texels[i],
+                        [](float a, float b) { return std::abs(a - b) < 0.5f / 255.0f; });
   return count;
 }
 
@@ -83,8 +82,8 @@ TEST(StabilityPicture, OnlyWhatExists_IsDrawn) {
   EXPECT_GT(four.width, 2 * one.width - 100);
   EXPECT_GT(four.height, 2 * one.height - 180);
   const images::Rgb faint = map_diverging(-0.4f, 1.0f);  // a variance of 1e-6, four of ten decades from nothing
-  EXPECT_LT(count_stability_pixels(one, faint), 1000);
-  EXPECT_GE(count_stability_pixels(four, faint), 640 * 640);
+  EXPECT_LT(count_color(one, faint), 1000);
+  EXPECT_GE(count_color(four, faint), 640 * 640);
 }
 
 /// One broken texel of a map that is reduced four times over must not be lost between the texels that are shown.
@@ -92,42 +91,42 @@ TEST(StabilityPicture, OneBrokenTexel_IsSeen) {
   for (const float broken : {-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
     StabilityImages images;
     images.headroom = make_constant(2560, 3.0f);
-    EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 0);
+    EXPECT_EQ(count_color(draw(images), kMagenta), 0);
     *images.headroom.at(1002, 1502) = broken;
-    EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 1);
+    EXPECT_EQ(count_color(draw(images), kMagenta), 1);
   }
 }
 
 TEST(StabilityPicture, EmptyTexel_IsNotBroken) {
   StabilityImages images;
   images.headroom = make_constant(64, std::numeric_limits<float>::infinity());
-  EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 0);
+  EXPECT_EQ(count_color(draw(images), kMagenta), 0);
 }
 
 TEST(StabilityPicture, NegativeVariance_IsRed_AndTheLowestOfItsBlockIsShown) {
   StabilityImages images;
   images.variance = make_constant(1280, 1e-3f);
   const images::Rgb red = map_diverging(0.5f, 1.0f);  // -1e-5, half-way down ten decades
-  const int of_bar = count_stability_pixels(draw(images), red);
+  const int of_bar = count_color(draw(images), red);
   *images.variance.at(7, 9) = -1e-5f;
   const Image canvas = draw(images);
-  EXPECT_EQ(count_stability_pixels(canvas, red), of_bar + 1);
-  EXPECT_GT(count_stability_pixels(canvas, map_diverging(-0.7f, 1.0f)), 640 * 640 - 2);
+  EXPECT_EQ(count_color(canvas, red), of_bar + 1);
+  EXPECT_GT(count_color(canvas, map_diverging(-0.7f, 1.0f)), 640 * 640 - 2);
 }
 
 TEST(StabilityPicture, UnexplainedShortfall_IsMagenta_ExplainedIsNot) {
   StabilityImages images;
   images.shortfall = make_constant(640, 0.1f);
   images.violation = make_constant(640, 0.0f);
-  EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 0);
+  EXPECT_EQ(count_color(draw(images), kMagenta), 0);
   for (int x = 0; x < 5; ++x) *images.violation.at(x, 3) = 0.01f;
-  EXPECT_EQ(count_stability_pixels(draw(images), kMagenta), 5);
+  EXPECT_EQ(count_color(draw(images), kMagenta), 5);
 }
 
 TEST(StabilityPicture, Difference_HasItsSign) {
   StabilityImages images;
   images.half_difference = make_constant(640, 0.1f);
-  EXPECT_GE(count_stability_pixels(draw(images), map_diverging(0.1f, 0.1f)), 640 * 640);
+  EXPECT_GE(count_color(draw(images), map_diverging(0.1f, 0.1f)), 640 * 640);
 }
 
 /// How many pixels of a picture are clearly of one colour.
@@ -174,14 +173,6 @@ Image make_depth_map(int side) {
   return depth;
 }
 
-std::size_t count_color(const Image& image, float r, float g, float b) {
-  const auto near = [](float a, float c) { return std::abs(a - c) < 1e-5f; };
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < image.texels.size(); i += 3)
-    if (near(image.texels[i], r) && near(image.texels[i + 1], g) && near(image.texels[i + 2], b)) ++count;
-  return count;
-}
-
 TEST(DepthHistogram, CountsEveryTexelOnce_EmptyOnesApart) {
   const DepthHistogram histogram = count_depths(make_depth_map(64), 10);
   EXPECT_EQ(histogram.empty, 64 * 32);
@@ -205,12 +196,12 @@ Image draw_depth(const Image& stored, const filters::DepthCurve& curve) {
 
 TEST(DepthPicture, ShowsTheMapAndABarForEveryFilledBin) {
   const Image drawn = draw_depth(make_depth_map(256), {});
-  EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 768u * 384u) << "the empty half";
-  const std::size_t bars = count_color(drawn, 0.20f, 0.36f, 0.60f);
-  EXPECT_GT(bars, 5000u);
+  EXPECT_EQ(count_color(drawn, {0.80f, 0.87f, 0.95f}), 768 * 384) << "the empty half";
+  const int bars = count_color(drawn, {0.20f, 0.36f, 0.60f});
+  EXPECT_GT(bars, 5000);
   Image flat = make_depth_map(256);
   for (float& depth : flat.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
-  EXPECT_LT(count_color(draw_depth(flat, {}), 0.20f, 0.36f, 0.60f), bars / 20) << "one bin instead of many";
+  EXPECT_LT(count_color(draw_depth(flat, {}), {0.20f, 0.36f, 0.60f}), bars / 20) << "one bin instead of many";
 }
 
 TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLinearised) {
@@ -222,7 +213,7 @@ TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLineari
     const Figure figure{"map", "note", show_depth({{stored, 12.0}}, curve)};
     const Image drawn = draw_figure(figure);
     EXPECT_GT(drawn.width, 3 * draw_depth(depth, {}).width / 2);
-    EXPECT_EQ(count_color(drawn, 0.80f, 0.87f, 0.95f), 2 * 768u * 384u) << "the empty half, twice";
+    EXPECT_EQ(count_color(drawn, {0.80f, 0.87f, 0.95f}), 2 * 768 * 384) << "the empty half, twice";
     // The linearised map is that of the linear map, at the right.
     const std::vector<PlacedPicture> placed = layout_figure(figure).pictures;
     ASSERT_GE(placed.size(), 2u);
@@ -242,8 +233,8 @@ TEST(DensityPicture, MoreTexels_AnotherColour_AndSurfacesWithoutAreGrey) {
   Image density(4, 1, 1);
   density.texels = {0.1f, 10.0f, 0.0f, -1.0f};
   const Image drawn = draw_figure({"density", "", {show_density(density)}});
-  EXPECT_EQ(count_color(drawn, 0.62f, 0.62f, 0.62f), 1u);
-  EXPECT_EQ(count_color(drawn, 0.93f, 0.94f, 0.95f), 1u);
+  EXPECT_EQ(count_color(drawn, {0.62f, 0.62f, 0.62f}), 1);
+  EXPECT_EQ(count_color(drawn, {0.93f, 0.94f, 0.95f}), 1);
   // The pixels stand in a row, few texels blue, many red.
   const auto* grey = drawn.texels.data();
   while (!(grey[0] == 0.62f && grey[1] == 0.62f && grey[2] == 0.62f)) grey += 3;
@@ -280,7 +271,7 @@ Wall make_wall(int side, float pixels) {
 
 TEST(TexelGrid, DarkensEveryOtherTexel) {
   const Image drawn = draw(make_wall(64, 8.0f));
-  EXPECT_EQ(count_color(drawn, 0.55f, 0.55f, 0.55f), 64u * 64u / 2u);
+  EXPECT_EQ(count_color(drawn, {0.55f, 0.55f, 0.55f}), 64 * 64 / 2);
 }
 
 TEST(TexelGrid, SmallTexels_AreGatheredInFieldsThatShow) {
@@ -288,23 +279,23 @@ TEST(TexelGrid, SmallTexels_AreGatheredInFieldsThatShow) {
   EXPECT_EQ(choose_field_texels(make_wall(8, 1.0f).density), 8);
   EXPECT_EQ(choose_field_texels(Image(4, 4, 1)), 1) << "no receiver";
   const Image drawn = draw(make_wall(64, 1.0f));
-  EXPECT_EQ(count_color(drawn, 0.55f, 0.55f, 0.55f), 64u * 64u / 2u);
+  EXPECT_EQ(count_color(drawn, {0.55f, 0.55f, 0.55f}), 64 * 64 / 2);
   // Fields 8 pixels wide: along each of 64 rows 4 of them are dark, and have two sides.
-  std::size_t sides = 0;
+  int sides = 0;
   for (std::size_t i = 3; i < drawn.texels.size(); i += 3) {
     const auto is_dark = [&](std::size_t at) {
       return std::abs(drawn.texels[at] - 0.55f) < 1e-5f && drawn.texels[at] == drawn.texels[at + 1];
     };
-    sides += is_dark(i) != is_dark(i - 3) ? 1u : 0u;
+    sides += is_dark(i) != is_dark(i - 3) ? 1 : 0;
   }
-  EXPECT_EQ(sides, 64u * 4u * 2u);
+  EXPECT_EQ(sides, 64 * 4 * 2);
 }
 
 TEST(TexelGrid, FieldsFarSmallerThanTheMedian_Fade) {
   Wall picture = make_wall(64, 8.0f);
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 64; ++x) *picture.density.at(x, y) = 1.0f;
-  EXPECT_EQ(count_color(draw(picture), 0.55f, 0.55f, 0.55f), 64u * 48u / 2u);
+  EXPECT_EQ(count_color(draw(picture), {0.55f, 0.55f, 0.55f}), 64 * 48 / 2);
 }
 
 }  // namespace

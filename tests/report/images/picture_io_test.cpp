@@ -154,17 +154,6 @@ TEST(PictureIo, ExrParts_MayDifferInSize) {
   EXPECT_TRUE(has_same_bits(chosen.parts[0].image, parts[1].image));
 }
 
-TEST(PictureIo, HalfPart_IsRoundedToHalf) {
-  const TemporaryFolder folder("exr_half");
-  Image image(2, 1, 1);
-  image.texels = {0.5f, 0.1f};
-  write_exr(folder.path() / "a.exr", {{"picture", {"Y"}, image, true}}, {});
-  const Part part = read_exr(folder.path() / "a.exr").parts.at(0);
-  EXPECT_TRUE(part.half);
-  EXPECT_EQ(part.image.texels[0], 0.5f);
-  EXPECT_EQ(part.image.texels[1], 0.0999755859375f);
-}
-
 TEST(PictureIo, RoundingToHalf_GivesWhatAHalfPartKeeps) {
   const TemporaryFolder folder("exr_round");
   Image image = make_noise(31, 17, 3);
@@ -172,9 +161,10 @@ TEST(PictureIo, RoundingToHalf_GivesWhatAHalfPartKeeps) {
   image.texels[1] = 1e6f;                   // above the largest
   image.texels[2] = 1.0f + 1.0f / 2048.0f;  // halfway between two
   image.texels[3] = std::numeric_limits<float>::infinity();
+  image.texels[4] = 0.1f;
   write_exr(folder.path() / "a.exr", {{"picture", {"R", "G", "B"}, image, true}}, {});
   EXPECT_TRUE(has_same_bits(round_to_half(image), read_exr(folder.path() / "a.exr").parts.at(0).image));
-  EXPECT_FALSE(has_same_bits(round_to_half(image), image));
+  EXPECT_EQ(round_to_half(image).texels[4], 0.0999755859375f);
 }
 
 TEST(PictureIo, PartsOfOneName_AreAnOutputError) {
@@ -191,13 +181,6 @@ TEST(PictureIo, PartsOfOneName_AreAnOutputError) {
       },
       ::testing::ThrowsMessage<Error>(::testing::HasSubstr("two channels of part 'a' have one name")));
   EXPECT_EQ(count_files(folder.path()), 0u);
-}
-
-TEST(PictureIo, FolderThatIsAFile_IsAnOutputError) {
-  const TemporaryFolder folder("exr_folder");
-  write_text_file(folder.path() / "file", "");
-  EXPECT_THROW(write_grey_png(folder.path() / "file" / "a.png", Image(2, 2, 1)), Error);
-  EXPECT_THROW(write_exr(folder.path() / "file" / "a.exr", {{"a", {"Y"}, Image(2, 2, 1)}}, {}), Error);
 }
 
 TEST(PictureIo, DamagedFile_IsAnInputError) {

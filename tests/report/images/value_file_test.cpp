@@ -124,11 +124,5 @@ TEST(ValueFile, FewStepsAndNothing_TakeCodes) {
   EXPECT_EQ(write_and_parse(plane)["planes"][0]["low"], -1.0);
 }
 
-TEST(ValueFile, FolderThatCannotBeMade_IsAnError) {
-  const records::TemporaryFolder folder("value_file_bad");
-  write_text_file(folder.path() / "file", "");
-  EXPECT_THROW(write_value_file(folder.path() / "file" / "a.js", "a", {{"p", Image(1, 1, 1)}}), Error);
-}
-
 }  // namespace
 }  // namespace shadowbench::images

@@ -105,17 +105,6 @@ TEST(GridSheets, TheCrop_IsWhereFiltersDiffer_AndIsCutFromThePictures) {
   EXPECT_EQ(none.crop.at(3, 4)[1], picture.at(crop.x + 3, crop.y + 4)[1]);
 }
 
-TEST(GridSheets, Insets_LieWhereErrorsAreSmallest) {
-  GridFolder folder("grid_corner");
-  folder.add("none", 0.1f, 0.08);
-  folder.write();
-  const images::Sheet sheet = folder.make().front();
-  const images::Image& inset = sheet.filters[0].inset;
-  // The edge goes from the left at the top to the right at the bottom: the other two corners have no error.
-  EXPECT_NE(sheet.inset_column, sheet.inset_row);
-  EXPECT_EQ(inset.width, sheet.crop.width);
-}
-
 TEST(GridSheets, ThePicks_HaveTheirRoles_AndASingleFilterHasNone) {
   GridFolder folder("grid_roles");
   folder.add("none", 0.1f, 0.08);
@@ -140,16 +129,6 @@ TEST(GridSheets, WithoutTruthOrCost_SaysWhy) {
   EXPECT_FALSE(sheet.filters[0].bar.has_value());
   EXPECT_TRUE(sheet.filters[0].inset.empty());
   EXPECT_FALSE(sheet.filters[0].crop.empty());
-}
-
-TEST(GridSheets, SceneWithoutEdges_StillHasItsCrop) {
-  GridFolder folder("grid_flat");
-  folder.add("none", 1e9f, 0.0);
-  folder.add("vsm", 1e9f, 0.0);
-  folder.write();
-  const images::Sheet sheet = folder.make().front();
-  EXPECT_FALSE(sheet.filters[0].crop.empty());
-  EXPECT_EQ(sheet.filters[0].number, "0.00");
 }
 
 TEST(GridSheets, ThirtyOneFilters_TakeFourSheets_WithOneCropAndScale) {

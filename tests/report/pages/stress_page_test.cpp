@@ -15,7 +15,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::SizeIs;
 
 records::StressCase make_case() {
@@ -216,44 +215,6 @@ TEST(StressPage, Verdict_IsTheWorstVariants_FromTheEasyEndOn) {
   EXPECT_EQ(verdict().first, "\u2717 0 .. 75 %");
   cases[0].level = "model";  // says what the GL should do
   EXPECT_EQ(verdict(), std::pair(std::string("75 %"), document::Grade::kNear));
-}
-
-TEST(StressPage, HasTablesChartSentencesAndWarnings_InBothFormats) {
-  const document::Page page = make_stress_page(make_record());
-  const std::string html = document::write_html(page), markdown = document::write_markdown(page);
-  for (const char* part : {"Measured against theoretical limits", "ln(65504)", "Warnings",
-                           "not available: this GL lacks r8", "the blur adds", "ok again at 30", "A mistake",
-                           "It was made.", "stress.mistake.png", "stress.csv", "stress.json"}) {
-    EXPECT_THAT(html, HasSubstr(part));
-    EXPECT_THAT(markdown, HasSubstr(part));
-  }
-  EXPECT_THAT(html, AllOf(HasSubstr("id=\"stress.esm-exponent\""), HasSubstr("prefers-color-scheme: dark")));
-  for (const char* loaded : {"src=\"http", "href=\"http", "url(http"}) EXPECT_THAT(html, Not(HasSubstr(loaded)));
-}
-
-TEST(StressPage, Texts_AreEscaped) {
-  records::StressRecord record = make_record();
-  records::StressAxis& axis = record.axes[0];
-  axis.title = axis.quantity = axis.measured = axis.broken_when = "<b>";
-  axis.cases[0].filter = axis.cases[0].variant = axis.cases[0].notes[0] = "<i>";
-  axis.cases[0].limits[0].formula = axis.cases[0].limits[1].explanation = axis.cases[1].not_available = "<u>";
-  axis.exhibits[0].title = axis.exhibits[0].sentences[0] = "<s>";
-  record.gl.renderer = record.filters[0] = "<tt>";
-  const std::string html = document::write_html(make_stress_page(record));
-  for (const char* raw : {"<b>", "<i>", "<u>", "<s>", "<tt>"}) EXPECT_THAT(html, Not(HasSubstr(raw)));
-}
-
-TEST(StressPage, Markdown_EscapesPipes) {
-  EXPECT_THAT(document::write_markdown(make_stress_page(make_record())),
-              AllOf(HasSubstr("## esm-exponent: Exponent"), HasSubstr("nothing explains it."), HasSubstr("a\\|b")));
-}
-
-TEST(StressPage, TerminalShowsTheLimits_AndWhatTheyLeaveOut) {
-  records::StressRecord record = make_record();
-  EXPECT_THAT(make_limit_text(record), AllOf(HasSubstr("| ratio "), Not(HasSubstr("Not met"))));
-  record.axes[0].cases[0].limits[1].measured.reset();
-  record.axes[0].cases[0].limits[1].agreement = records::StressAgreement::kAgrees;
-  EXPECT_THAT(make_limit_text(record), HasSubstr("Not met, and not expected:\n\n- esm-exponent: "));
 }
 
 TEST(StressChart, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {

@@ -146,16 +146,6 @@ TEST(TradeSection, MapsOfSeveralFits_AreACurveEach) {
   EXPECT_EQ(chart.series[0].points[1].label, "2048");
 }
 
-TEST(TradeSection, ChartsOfThePage_AreJsonThatHoldsEveryPoint) {
-  const nlohmann::json data = read_charts(write_trade(make_crossing_cells("cubes")));
-  const nlohmann::json& chart = data["charts"][0]["charts"][0];
-  const nlohmann::json& member = chart["series"].back()["points"][0];
-  EXPECT_EQ(member[0], nlohmann::json(4));
-  EXPECT_EQ(member[1], nlohmann::json({0.1, 0.099, 0.101}));
-  const std::size_t detail = member[3][0];
-  EXPECT_EQ(data["texts"][detail], "none");
-}
-
 TEST(TradeSection, HostileTexts_EndNoElement) {
   std::vector<records::CellRecord> cells = make_crossing_cells(kHostile);
   for (records::CellRecord& cell : cells) {
@@ -191,13 +181,6 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
   EXPECT_THAT(page, Not(HasSubstr("id=\"charts\"")));
   EXPECT_THAT(page, Not(HasSubstr("id=\"trade\"")));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "fronts.csv"));
-}
-
-TEST(TradeSection, Summary_SaysFrontsAndColumns) {
-  const TemporaryFolder folder("trade_summary");
-  const std::string summary = write_and_read(folder, make_crossing_cells("cubes"), "details.md");
-  for (const char* text : {"## The trade", "**dominated_by**:"}) EXPECT_THAT(summary, HasSubstr(text));
-  EXPECT_LT(summary.find("## The trade"), summary.find("What it costs: "));
 }
 
 }  // namespace

@@ -37,11 +37,6 @@ class WritePage : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("shadowbench.write_page_test." + std::to_string(::getpid()));
 };
 
-TEST_F(WritePage, WritesHtmlAndMarkdown) {
-  EXPECT_THAT(write("stress", "stress"), AllOf(HasSubstr("A page"), Not(HasSubstr("index.html"))));
-  EXPECT_TRUE(std::filesystem::exists(report_ / "stress" / "stress.md"));
-}
-
 TEST_F(WritePage, LinksThePagesThatLieInTheSameReport) {
   write("bias", "bias");
   write_text_file(report_ / "index.html", "");
@@ -55,11 +50,6 @@ TEST_F(WritePage, LinksPagesThatWereWrittenEarlier_WithTheNewOne) {
   EXPECT_THAT(read("bias", "bias"), Not(HasSubstr("stress.html")));
   write("stress", "stress");
   EXPECT_THAT(read("bias", "bias"), HasSubstr("href=\"../stress/stress.html\""));
-}
-
-TEST_F(WritePage, LinksPagesOfOneFolder) {
-  write("all", "bias");
-  EXPECT_THAT(write("all", "stress"), HasSubstr("href=\"bias.html\""));
 }
 
 TEST_F(WritePage, LinksNoPipe) {
