@@ -164,36 +164,23 @@ Command make_gpu_facts_command() {
 
 Command make_merge_command() {
   struct Arguments {
-    std::vector<std::string> folders, times;
-    std::string out;
+    std::vector<std::string> folders;
+    std::string out, times;
     bool force = false;
   };
-  Command command{"merge", "Merge the shards of 'run', or times from other machines, into one report"};
-  command.about =
-      "Makes one report of the folders of 'run --shard 1/N' to 'N/N'. With --times, adds times that readers' browsers "
-      "saved to a report: its page, fronts.csv and answer then offer each machine's costs.";
+  Command command{"merge", "Merge the shards of 'run' into one report"};
+  command.about = "Makes one report of the folders of 'run --shard 1/N' to 'N/N'.";
   auto a = std::make_shared<Arguments>();
-  command.add("DIR", &a->folders, "report folders of all shards of one experiment, or the folder of a run")
-      .names(ValueKind::kFolder)
-      .require();
-  command.add("--out", &a->out, "folder of the merged report; new or empty").names(ValueKind::kFolder);
+  command.add("DIR", &a->folders, "report folders of all shards of one experiment").names(ValueKind::kFolder).require();
+  command.add("--times", &a->times, "").gone("load the file in the report's page, or give it to 'advise --times'");
+  command.add("--out", &a->out, "folder of the merged report; new or empty").names(ValueKind::kFolder).require();
   add_force_option(command, a->force);
-  command.add("--times", &a->times, "gpu-times.json saved by the page of the run in DIR; repeatable")
-      .names(ValueKind::kFile);
   command.action = [a](const CommandLine&) {
-    const bool has_times = !a->times.empty();
-    if (has_times && (!a->out.empty() || a->folders.size() > 1))
-      fail("--times joins times to one report: name its folder alone, without --out");
-    if (!has_times && a->out.empty()) fail("--out is required: name the folder of the whole report");
-    const std::filesystem::path out = a->out.empty() ? a->folders.front() : a->out;
     {
-      const Interruption interruption(out, kStoppedAdvice);
-      if (has_times)
-        run::merge_times(out, {a->times.begin(), a->times.end()});
-      else
-        run::merge_runs({a->folders.begin(), a->folders.end()}, out, a->force);
+      const Interruption interruption(a->out, kStoppedAdvice);
+      run::merge_runs({a->folders.begin(), a->folders.end()}, a->out, a->force);
     }
-    print("report: {}\n", (out / "index.html").string());
+    print("report: {}\n", (std::filesystem::path(a->out) / "index.html").string());
     return 0;
   };
   return command;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <span>
 #include <system_error>
@@ -14,7 +13,6 @@
 #include "report/analysis/findings.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"
-#include "report/records/gpu_times.h"
 #include "report/records/json_io.h"
 
 namespace shadowbench::run {
@@ -98,12 +96,6 @@ void require_free(const std::filesystem::path& out, const std::vector<ShardRun>&
               out.string());
 }
 
-void write_again(const std::filesystem::path& report, const records::Results& results) {
-  std::vector<std::string> keys;
-  for (const records::CellRecord& cell : results.cells) keys.push_back(cell.key);
-  pages::write_report(report, results.run, keys);
-}
-
 }  // namespace
 
 records::RunRecord join_runs(const std::vector<records::RunRecord>& runs) {
@@ -158,26 +150,12 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
   pages::write_report(out, join_runs(runs), keys);
 }
 
-void merge_times(const std::filesystem::path& report, const std::vector<std::filesystem::path>& files) {
-  const records::Results results = records::read_results(report / "results.json");
-  const files::FolderLock lock(report);
-  std::map<std::filesystem::path, std::filesystem::path> sources;  // by where each goes to
-  for (const std::filesystem::path& file : files) {
-    const records::GpuTimes times = records::read_gpu_times(file);
-    records::require_times_of(results.cells, times);
-    const auto [place, is_new] = sources.emplace(records::gpu_times_path(report, times.renderer), file);
-    if (!is_new)
-      throw Error(ErrorKind::kUsage, fmt::format("--times: {} and {} are both times of {}: name one of them",
-                                                 place->second.string(), file.string(), times.renderer));
-  }
-  for (const auto& [place, file] : sources) copy_whole_file(file, place);
-  write_again(report, results);
-}
-
 void rewrite_report(const std::filesystem::path& report) {
   const records::Results results = records::read_results(report / "results.json");
   const files::FolderLock lock(report);
-  write_again(report, results);
+  std::vector<std::string> keys;
+  for (const records::CellRecord& cell : results.cells) keys.push_back(cell.key);
+  pages::write_report(report, results.run, keys);
 }
 
 }  // namespace shadowbench::run

@@ -25,9 +25,4 @@ records::RunRecord join_runs(const std::vector<records::RunRecord>& runs);
 /// where there is no report, Error(kOutput) where another process has the folder.
 void rewrite_report(const std::filesystem::path& report);
 
-/// Joins times that browsers saved to a report, as costs of its page and of fronts.csv; those of a renderer that it
-/// has times of take their place. Throws Error(kInput) for a file that is none, or of another run, and Error(kUsage)
-/// where two are of one renderer.
-void merge_times(const std::filesystem::path& report, const std::vector<std::filesystem::path>& files);
-
 }  // namespace shadowbench::run

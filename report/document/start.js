@@ -16,7 +16,6 @@ if (run.cells.some(({ picture, values }) => picture || values)) {
   if (!openLink())
     start({ place: 0, left: first, right: second, ...(run.opens && { mode: "difference", layer: "visibility" }) });
 } else section.hidden = true;
-run.times?.forEach(({ file, ...times }) => addMachine(times, false, `${folderOfPage()}/${file}`));
 if (timesHere() && run.scopes.length > 0) addMachine(timesHere(), true);
 for (const [name, begin] of [
   [".numbers", startTable],

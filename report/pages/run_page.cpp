@@ -303,7 +303,7 @@ std::optional<document::Section> make_gpu_section(const std::vector<records::Cel
 }
 
 document::Section make_evidence_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                        bool has_fronts, bool is_whole) {
+                                        bool is_whole) {
   document::Section section{"evidence", "Behind the numbers", {}};
   add_groups(section.blocks, run, cells);
   if (const auto absences = analysis::count_absences(cells); !absences.empty()) {
@@ -315,7 +315,6 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
   document::Details columns{"Columns of the CSV files", {}};
   explain_columns(columns, "timings.csv", records::list_csv_columns(records::CsvTable::kTimings));
   explain_columns(columns, "accuracy.csv", records::list_csv_columns(records::CsvTable::kAccuracy));
-  if (has_fronts) explain_columns(columns, "fronts.csv", list_front_columns());
   section.blocks.emplace_back(std::move(columns));
   document::Details machine{"Precision, machine and command", {document::Facts{analysis::list_run_facts(run)}}};
   if (std::string power = analysis::describe_power(cells); !power.empty())
@@ -335,8 +334,8 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
 }  // namespace
 
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                             const std::optional<Trade>& trade, const std::vector<records::GpuTimes>& machines,
-                             const std::vector<records::BiasToShip>& biases, const std::string& so_far) {
+                             const std::optional<Trade>& trade, const std::vector<records::BiasToShip>& biases,
+                             const std::string& so_far) {
   const analysis::AdviceRequest request = choose_request(cells);
   document::Page page{"Shadow filters compared", {}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
@@ -354,17 +353,12 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
     if (std::ranges::any_of(cells, [](const auto& cell) { return cell.images.frames.has_value(); }))
       add({"live", "Live", {document::Mount{"live", {}}}});
     page.data = make_run_data(run, cells, biases);
-    page.data["times"] = nlohmann::json::array();
-    for (const records::GpuTimes& times : machines) {
-      page.data["times"].push_back(records::gpu_times_json(times));
-      page.data["times"].back()["file"] = records::gpu_times_path({}, times.renderer).generic_string();
-    }
   }
   if (auto external = make_external_section(cells)) add(std::move(*external));
   if (trade) add(make_trade_section(run, own, *trade));
   if (auto cascades = make_cascade_section(own)) add(std::move(*cascades));
   if (auto gpus = make_gpu_section(own)) add(std::move(*gpus));
-  add(make_evidence_section(run, cells, trade && trade->has_fronts, so_far.empty()));
+  add(make_evidence_section(run, cells, so_far.empty()));
   return page;
 }
 

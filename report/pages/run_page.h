@@ -7,18 +7,17 @@
 #include "report/document/blocks.h"
 #include "report/pages/trade_section.h"
 #include "report/records/bias_record.h"
-#include "report/records/gpu_times.h"
 #include "report/records/records.h"
 
 namespace shadowbench::pages {
 
 /// Makes the page of a run: the choice of a filter, where errors come from, warnings, the table of all numbers, the
 /// viewer, the trade; folded away the tables of each scene, what is absent and why, the columns of the CSV files, and
-/// the machine. `cells` have no times where several kinds of machine measured them: withhold_mixed_times(). Times of
-/// `machines` are costs to choose from; `biases` are what a sweep of the bias recommends. A run under way says on top
-/// how far it is, `so_far`, and has no data files to link to.
+/// the machine. `cells` have no times where several kinds of machine measured them: withhold_mixed_times().
+/// `biases` are what a sweep of the bias recommends. A run under way says on top how far it is, `so_far`, and has no
+/// data files to link to.
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                             const std::optional<Trade>& trade, const std::vector<records::GpuTimes>& machines = {},
-                             const std::vector<records::BiasToShip>& biases = {}, const std::string& so_far = {});
+                             const std::optional<Trade>& trade, const std::vector<records::BiasToShip>& biases = {},
+                             const std::string& so_far = {});
 
 }  // namespace shadowbench::pages

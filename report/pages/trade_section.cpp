@@ -307,8 +307,7 @@ using Blocks = std::vector<document::Block>;
 constexpr const char* kFrontsNote =
     "Lower left is better. Line: the Pareto front of a class of width. Hollow: tied. Pale: beaten. Ringed: the "
     "answers.";
-constexpr const char* kLargeNote =
-    "The run has more than {} cells: beaten ones are left out of these charts. fronts.csv has them.";
+constexpr const char* kLargeNote = "The run has more than {} cells: beaten ones are left out of these charts.";
 constexpr const char* kMapsNote =
     "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
     "stand still; every other fit follows a camera, and is drawn anew whenever it moves.";
@@ -342,10 +341,8 @@ void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector
   if (cells.size() > kMostCellsInDetail)
     blocks.emplace_back(document::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
   blocks.emplace_back(make_front_choice(trade.scopes, cells, run.gl));
-  blocks.emplace_back(
-      document::Details{"How to read the fronts",
-                        {document::Sentences{{}, explain_fronts(trade.scopes.front().costs)},
-                         document::Links{"All fronts, cell by cell:", {{"fronts.csv", "fronts.csv"}}}}});
+  blocks.emplace_back(document::Details{"How to read the fronts",
+                                        {document::Sentences{{}, explain_fronts(trade.scopes.front().costs)}}});
 }
 
 void add_charts(Blocks& blocks, const char* heading, document::ChartChoice charts, const char* note) {

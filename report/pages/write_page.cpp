@@ -157,7 +157,6 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
 
 void write_report(const std::filesystem::path& dir, records::RunRecord run,
                   const std::vector<records::CellRecord>& cells, images::SheetWidth width) {
-  const std::vector<records::GpuTimes> machines = records::list_gpu_times(dir, cells, run.warnings);
   const std::vector<records::BiasToShip> biases = records::list_bias_to_ship(dir, run.warnings);
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
@@ -166,18 +165,12 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run,
   const std::vector<records::CellRecord>& shown = withheld ? *withheld : cells;
   const auto without_external = analysis::leave_out_external(shown);
   const std::vector<records::CellRecord>& own = without_external ? *without_external : shown;
-  const std::optional<Trade> trade = make_trade(own);
-  if (trade && trade->has_fronts) {
-    AtomicFile file(dir / "fronts.csv");
-    write_fronts_csv(own, trade->scopes, machines, [&](std::string_view rows) { file.write(rows); });
-    file.commit();
-  }
   if (std::ranges::any_of(cells, [](const records::CellRecord& cell) { return cell.accumulation.has_value(); }))
     write_page(dir, "frames", make_frames_page(cells, run));
   else
     remove_page(dir, "frames");  // of another run into this folder
   write_grids(dir, shown, run.gl, width);
-  write_page(dir, "run", make_run_page(run, shown, trade, machines, biases));
+  write_page(dir, "run", make_run_page(run, shown, make_trade(own), biases));
   records::write_results(dir, run, cells);
 }
 
@@ -188,7 +181,7 @@ void write_early_report(const std::filesystem::path& dir, records::RunRecord run
   const auto withheld = analysis::withhold_mixed_times(cells);
   const std::vector<records::CellRecord>& shown = withheld ? *withheld : cells;
   write_grids(dir, shown, run.gl, width);
-  write_early_page(dir, "run", make_run_page(run, shown, make_trade(shown), {}, {}, so_far));
+  write_early_page(dir, "run", make_run_page(run, shown, make_trade(shown), {}, so_far));
 }
 
 }  // namespace shadowbench::pages

@@ -45,10 +45,9 @@ std::vector<std::pair<std::string, std::string>> list_provenance(const records::
 document::Links link_data(const std::vector<std::string>& files);
 
 /// Writes what is made of finished cells into a report folder: results.json and its schema, timings.csv, accuracy.csv,
-/// summary.md and index.html; the grids that cells name; where there are cells to compare, fronts.csv. Times of other
-/// machines, which lie in the folder, are costs in the latter two. `keys` names the cell files that belong to the run,
-/// in the order they are to be listed. results.json comes last: where it is, the report is whole. Throws Error(kInput)
-/// for a cell file, Error(kOutput) for the others. Cost: memory of all records, and of what write_grids() reads.
+/// summary.md and index.html; the grids that cells name. `keys` names the cell files that belong to the run, in the
+/// order they are to be listed. results.json comes last: where it is, the report is whole. Throws Error(kInput) for a
+/// cell file, Error(kOutput) for the others. Cost: memory of all records, and of what write_grids() reads.
 void write_report(const std::filesystem::path& dir, records::RunRecord run, const std::vector<std::string>& keys);
 
 /// The same of cells that were read.

@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
-#include <system_error>
 
 #include "base/error.h"
 #include "base/files.h"
-#include "report/files/file_name.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::records {
@@ -20,53 +17,46 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::uintmax_t kMostBytes = 16 * kMebibyte;
-constexpr const char* kFolder = "times";
 constexpr const char* kSchema = "shadowbench gpu-times 1";  // report/document/live/machine_times.js writes it
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& what) {
   throw Error(ErrorKind::kInput, what + "; choose a gpu-times.json that a report's page saved", file.string());
 }
 
-double read_number(const json& value) {
-  const double number = value.get<double>();
-  if (!std::isfinite(number) || std::abs(number) >= 1e9) throw std::invalid_argument("a number is out of range");
-  return number;
+/// What the file has of a part, ms.
+struct FilePart {
+  double median = 0.0;
+  std::optional<Interval> interval;
+  int rounds = 0;
+};
+
+void visit_fields(FilePart& part, auto&& visit) {
+  visit("median", part.median);
+  visit("interval", part.interval);
+  visit("rounds", part.rounds);
 }
 
-OwnTime read_time(const json& part) {
-  OwnTime time;
-  time.median = read_number(part.at("median"));
-  time.n = part.at("rounds").get<int>();
-  if (time.n < 1) throw std::invalid_argument("there are no rounds");
-  const json& interval = part.at("interval");
-  time.ci95 = interval.is_null() ? Interval{time.median, time.median}
-                                 : Interval{read_number(interval.at(0)), read_number(interval.at(1))};
-  time.q1 = time.ci95.low;
-  time.q3 = time.ci95.high;
-  return time;
+struct FileParts {
+  std::optional<FilePart> map, prefilter;
+  FilePart filter;
+};
+
+void visit_fields(FileParts& parts, auto&& visit) {
+  visit("map", parts.map);
+  visit("prefilter", parts.prefilter);
+  visit("filter", parts.filter);
 }
 
-TimedPart read_part(const json& part) {
-  TimedPart timed{read_time(part), {}};
-  if (part.contains("queries")) timed.queries = read_time(part["queries"]);
-  return timed;
+OwnTime to_time(const FilePart& part) {
+  const Interval ci95 = part.interval.value_or(Interval{part.median, part.median});
+  for (const double each : {part.median, ci95.low, ci95.high}) require(std::abs(each) < 1e9, "a number in range");
+  require(part.rounds > 0, "one round or more");
+  return {{part.median, ci95.low, ci95.high, part.rounds}, ci95};
 }
 
-TimedParts read_parts(const json& cell) {
-  TimedParts parts{{}, {}, read_part(cell.at("filter"))};
-  if (const json& map = cell.at("map"); !map.is_null()) parts.map = read_part(map);
-  if (const json& prefilter = cell.at("prefilter"); !prefilter.is_null()) parts.prefilter = read_part(prefilter);
-  return parts;
-}
-
-json write_time(const OwnTime& time) {
-  return {{"median", time.median}, {"interval", {time.ci95.low, time.ci95.high}}, {"rounds", time.n}};
-}
-
-json write_part(const TimedPart& part) {
-  json written = write_time(part);
-  if (part.queries) written["queries"] = write_time(*part.queries);
-  return written;
+TimedParts to_times(const FileParts& parts) {
+  const auto to_optional = [](const auto& part) { return part ? std::optional(to_time(*part)) : std::nullopt; };
+  return {to_optional(parts.map), to_optional(parts.prefilter), to_time(parts.filter)};
 }
 
 void add(OwnTime& sum, const OwnTime& part) {
@@ -91,11 +81,6 @@ void set_times(CellRecord& cell, const TimedParts& parts) {
   cell.time_ms.moving = moving;
 }
 
-bool is_any_timed(const std::vector<CellRecord>& cells, const GpuTimes& times) {
-  return std::ranges::any_of(
-      cells, [&](const CellRecord& cell) { return times.cells.contains(cell.key); });
-}
-
 }  // namespace
 
 GpuTimes read_gpu_times(const fs::path& file) {
@@ -117,7 +102,7 @@ GpuTimes read_gpu_times(const fs::path& file) {
     times.software = written.value("isSoftware", false);
     for (const auto& [name, cell] : written.at("cells").items()) {
       key = name;
-      times.cells[name] = read_parts(cell);
+      times.cells[name] = to_times(read_value<FileParts>(cell));
     }
   } catch (const std::exception&) {
     refuse(file, key.empty() ? "it has no renderer or no cells"
@@ -126,13 +111,10 @@ GpuTimes read_gpu_times(const fs::path& file) {
   return times;
 }
 
-void require_times_of(const std::vector<CellRecord>& cells, const GpuTimes& times) {
-  if (!is_any_timed(cells, times))
-    refuse(times.file, "it has times of another run: none of its cells is one of this one");
-}
-
 void apply_gpu_times(Results& results, const GpuTimes& times) {
-  require_times_of(results.cells, times);
+  const auto is_timed = [&](const CellRecord& cell) { return times.cells.contains(cell.key); };
+  if (std::ranges::none_of(results.cells, is_timed))
+    refuse(times.file, "it has times of another run: none of its cells is one of this one");
   results.run.gl.renderer = times.renderer;
   results.run.gl.software = times.software;
   for (CellRecord& cell : results.cells) {
@@ -146,37 +128,6 @@ void apply_gpu_times(Results& results, const GpuTimes& times) {
     }
     set_times(cell, found->second);
   }
-}
-
-json gpu_times_json(const GpuTimes& times) {
-  json cells = json::object();
-  for (const auto& [key, parts] : times.cells)
-    cells[key] = {{"map", parts.map ? write_part(*parts.map) : json()},
-                  {"prefilter", parts.prefilter ? write_part(*parts.prefilter) : json()},
-                  {"filter", write_part(parts.filter)}};
-  return {{"schema", kSchema}, {"renderer", times.renderer}, {"isSoftware", times.software}, {"cells", cells}};
-}
-
-fs::path gpu_times_path(const fs::path& report, const std::string& renderer) {
-  return report / kFolder / (files::make_file_stem(renderer) + ".json");
-}
-
-std::vector<GpuTimes> list_gpu_times(const fs::path& report, const std::vector<CellRecord>& cells,
-                                     std::vector<std::string>& warnings) {
-  std::error_code error;
-  std::set<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(report / kFolder, error))
-    if (entry.path().extension() == ".json" && !is_temporary(entry.path())) paths.insert(entry.path());
-  std::vector<GpuTimes> list;
-  for (const fs::path& path : paths) {
-    try {
-      list.push_back(read_gpu_times(path));
-    } catch (const Error& damaged) {
-      warnings.push_back(fmt::format("{}; times of that machine are left out", damaged.what()));
-    }
-  }
-  std::erase_if(list, [&](const GpuTimes& times) { return !is_any_timed(cells, times); });
-  return list;
 }
 
 }  // namespace shadowbench::records

@@ -24,6 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kDeepest = 100;
+constexpr const char* kRunAgain = "delete this file and run again";
 constexpr const char* kMistakesFile = "filter_mistakes.json";
 
 void require_shallow(int depth) {
@@ -64,6 +65,15 @@ std::string dump_line(const json& value) { return value.dump(-1, ' ', false, jso
 
 std::string dump_file(const json& value) { return value.dump(1, ' ', false, json::error_handler_t::replace) + "\n"; }
 
+bool FieldReader::stays_inside(const std::string& path) {
+  const std::filesystem::path relative = std::filesystem::path(path).lexically_normal();
+  return !path.empty() && relative.is_relative() && *relative.begin() != ".." && path.find('\0') == std::string::npos;
+}
+
+void FieldReader::fail(const std::string& fault) const {
+  throw Error(ErrorKind::kInput, fmt::format("{}; {}", fault, advice), where);
+}
+
 json::json_pointer make_pointer(std::string path) {
   std::replace(path.begin(), path.end(), '.', '/');
   return json::json_pointer("/" + path);
@@ -97,43 +107,6 @@ struct FieldWriter {
     written = nullptr;
     nulls.push_back(path);
     if (value) not_finite[path] = "the value was not finite";
-  }
-};
-
-// Whether a path that a report names stays in its folder: reports come from elsewhere, and `merge` copies what they
-// name.
-bool stays_inside(const std::string& path) {
-  const std::filesystem::path relative = std::filesystem::path(path).lexically_normal();
-  return !path.empty() && relative.is_relative() && *relative.begin() != ".." && path.find('\0') == std::string::npos;
-}
-
-// Reads each visited field from one JSON object.
-struct FieldReader {
-  const json& root;
-  const std::string& where;
-
-  void operator()(const std::string&, const Group&, const About& = {}) const {}
-
-  template <class T>
-  void operator()(const std::string& path, T& value, const About& about = {}) const {
-    const auto pointer = make_pointer(path);
-    const bool is_there = root.is_object() && root.contains(pointer);
-    if (!is_there && about.may_lack && root.is_object()) return;
-    if (!is_there) fail(fmt::format("the field '{}' is missing", path));
-    const json& written = root.at(pointer);
-    try {
-      value = read_value<T>(written);
-    } catch (const std::exception& problem) {
-      fail(fmt::format("the field '{}' holds {}, which is not what belongs there ({})", path,
-                       dump_line(written).substr(0, 60), problem.what()));
-    }
-    if (about.is_path && written.is_string() && !stays_inside(written.get<std::string>()))
-      fail(fmt::format("the field '{}' holds {}, which is outside the report's folder", path,
-                       dump_line(written).substr(0, 60)));
-  }
-
-  [[noreturn]] void fail(const std::string& fault) const {
-    throw Error(ErrorKind::kInput, fault + "; delete this file and run again", where);
   }
 };
 
@@ -270,7 +243,7 @@ json to_json(const Provenance& provenance, int schema_version) {
 
 CellRecord cell_from_json(const json& json, const std::string& where) {
   CellRecord cell;
-  const FieldReader reader{json, where};
+  const FieldReader reader{json, where, kRunAgain};
   visit_fields(cell, reader);
   if (!is_cell_key(cell.key))
     reader.fail(fmt::format("the field 'key' holds {}, which is no key of 16 hexadecimal digits",
@@ -281,7 +254,7 @@ CellRecord cell_from_json(const json& json, const std::string& where) {
 RunRecord run_from_json(const json& json, const std::string& where) {
   check_version(json, where);
   RunRecord run;
-  const FieldReader reader{json, where};
+  const FieldReader reader{json, where, kRunAgain};
   visit_fields(run, reader);
   const ExperimentRecord& all = run.experiment;
   if (all.cells < 0 || all.shard < 1 || all.shard > all.shards)

@@ -161,4 +161,37 @@ T read_value(const nlohmann::json& json) {
   return value;
 }
 
+/// Reads the fields of a file's record from an object.
+/// Throws Error(kInput), with file and field, where one is missing or holds another type, or a path leaves the folder.
+struct FieldReader {
+  const nlohmann::json& root;
+  const std::string& where;
+  const char* advice;      ///< the end of a message: what to do
+  std::string place = {};  ///< of the object in the file: "filters[0]."
+
+  void operator()(const std::string&, const Group&, const About& = {}) const {}
+  template <class T>
+  void operator()(const std::string& path, T& value, const About& about = {}) const {
+    const auto pointer = make_pointer(path);
+    const bool is_there = root.is_object() && root.contains(pointer);
+    if (!is_there && about.may_lack && root.is_object()) return;
+    if (!is_there) fail(fmt::format("the field '{}{}' is missing", place, path));
+    const nlohmann::json& written = root.at(pointer);
+    const std::string held = fmt::format("the field '{}{}' holds {}", place, path, dump_line(written).substr(0, 60));
+    try {
+      value = read_value<T>(written);
+    } catch (const std::exception& problem) {
+      fail(fmt::format("{}, which is not what belongs there ({})", held, problem.what()));
+    }
+    // Reports come from elsewhere, and `merge` copies what they name.
+    if (about.is_path && written.is_string() && !stays_inside(written.get<std::string>()))
+      fail(held + ", which is outside the report's folder");
+  }
+
+  [[noreturn]] void fail(const std::string& fault) const;
+
+ private:
+  static bool stays_inside(const std::string& path);
+};
+
 }  // namespace shadowbench::records

@@ -41,60 +41,7 @@ Means average(const std::vector<TunedViewRecord>& views, bool training) {
   return {{means.score.at_default / count, means.score.tuned / count}, means.truth_se / count};
 }
 
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& message) {
-  throw Error(ErrorKind::kInput, message + "; make the file anew with 'shadowbench tune'", file.string());
-}
-
-/// One value of the file, with its place in it for messages.
-class Field {
- public:
-  Field(const json& value, std::string path, const std::filesystem::path& file)
-      : value_(value), path_(std::move(path)), file_(file) {}
-
-  Field at(const char* key) const {
-    require(value_.is_object(), "an object");
-    const std::string path = path_.empty() ? key : path_ + "." + key;
-    if (!value_.contains(key)) fail(file_, fmt::format("the field {} is missing", path));
-    return {value_.at(key), path, file_};
-  }
-  /// The value, which is `what`.
-  template <class T>
-  T as(const char* what) const {
-    try {
-      return read_value<T>(value_);
-    } catch (const std::exception&) {
-      refuse(what);
-    }
-  }
-  std::vector<Field> items() const {
-    require(value_.is_array(), "a list");
-    std::vector<Field> fields;
-    for (std::size_t i = 0; i < value_.size(); ++i)
-      fields.emplace_back(value_[i], fmt::format("{}[{}]", path_, i), file_);
-    return fields;
-  }
-  ParamMap params() const {
-    require(value_.is_object(), "an object");
-    ParamMap params;
-    for (const auto& [name, value] : value_.items())
-      params[name] = Field(value, path_ + "." + name, file_).as<ParamValue>("a number, a text, true or false");
-    return params;
-  }
-  const std::string& path() const { return path_; }
-
- private:
-  const json& value_;
-  std::string path_;
-  const std::filesystem::path& file_;
-
-  void require(bool holds, const char* what) const {
-    if (!holds) refuse(what);
-  }
-  [[noreturn]] void refuse(const char* what) const {
-    fail(file_, fmt::format("{} must be {}, but is {}", path_.empty() ? "the file" : "the field " + path_, what,
-                            dump_line(value_)));
-  }
-};
+constexpr const char* kTuneAgain = "make the file anew with 'shadowbench tune'";
 
 json parse(const std::filesystem::path& file) {
   require_plain_file(file, 64 * kMebibyte);
@@ -104,7 +51,8 @@ json parse(const std::filesystem::path& file) {
   try {
     return parse_json(stream);
   } catch (const std::exception& error) {
-    fail(file, fmt::format("not JSON, or cut off: {}", error.what()));
+    throw Error(ErrorKind::kInput, fmt::format("not JSON, or cut off: {}; {}", error.what(), kTuneAgain),
+                file.string());
   }
 }
 
@@ -168,6 +116,12 @@ void visit_fields(const TunedFilterRecord& filter, auto&& visit) {
   visit("unseen_truth_se", filter.unseen_truth_se);
 }
 
+void visit_fields(TunedSettings::Filter& filter, auto&& visit) {
+  visit("id", filter.id);
+  visit("params", filter.params);
+  visit("fit", filter.fit);
+}
+
 std::string make_tuned_json(const TunedRecord& record) {
   return dump_file({{"schema_version", kTunedSchemaVersion},
                     {"commit", record.commit},
@@ -192,18 +146,22 @@ std::string make_tuned_json(const TunedRecord& record) {
 
 TunedSettings read_tuned_settings(const std::filesystem::path& file) {
   const json parsed = parse(file);
-  const Field root(parsed, "", file);
-  const int version = root.at("schema_version").as<int>("a whole number");
+  const std::string where = file.string();
+  const FieldReader root{parsed, where, kTuneAgain};
+  int version = 0;
+  root("schema_version", version);
   if (version != kTunedSchemaVersion)
-    fail(file, fmt::format("the field schema_version is {}, and this program reads {}", version, kTunedSchemaVersion));
-  TunedSettings settings{
-      root.at("metric").as<std::string>("a text"), root.at("map_size").as<int>("a whole number"), {}};
-  for (const Field& item : root.at("filters").items()) {
-    TunedSettings::Filter filter{item.at("id").as<std::string>("a text"), item.at("params").params(),
-                                 item.at("fit").as<std::string>("a text")};
+    root.fail(fmt::format("the field schema_version is {}, and this program reads {}", version, kTunedSchemaVersion));
+  TunedSettings settings;
+  root("metric", settings.metric);
+  root("map_size", settings.map_size);
+  if (!parsed.contains("filters") || !parsed["filters"].is_array()) root.fail("the field 'filters' must be a list");
+  for (const json& item : parsed["filters"]) {
+    const std::string place = fmt::format("filters[{}].", settings.filters.size());
+    TunedSettings::Filter filter;
+    visit_fields(filter, FieldReader{item, where, kTuneAgain, place});
     for (const TunedSettings::Filter& known : settings.filters)
-      if (known.id == filter.id)
-        fail(file, fmt::format("the field {}.id names '{}' a second time", item.path(), filter.id));
+      if (known.id == filter.id) root.fail(fmt::format("the field {}id names '{}' a second time", place, filter.id));
     settings.filters.push_back(std::move(filter));
   }
   return settings;

@@ -1,10 +1,8 @@
 // Estimates for a GPU that was not there are held against the times of one that is.
 import assert from "node:assert/strict";
-import { cpSync, existsSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
 import test from "node:test";
 import { kMesa, loadTimes, openLive, withBrowser } from "./live_support.mjs";
-import { folderOf, kNarrow, listViolations, measureOverflow, open, pageOf, readData, runProgram } from "./support.mjs";
+import { kNarrow, listViolations, measureOverflow, pageOf, readData } from "./support.mjs";
 
 const kRenderer = "AMD Radeon RX 6900 XT (RADV NAVI21)", kEstimate = "gpu.navi21.frame_ms.moving";
 // Times of all cells of a run, of which a function says what those of a configuration take.
@@ -41,53 +39,3 @@ test("EstimatesMeetTimes_OfTheGpuThatTheyAreFor", () => withBrowser(kMesa, async
   assert.deepEqual(messages, []);
   await close();
 }));
-
-test("AReportIsGivenTimesOfOtherMachines_ForItsPageAndItsFronts", async () => {
-  const report = join(folderOf("several"), "..", "several times"), markup = "<img src=x onerror=alert(1)>";
-  rmSync(report, { recursive: true, force: true });
-  cpSync(folderOf("several"), report, { recursive: true });
-  let opened = await open(join(report, "index.html"));
-  const data = await readData(opened.page), costs = () => opened.page.locator("select[name=cost]"), before = await costs().locator("option").allTextContents();
-  await opened.close();
-  const write = (name, renderer, edit = () => {}) => {
-    const times = JSON.parse(forge(data, renderer, ({ label }) => label.length));
-    edit(times.cells);
-    writeFileSync(join(report, name), JSON.stringify(times));
-    return join(report, name);
-  };
-  const merge = (...files) => runProgram(["merge", report, ...files.flatMap((file) => ["--times", file])]);
-  const good = write("a.json", "Another GPU"), [{ key, configuration }] = data.cells;
-  for (const [file, words] of [
-    [write("b.json", "Another GPU"), /both times of Another GPU: name one/],
-    [write("c.json", "A third", (cells) => { for (const own of Object.keys(cells)) delete cells[own]; }), /c.json.*of another run/],
-    [write("d.json", "A third", (cells) => { cells[key].map.median = null; }), /d.json.*is no time/],
-    [join(report, "none.json"), /none.json/],
-  ]) {
-    const refused = merge(good, file);
-    assert.notEqual(refused.status, 0);
-    assert.match(refused.stderr, words);
-    assert.ok(!existsSync(join(report, "times")), "nothing is half done");
-  }
-  const merged = merge(good, write("e.json", markup));
-  assert.equal(merged.status, 0, merged.stderr);
-  assert.equal(merge(write("f.json", "Another GPU", (cells) => { cells[key].filter.median = 77; })).status, 0, "newer times take the place of older ones");
-  opened = await open(join(report, "index.html"));
-  assert.deepEqual((await costs().locator("option").allTextContents()).filter((title) => !before.includes(title)).sort(), [
-    `moving light, ${markup}`, `static light, ${markup}`, "moving light, Another GPU", "static light, Another GPU",
-  ].sort());
-  await costs().selectOption({ label: "static light, Another GPU" });
-  assert.ok((await opened.page.evaluate(() => shadowbench.answer.judge().keeping.length)) > 0);
-  // The command of that choice names the file that the report keeps.
-  const [, words] = /^shadowbench (advise .*)$/.exec(await opened.page.locator(".answer code").first().textContent());
-  const said = runProgram([...words.match(/(?:'[^']*'|\S)+/g).map((word) => word.replaceAll("'", "")), "--json"]);
-  assert.equal(said.status, 0, said.stderr);
-  assert.ok((await opened.page.locator(".picks tbody tr").first().locator("td").first().textContent()).startsWith(JSON.parse(said.stdout).picks[0].label), words);
-  assert.deepEqual(opened.messages, []);
-  await opened.close();
-  const [head, ...rows] = readFileSync(join(report, "fronts.csv"), "utf8").trim().split("\r\n").map((row) => row.split(","));
-  const own = rows.filter((row) => row.at(-1) === "Another GPU" && row[head.indexOf("cost")] === "static" && row[head.indexOf("error")] === "rmse");
-  const costOf = (each) => Number(own.find((row) => row[head.indexOf("cell")] === each).at(head.indexOf("cost_value") - head.length));
-  assert.equal(costOf(key), 77);
-  const other = data.cells.find((each) => each.configuration !== configuration && costOf(each.key) > 0);
-  assert.equal(costOf(other.key), data.configurations[other.configuration].label.length);
-});

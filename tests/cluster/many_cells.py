@@ -25,7 +25,7 @@ EXPERIMENT = ["run", "--scene", "stack", "--scene", "cubes", "--filters",
               "none,pcf2x2,tent3x3,poisson:radius=2,poisson:radius=4,vsm:radius=2,vsm:radius=4,esm:radius=2,esm:radius=4,evsm4,pcss",
               "--map-size", "512", "--size", "240x135", "--rounds", "4", "--width", "own", "--no-grids", "--yes"]
 SHARDS = 4
-REPORT = {".shadowbench-folder", "index.html", "summary.md", "details.md", "results.json", "results.schema.json", "timings.csv", "accuracy.csv", "fronts.csv"}
+REPORT = {".shadowbench-folder", "index.html", "summary.md", "details.md", "results.json", "results.schema.json", "timings.csv", "accuracy.csv"}
 # What a cell has of its own, and what cells of one view and map share.
 OWN_IMAGES, SHARED_IMAGES = ("picture", "visibility", "values"), ("truth_picture", "truth_values")
 RATES = ("error.flip", "artefact.acne", "artefact.leak", "artefact.contact_gap", "artefact.noise")

@@ -173,8 +173,8 @@ const nameMachine = (renderer) => {
   return (isTaken ? renderer : title).slice(0, 80);
 };
 // Puts a machine's times among the costs, in the place of older ones of the same renderer; gives the id of that of a
-// moving light. `file` is where a terminal finds them.
-const addMachine = (times, isHere, file = "gpu-times.json") => {
+// moving light.
+const addMachine = (times, isHere) => {
   const old = machines.findIndex(({ renderer }) => renderer === times.renderer);
   const at = old < 0 ? machines.push(times) - 1 : old;
   machines[at] = times;
@@ -182,7 +182,7 @@ const addMachine = (times, isHere, file = "gpu-times.json") => {
     const id = `machine${at}.${isStatic ? "static" : "moving"}`;
     const name = isHere ? "this GPU" : nameMachine(times.renderer);
     const title = `${isStatic ? "static" : "moving"} light, ${name}`;
-    const option = `--times ${file}${isStatic ? " --light-motion static" : ""}`;
+    const option = `--times gpu-times.json${isStatic ? " --light-motion static" : ""}`;
     const parts = isStatic ? "lookups" : "map, prefilter and lookups";
     const left = "left out: what every lookup pays";
     const text = `ms of a frame with one map, timed in a browser on ${times.renderer}, ${title}: ${parts}; ${left}`;

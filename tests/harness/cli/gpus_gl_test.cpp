@@ -85,7 +85,6 @@ TEST_F(Gpus, EveryPassHasFacts_AndFiltersTheirOrder) {
   EXPECT_EQ(lookup_of(cells.at("vsm"), "encode")["loads"], 5);
   expect_valid();
   EXPECT_THAT(read("out/index.html"), HasSubstr("navi21: estimates"));
-  EXPECT_THAT(read("out/fronts.csv"), HasSubstr(",gpu.navi21.moving,"));
   const Outcome advice = succeed("advise out --cheapest gpu:navi21 --max-rmse 1");
   EXPECT_THAT(advice.out, HasSubstr("s estimated for navi21"));
   EXPECT_EQ(run("advise out --cheapest gpu:navi22").exit_code, 2);

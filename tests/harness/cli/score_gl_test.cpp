@@ -36,7 +36,6 @@ TEST_F(Score, OurOwnPicture_HasOurOwnErrors_AndTheTruthNone) {
   EXPECT_EQ(row["absent"]["time_ms"], "another renderer drew it");
   EXPECT_THAT(read("out/accuracy.csv"), HasSubstr("a <b>copy</b>"));
   EXPECT_EQ(read("out/index.html").find("<b>copy</b>"), std::string::npos);
-  EXPECT_EQ(read("out/fronts.csv").find("copy"), std::string::npos);
   succeed("score out --name truth --visibility 'out/cubes.exr#truth.area'");
   EXPECT_EQ(find_row("truth")["error"]["rmse"], 0.0);
   // It is measured against the same truth, and no fit for advice.

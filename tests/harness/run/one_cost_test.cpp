@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "harness/run/task_images.h"
 #include "report/analysis/advice_words.h"
@@ -11,7 +10,6 @@
 #include "report/pages/advice_text.h"
 #include "report/pages/answer.h"
 #include "report/pages/run_page.h"
-#include "report/pages/tables.h"
 #include "report/records/json_io.h"
 #include "tests/report/records/synthetic.h"
 
@@ -40,21 +38,6 @@ std::vector<CellRecord> make_cells() {
   return {make_cell("vsm", 9.0, 3.0), make_cell("none", 30.0, 7.0), make_cell("pcf2x2", 20.0, 5.0)};
 }
 
-/// The costs of a cell in fronts.csv, by their ids.
-std::map<std::string, double> read_fronts(const std::vector<CellRecord>& cells, const std::string& key) {
-  std::stringstream csv;
-  pages::write_fronts_csv(cells, analysis::make_trade_scopes(cells), {}, [&](std::string_view text) { csv << text; });
-  std::map<std::string, double> costs;
-  for (std::string line; std::getline(csv, line);) {
-    std::vector<std::string> fields;
-    // Parameters are JSON in quotes, with commas in them: what is wanted is counted from both ends.
-    for (std::stringstream row(line); std::getline(row, line, ',');) fields.push_back(line);
-    if (fields.size() > 13 && fields[5] == "rmse" && fields[7] == key)
-      costs[fields[6]] = std::stod(fields[fields.size() - 8]);
-  }
-  return costs;
-}
-
 /// What the chart of the fronts has of a cell at first.
 double read_chart(const document::Page& page, const std::string& key) {
   for (const document::Section& section : page.sections)
@@ -69,9 +52,9 @@ double read_chart(const document::Page& page, const std::string& key) {
 /// The cost that everything begins with, of a cell, everywhere it is told.
 std::vector<double> list_told(const std::vector<CellRecord>& cells, const CellRecord& cell) {
   const document::Page page = pages::make_run_page(records::make_run(), cells, pages::make_trade(cells));
-  const std::string id = page.data["cost"], field = page.data["costs"][0]["field"];
-  EXPECT_EQ(page.data["costs"][0]["id"], id);
-  std::vector<double> told = {read_fronts(cells, cell.key).at(id), read_chart(page, cell.key)};
+  const std::string field = page.data["costs"][0]["field"];
+  EXPECT_EQ(page.data["costs"][0]["id"], page.data["cost"]);
+  std::vector<double> told = {read_chart(page, cell.key)};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (page.data["cells"][i]["key"] != cell.key) continue;
     told.push_back(page.data["cells"][i]["values_of"][field]);
@@ -97,7 +80,6 @@ TEST(OneCost, WhereNoGpuDrew_IsTheEstimateOfAFrame_Everywhere) {
   const auto record = records::to_json(cell)["gpu"]["navi21"]["frame_ms"];
   EXPECT_DOUBLE_EQ(record["moving"], ms);
   EXPECT_DOUBLE_EQ(record["static"], still);
-  EXPECT_THAT(read_fronts(cells, cell.key), ::testing::Contains(::testing::Pair("gpu.navi21.static", still)));
   EXPECT_THAT(caption_cell(cell, analysis::choose_cost(cells), records::make_run().gl),
               HasSubstr("9.22 µs estimated for navi21 · RMSE 0.09"));
 }

@@ -2,17 +2,14 @@
 
 #include <gmock/gmock.h>
 
-#include "report/pages/tables.h"
 #include "trade_cells.h"
 
 namespace shadowbench::analysis {
 using namespace records;
 namespace {
 
-using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
-using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 const Estimate& error_of(const TradeScope& scope, std::size_t i, std::size_t measure) {
@@ -20,12 +17,6 @@ const Estimate& error_of(const TradeScope& scope, std::size_t i, std::size_t mea
 }
 const Estimate& cost_of(const TradeScope& scope, std::size_t i, std::size_t measure) {
   return *scope.configurations[i].costs[measure].estimate;
-}
-
-std::string make_fronts_csv(const std::vector<CellRecord>& cells, const std::vector<TradeScope>& scopes) {
-  std::string csv;
-  pages::write_fronts_csv(cells, scopes, {}, [&](std::string_view rows) { csv += rows; });
-  return csv;
 }
 
 TEST(TradeScopes, AreEachScene_AndAllTogetherFirst) {
@@ -187,7 +178,6 @@ TEST(TradeFronts, CompareKernelsOfOneClass) {
   EXPECT_EQ(front.placements[1].by, 0u);
   EXPECT_EQ(front.placements[1].standing, Standing::kDominated);
   EXPECT_EQ(front.placements[3].standing, Standing::kApart);
-  EXPECT_THAT(make_fronts_csv(cells, {scope}), HasSubstr(",,,,its kernel is of no class of width,\r\n"));
 }
 
 TEST(TradeFronts, ValuesThatAreNotFinite_AreLeftOut) {
@@ -216,22 +206,6 @@ TEST(TradeFronts, HoldMembersTiesAndWhatTheyBeat) {
   EXPECT_EQ(front.placements[2].by, 1u);
   EXPECT_EQ(front.placements[3].standing, Standing::kDominated);
   EXPECT_EQ(front.placements[3].by, 1u);
-}
-
-TEST(FrontsCsv, HasARowPerCellOfEveryFront) {
-  const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
-                                                  make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.0, 0.2}),
-                                                  make_sweep_cell({"cubes", "a,\"b", 4.0, 1.0, 0.0, 0.1})};
-  const std::string csv = make_fronts_csv(cells, make_trade_scopes(cells));
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 16 * 3);
-  EXPECT_THAT(
-      csv, HasSubstr("rmse,moving," + cells[1].key +
-                     ",vsm,\"{\"\"radius\"\":4}\",1024,4,medium,0.2,0.199,0.201,8,8,8,0," + cells[0].key + ",,,\r\n"));
-  EXPECT_THAT(csv, HasSubstr(",0,," + cells[0].key + ",,\r\n"));
-  EXPECT_THAT(csv, HasSubstr("\"a,\"\"b\""));
-  EXPECT_THAT(csv,
-              HasSubstr("leak,moving," + cells[0].key +
-                        ",none,\"{\"\"radius\"\":0}\",1024,0,medium,,,,4,4,4,,,,artefact.leak: not measured,\r\n"));
 }
 
 }  // namespace

@@ -94,9 +94,7 @@ TEST(RunPage, TheBiasToShip_HasARow_WhereItWasSwept) {
   const std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 1.0)};
   records::BiasToShip ship{"cubes", "a sun",         cells[0].map_size, cells[0].fit, "none",
                            "none",  cells[0].params, "plane:texels=1",  0.01};
-  const auto write = [&] {
-    return document::write_html(make_run_page(make_run(), cells, make_trade(cells), {}, {ship}));
-  };
+  const auto write = [&] { return document::write_html(make_run_page(make_run(), cells, make_trade(cells), {ship})); };
   EXPECT_THAT(write(), HasSubstr("bias to ship</td><td>cubes: plane:texels=1, contact gap 1 %"));
   EXPECT_EQ(read_data(write())["configurations"][0]["bias"], "cubes: plane:texels=1, contact gap 1 %");
   ship.map_size *= 2;

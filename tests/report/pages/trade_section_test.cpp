@@ -168,8 +168,6 @@ TEST(TradeSection, Report_HasItBeforeTheEvidence) {
   const std::string page = write_and_read(folder, make_crossing_cells("cubes"), "index.html");
   EXPECT_THAT(page, HasSubstr("<h2>The trade</h2>"));
   EXPECT_LT(page.find("id=\"trade\""), page.find("id=\"evidence\""));
-  EXPECT_THAT(page, HasSubstr("href=\"fronts.csv\""));
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / "fronts.csv"));
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
     EXPECT_NE(entry.path().filename().string().front(), '.');
 }
@@ -180,7 +178,6 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
       write_and_read(folder, {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");
   EXPECT_THAT(page, Not(HasSubstr("id=\"charts\"")));
   EXPECT_THAT(page, Not(HasSubstr("id=\"trade\"")));
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "fronts.csv"));
 }
 
 }  // namespace

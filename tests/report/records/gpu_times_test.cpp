@@ -75,25 +75,6 @@ TEST_F(GpuTimesTest, WhatIsNoFileOfTimesIsRefused) {
   EXPECT_THAT(refusal_of(std::string(17 << 20, ' ')), HasSubstr("MiB"));
 }
 
-TEST_F(GpuTimesTest, TimerQueriesAreKept_AndNoCostIsMadeOfThem) {
-  const std::string queries = R"({"median": 50, "interval": [40, 60], "rounds": 8})";
-  const auto with = [](const std::string& asked) {
-    return R"({"median": 1, "interval": null, "rounds": 9, "queries": )" + asked + "}";
-  };
-  const GpuTimes times = read(write(with(queries), "null"));
-  Results results;
-  results.cells.resize(1);
-  results.cells[0].key = "a";
-  apply_gpu_times(results, times);
-  EXPECT_DOUBLE_EQ(results.cells[0].time_ms.moving->median, 3.0);
-  const TimedParts back = read(gpu_times_json(times).dump()).cells.at("a");
-  ASSERT_TRUE(back.map && back.map->queries);
-  EXPECT_DOUBLE_EQ(back.map->queries->ci95.high, 60.0);
-  EXPECT_EQ(back.map->queries->n, 8);
-  EXPECT_FALSE(back.filter.queries);
-  EXPECT_THAT(refusal_of(write(with("null"), "null")), HasSubstr("is no time"));
-}
-
 TEST_F(GpuTimesTest, WhereTheMapCouldNotBeDrawn_OnlyAStaticLightHasATime) {
   const GpuTimes times = read(write("null", kFilter));
   Results results;
@@ -102,7 +83,6 @@ TEST_F(GpuTimesTest, WhereTheMapCouldNotBeDrawn_OnlyAStaticLightHasATime) {
   apply_gpu_times(results, times);
   EXPECT_FALSE(results.cells[0].time_ms.moving || results.cells[0].time_ms.map);
   EXPECT_DOUBLE_EQ(results.cells[0].time_ms.static_light->median, 2.0);
-  EXPECT_FALSE(read(gpu_times_json(times).dump()).cells.at("a").map);
 }
 
 TEST_F(GpuTimesTest, TimesOfAnotherRunAreRefused) {
@@ -110,27 +90,6 @@ TEST_F(GpuTimesTest, TimesOfAnotherRunAreRefused) {
   Results results;
   results.cells.resize(1);
   EXPECT_THROW(apply_gpu_times(results, times), Error);
-}
-
-TEST_F(GpuTimesTest, AReportHasTheTimesOfItsCellsThatLieInItsFolder) {
-  std::vector<CellRecord> cells(1);
-  cells[0].key = "a";
-  const auto put = [&](const std::string& renderer, const std::string& text) {
-    std::filesystem::create_directories(gpu_times_path(scratch_.path(), renderer).parent_path());
-    std::ofstream(gpu_times_path(scratch_.path(), renderer)) << text;
-  };
-  put("One", write(kFilter, kFilter));
-  put("../Two", write(kFilter, "null", "elsewhere"));
-  put("Three", "{");
-  std::vector<std::string> warnings;
-  const std::vector<GpuTimes> list = list_gpu_times(scratch_.path(), cells, warnings);
-  ASSERT_EQ(list.size(), 1u);
-  const GpuTimes back = read(gpu_times_json(list[0]).dump());
-  EXPECT_EQ(back.renderer, "A GPU");
-  EXPECT_EQ(back.cells.at("a").prefilter->ci95.high, 2.5);
-  EXPECT_EQ(back.cells.at("a").filter.n, 11);
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_THAT(warnings[0], HasSubstr("Three.json: this is no JSON"));
 }
 
 }  // namespace
