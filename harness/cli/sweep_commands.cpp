@@ -59,7 +59,10 @@ stress::StressOptions make_stress_options(const StressArguments& arguments, cons
                     arguments.filter_files.front()));
   }
   stress::StressOptions options;
-  take_drawing_options(arguments, options);
+  options.resources = options::find_resources();
+  options.backend = gl::parse_backend(arguments.backend);
+  options.out = arguments.out;
+  options.force = arguments.force;
   options.filters = parse_builtin_filters(arguments.filters, options.resources);
   options.axes = arguments.axes;
   options.ranges = arguments.ranges;
@@ -198,8 +201,11 @@ Command make_stress_command() {
   command.add("--axes", &a->axes, "axes, separated by commas (default all; see --list)");
   command.add("--range", &a->ranges, "AXIS=LOW,HIGH instead of the axis' range; repeatable");
   command.add("--list", &a->list, "list the axes and end");
-  command.add("--seed", &a->seed, "seed of random rotations and of the truth's rays");
-  add_drawing_options(command, *a);
+  command.add("--seed", &a->seed, "seed of random rotations");
+  add_backend_option(command, a->backend);
+  command.add("--cache", &a->cache, "").gone("'stress' traces nothing that could be kept");
+  command.add("--out", &a->out, "folder of the report").names(ValueKind::kFolder);
+  add_force_option(command, a->force);
   command.action = [a](const CommandLine& line) { return stress_filters(*a, line.words()); };
   return command;
 }

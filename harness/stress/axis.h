@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <initializer_list>
 #include <optional>
@@ -11,12 +10,10 @@
 #include "filters/catalogue.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/options/options.h"
-#include "report/images/figure.h"
 #include "report/records/stress_record.h"
 
 namespace shadowbench::stress {
 
-using Exhibit = records::StressExhibit;
 using Theory = records::StressTheory;
 using TheoryKind = records::StressTheoryKind;
 using Verdict = records::StressVerdict;
@@ -27,9 +24,6 @@ struct AxisInputs {
   options::Resources resources;
   std::vector<filters::FilterRequest> filters;  ///< the chosen ones, each with its parameter values
   std::uint32_t seed = 1;
-  std::filesystem::path cache;            ///< for traced truth; empty: nothing is kept
-  std::filesystem::path out;              ///< where exhibits write their pictures
-  options::Progress* progress = nullptr;  ///< for exhibits' notes; may be null
 };
 
 /// Names the parameter of a filter that an axis drives, from what the front matter declares; empty: it has none.
@@ -89,8 +83,6 @@ struct Axis : records::StressAxisText {
 
   DrivenParam driven_param = nullptr;  ///< of an axis that drives a parameter of filters; else null
   std::function<std::vector<Case>(const AxisInputs&)> make_cases;
-  /// Its own tables and pictures, which need a GL; may be null.
-  std::function<std::vector<Exhibit>(const AxisInputs&)> make_exhibits;
 };
 
 /// Names a level: "GL", "model", "arithmetic".
@@ -122,14 +114,6 @@ std::vector<std::string> list_choices(const filters::FilterRequest& request, con
 /// scalar model to be held against, and where its level needs a GL that is not there.
 Case start_case(const AxisInputs& inputs, const filters::FilterRequest& request, std::string variant, Level level);
 
-/// Makes cases of every chosen filter by the GL.
-template <class MakeCase>
-std::vector<Case> make_gl_cases(const AxisInputs& inputs, MakeCase make_case) {
-  std::vector<Case> cases;
-  for (const filters::FilterRequest& request : inputs.filters) cases.push_back(make_case(inputs, request));
-  return cases;
-}
-
 /// Makes cases of every chosen filter at every level, for each setting that `list_settings(request)` gives. Where there
 /// is no setting at all, a case says why: `none`.
 template <class ListSettings, class MakeCase>
@@ -154,40 +138,5 @@ double find_largest_measured(const records::StressCase& record);
 /// Explains a theory that is not met because the case is broken over the whole range, whatever the axis' value: a map
 /// that overflows with the chosen parameters, for instance. Empty where that is not so.
 std::string explain_broken_throughout(const Disagreement& missed);
-
-/// One axis of a heat map, linear.
-struct HeatAxis {
-  std::string label;  ///< quantity and unit
-  records::StressRange range;
-  std::vector<double> ticks;
-};
-
-/// A quantity over two others, with a curve over it.
-struct HeatMap {
-  std::string title;
-  std::string note;
-  std::string quantity;  ///< what the colours mean
-  HeatAxis x;
-  HeatAxis y;                           ///< upwards
-  images::Image values;                 ///< 1 channel, [0, scale]; row 0 is the highest y
-  double scale = 1.0;                   ///< the value with the full colour
-  std::function<double(double)> curve;  ///< y of x
-};
-
-/// Shows a heat map: a value of 0 is nearly white.
-images::Figure make_figure(const HeatMap& map);
-
-/// A mistake that a comparison of filters can make: one filter in a set-up whose map overflows.
-struct Mistake {
-  std::string scene;                ///< built-in
-  std::vector<std::string> setups;  ///< as --filters reads them: the one that overflows, the corrected one, and more
-  std::vector<std::string> others;  ///< what it is compared with
-};
-
-/// Replays a mistake on the scene's first view: the error of every set-up against the area truth, the texels of its map
-/// that overflowed, its rank in the wrong comparison (the first of `setups` and `others`) and in the corrected one (the
-/// second and `others`), and a grid of pictures in inputs.out. Requires inputs.renderer. Throws Error(kOutput).
-/// Cost: one traced view, kept in inputs.cache.
-Exhibit replay(const AxisInputs& inputs, const Mistake& mistake, const std::string& id);
 
 }  // namespace shadowbench::stress

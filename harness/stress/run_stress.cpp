@@ -218,7 +218,7 @@ class StressRun {
         progress_(progress),
         axes_(read_axes(options)),
         renderer_(measure::make_renderer(options.backend, options.resources)) {
-    inputs_ = {&renderer_, options.resources, options.filters, options.seed, options.cache, options.out, &progress};
+    inputs_ = {&renderer_, options.resources, options.filters, options.seed};
   }
 
   StressOutcome run() {
@@ -257,13 +257,13 @@ class StressRun {
     int count = 0;
     for (const Axis& axis : axes_) {
       cases_.push_back(axis.make_cases(inputs_));
-      count += static_cast<int>(cases_.back().size()) + (axis.make_exhibits ? 1 : 0);
+      count += static_cast<int>(cases_.back().size());
     }
     progress_.begin(count, 0);
   }
 
   records::StressAxis drive(const Axis& axis, std::vector<Case>& cases) {
-    records::StressAxis record{axis, {}, {}};
+    records::StressAxis record{axis, {}};
     for (const Case& item : cases) {
       progress_.show(done_, fmt::format("{} · {}", axis.id, describe(item)));
       records::StressCase found = find_onsets(item, axis);
@@ -273,10 +273,6 @@ class StressRun {
       ++done_;
     }
     cases.clear();  // and with them their maps
-    if (axis.make_exhibits) {
-      progress_.show(done_++, axis.id + " · exhibits");
-      record.exhibits = axis.make_exhibits(inputs_);
-    }
     return record;
   }
 

@@ -34,7 +34,6 @@ struct StressOptions {
   std::vector<std::string> ranges;  ///< AXIS=LO,HI
   gl::Backend backend = gl::Backend::kAuto;
   std::uint32_t seed = 1;
-  std::filesystem::path cache;  ///< keeps traced truth; empty: nothing is kept
   std::filesystem::path out;
   bool force = false;                ///< as in options::RunOptions
   std::vector<std::string> command;  ///< the command line, for the record

@@ -100,7 +100,7 @@ std::vector<float> make_split_depths(int size, float left, float right) {
 SyntheticLookup make_gl_lookup(const AxisInputs& inputs, const filters::FilterRequest& request) {
   const auto bench = std::make_shared<FilterBench>(inputs, request);
   return [bench, seed = inputs.seed](const SyntheticScene& scene, const filters::ParamValues& values) -> LookupResult {
-    const scene::LightFrustum frustum = scene.frustum.value_or(make_axis_frustum(1.0, scene.size));
+    const scene::LightFrustum frustum = make_axis_frustum(1.0, scene.size);
     bench->resize({scene.size, static_cast<int>(scene.receivers.size())});
     bench->map().upload(scene.depths);
     bench->upload_receivers(scene.receivers, kFacingLight);
@@ -144,21 +144,15 @@ double find_largest_error(const std::vector<double>& seen, const std::vector<dou
   return largest;
 }
 
-std::optional<Observation> judge_not_finite(const std::vector<double>& visibility) {
-  const auto unusable = std::ranges::count_if(visibility, [](double v) { return !std::isfinite(v); });
-  if (unusable == 0) return std::nullopt;
-  return Observation{Verdict::kBroken, std::nullopt,
-                     fmt::format("{} of {} receivers are NaN or infinite", unusable, visibility.size())};
-}
-
 Observation judge(const LookupResult& result, const Expected& expected) {
-  std::optional<Observation> not_finite = judge_not_finite(result.visibility);
+  const auto unusable = std::ranges::count_if(result.visibility, [](double v) { return !std::isfinite(v); });
   const double error = find_largest_error(result.visibility, expected.visibility);
   const auto broken = [&](std::string why) {
-    return Observation{Verdict::kBroken, not_finite ? std::nullopt : std::optional(error), std::move(why)};
+    return Observation{Verdict::kBroken, unusable > 0 ? std::nullopt : std::optional(error), std::move(why)};
   };
   if (result.broken_texels > 0) return broken(fmt::format("{} texels of the map overflowed", result.broken_texels));
-  if (not_finite) return *not_finite;
+  if (unusable > 0)
+    return broken(fmt::format("{} of {} receivers are NaN or infinite", unusable, result.visibility.size()));
   for (const auto& [of, name] : {std::pair(1.0, "lit"), std::pair(0.0, "dark")})
     if (is_all(result.visibility, of) && !is_all(expected.visibility, of))
       return broken(fmt::format("all {} receivers are {}", result.visibility.size(), name));
@@ -439,17 +433,6 @@ scene::Scene make_plane_scene(const PlaneTilt& tilt) {
   return scene;
 }
 
-Acne measure(const std::vector<float>& visibility) {
-  constexpr double kStep = 1.0 / 255.0;
-  Acne acne;
-  for (const float v : visibility) {
-    const double shadow = 1.0 - static_cast<double>(v);
-    acne.mean_shadow += shadow / static_cast<double>(visibility.size());
-    if (shadow >= kStep) acne.share += 1.0 / static_cast<double>(visibility.size());
-  }
-  return acne;
-}
-
 }  // namespace
 
 double find_gain_m(const PlaneTilt& tilt, double reach_texels) {
@@ -467,15 +450,18 @@ void TiltedPlane::tilt(const PlaneTilt& tilt) {
   bench_.upload_receivers(receivers, {0.0f, 1.0f, 0.0f});
 }
 
-Acne TiltedPlane::find_acne(double bias_m) {
+double TiltedPlane::find_acne(double bias_m) {
   const scene::LightFrustum frustum = make_plane_frustum(tilt_);
   render::Bias bias;
   bias.constant_depth = bias_m / frustum.depth_range_ws;
-  return measure(bench_.look_up({frustum, 0.0, bias, seed_, {}}, bench_.request().values));
+  const std::vector<float> visibility = bench_.look_up({frustum, 0.0, bias, seed_, {}}, bench_.request().values);
+  double shadow = 0.0;
+  for (const float v : visibility) shadow += (1.0 - static_cast<double>(v)) / static_cast<double>(visibility.size());
+  return shadow;
 }
 
 std::optional<double> TiltedPlane::find_needed_bias(double theory_m) {
-  const auto has_acne = [&](double bias_m) { return find_acne(bias_m).mean_shadow > kLeastAcne; };
+  const auto has_acne = [&](double bias_m) { return find_acne(bias_m) > kLeastAcne; };
   if (!has_acne(0.0)) return 0.0;
   double low = 0.0, high = 2.0 * theory_m + rounding_m();
   if (has_acne(high)) return std::nullopt;
@@ -484,114 +470,6 @@ std::optional<double> TiltedPlane::find_needed_bias(double theory_m) {
     (has_acne(middle) ? low : high) = middle;
   }
   return high;
-}
-
-namespace {
-
-constexpr int kSize = 64;  // of the texture
-constexpr int kCount = kSize * kSize;
-constexpr int kPerQuantum = 128;  // depths that are tried at a plane
-
-filters::DepthFormat describe(GLenum format) {
-  const bool is_float = format == GL_DEPTH_COMPONENT32F;
-  return {is_float ? 32 : format == GL_DEPTH_COMPONENT24 ? 24 : 16, is_float};
-}
-
-filters::DepthCurve make_curve(const DepthPlan& plan) {
-  return {plan.reversed, plan.perspective ? plan.far_over_near : 1.0};
-}
-
-/// Places a third of the depths over the range, at equal ratios of distance, and a third within some quanta of each
-/// end.
-std::vector<double> place_depths(const DepthPlan& plan, double quantum) {
-  std::vector<double> depths;
-  for (int i = 0; i < kCount; ++i) {
-    const int third = kCount / 3, k = i % third;
-    const double from_end = k * quantum / kPerQuantum;
-    if (i < third)
-      depths.push_back(from_end);
-    else if (i < 2 * third)
-      depths.push_back(1.0 - from_end);
-    else
-      depths.push_back(depth_of(plan, std::pow(plan.far_over_near, static_cast<double>(k % third) / third)));
-  }
-  return depths;
-}
-
-/// Makes a square for every texel, at its depth. World and clip space of the light are the same, so that the depth that
-/// is drawn is this one, as a 32-bit float.
-scene::Scene make_squares(const std::vector<double>& depths) {
-  scene::Scene scene;
-  scene.materials.emplace_back();
-  scene::Mesh mesh;
-  for (int i = 0; i < kCount; ++i) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const auto& [dx, dy] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
-      mesh.vertices.push_back({{2.0f * static_cast<float>(i % kSize + dx) / kSize - 1.0f,
-                                2.0f * static_cast<float>(i / kSize + dy) / kSize - 1.0f,
-                                static_cast<float>(depths[static_cast<std::size_t>(i)])},
-                               {0.0f, 0.0f, -1.0f},
-                               {}});
-    }
-    for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + corner);
-  }
-  scene.meshes.push_back(std::move(mesh));
-  return scene;
-}
-
-}  // namespace
-
-double depth_of(const DepthPlan& plan, double distance) {
-  return make_curve(plan).store((distance - 1.0) / (plan.far_over_near - 1.0));
-}
-
-double distance_of(const DepthPlan& plan, double depth) {
-  return 1.0 + make_curve(plan).linear(depth) * (plan.far_over_near - 1.0);
-}
-
-double largest_rounding(GLenum format, double depth) {
-  return 0.5 * filters::depth_quantum(std::nextafter(depth, 0.0), describe(format));
-}
-
-double find_distance_error(GLenum format, const DepthPlan& plan, double distance) {
-  const double ratio = plan.far_over_near,
-               slope = plan.perspective ? distance * distance * (ratio - 1.0) / ratio : ratio - 1.0;
-  return slope * largest_rounding(format, depth_of(plan, distance));
-}
-
-std::vector<double> StoredDepths::keep(const std::vector<double>& depths) {
-  if (!map_) map_.emplace(kSize, render::MapSettings{format_, {}});
-  map_->draw(shaders_, render::Geometry(make_squares(depths)), make_axis_frustum(2.0, kSize));
-  const std::vector<float> read = map_->texture().read_floats(1);
-  std::vector<double> kept(read.begin(), read.end());
-  if (format_ == GL_DEPTH_COMPONENT32F) return kept;
-  // Reading rounds to a float once more; the code that is stored has survived that.
-  const double codes = std::exp2(describe(format_).bits) - 1.0;
-  for (double& depth : kept) depth = std::round(depth * codes) / codes;
-  return kept;
-}
-
-DepthError StoredDepths::find_largest_error(const DepthPlan& plan) {
-  const double quantum = format_ == GL_DEPTH_COMPONENT32F ? 0x1p-24 : filters::depth_quantum(0.0, describe(format_));
-  const std::vector<double> depths = place_depths(plan, quantum), kept = keep(depths);
-  DepthError largest;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const double distance = distance_of(plan, depths[i]),
-                 relative = std::abs(distance_of(plan, kept[i]) / distance - 1.0);
-    if (!(relative <= largest.relative)) largest = {relative, distance};
-  }
-  return largest;
-}
-
-double StoredDepths::find_error_around(const DepthPlan& plan, double distance) {
-  const double middle = depth_of(plan, distance), step = 2.0 * largest_rounding(format_, middle) / kPerQuantum;
-  std::vector<double> depths;
-  for (int i = 0; i < kCount; ++i) depths.push_back(std::clamp(middle + (i - kCount / 2) * step, 0.0, 1.0));
-  const std::vector<double> kept = keep(depths);
-  double largest = 0.0;
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    largest = std::max(largest, std::abs(distance_of(plan, kept[i]) - distance_of(plan, depths[i])));
-  return largest;
 }
 
 }  // namespace shadowbench::stress

@@ -75,9 +75,6 @@ struct SyntheticScene {
   std::vector<float> depths;  ///< size * size, row 0 at v = 0
   std::vector<glm::vec3>
       receivers;  ///< u, v, depth, each in [0,1] inside the map; they face the light, and no bias is applied
-  /// For the GL alone: another way from receivers to u, v, depth. Of the scenes that one lookup sees, all are
-  /// projective or none is.
-  std::optional<scene::LightFrustum> frustum = {};
 
   /// The uv of a texel's centre.
   float uv(int texel) const { return (static_cast<float>(texel) + 0.5f) / static_cast<float>(size); }
@@ -131,9 +128,6 @@ inline constexpr double kLargestFall = 0.1;
 
 /// The largest difference of two lists of one length.
 double find_largest_error(const std::vector<double>& seen, const std::vector<double>& expected);
-
-/// Judges that a visibility is NaN or infinite; nothing where all are finite.
-std::optional<Observation> judge_not_finite(const std::vector<double>& visibility);
 
 /// Judges a result by its largest error. It is broken where texels of the map overflowed, where a visibility is NaN or
 /// infinite, where all is lit or all is dark although it should not be, and where a run falls. It is degraded where the
@@ -226,12 +220,6 @@ inline constexpr double kPlaneTexel_m = 1.0 / kPlaneMapTexels;
 /// bias has to cover: s r tan(angle), and sqrt 2 times that on the diagonal.
 double find_gain_m(const PlaneTilt& tilt, double reach_texels);
 
-/// The acne on a plane that is lit.
-struct Acne {
-  double mean_shadow = 0.0;  ///< over all receivers, [0,1]
-  double share = 0.0;        ///< of the receivers: darker than lit by a step of an 8-bit picture or more
-};
-
 /// An empty plane without end, with receivers all over it, between texels too. Every shadow on it is acne.
 class TiltedPlane {
  public:
@@ -242,8 +230,8 @@ class TiltedPlane {
   /// Draws the plane's map. Throws Error as render::FilterPasses and render::ShadowMap.
   void tilt(const PlaneTilt& tilt);
 
-  /// Looks the receivers up, moved towards the light by a bias in metres. Call after tilt().
-  Acne find_acne(double bias_m);
+  /// The mean shadow on the receivers, moved towards the light by a bias in metres. Call after tilt().
+  double find_acne(double bias_m);
 
   /// Finds the least bias without acne, in metres, to a thousandth of `theory_m`; empty where twice that is not enough.
   /// Call after tilt().
@@ -256,53 +244,6 @@ class TiltedPlane {
   std::uint32_t seed_;
   FilterBench bench_;
   PlaneTilt tilt_;
-};
-
-/// How distances become depth. The near plane is one unit away.
-struct DepthPlan {
-  double far_over_near = 10.0;
-  bool perspective = false;  ///< otherwise depth is linear in distance
-  bool reversed = false;     ///< one less that
-};
-
-/// The depth in [0,1] of a distance, in units of the near plane's, and the distance of a depth.
-double depth_of(const DepthPlan& plan, double distance);
-double distance_of(const DepthPlan& plan, double depth);
-
-/// What a depth may be off by once it is stored: half the format's quantum just below that depth.
-double largest_rounding(GLenum format, double depth);
-
-/// What a distance may be off by: largest_rounding() times the slope of distance over depth,
-/// d^2 (f - n) / (n f) in perspective and f - n else. In units of the near plane's distance.
-double find_distance_error(GLenum format, const DepthPlan& plan, double distance);
-
-/// A distance that came back as another one.
-struct DepthError {
-  double relative = 0.0;  ///< of the distance
-  double distance = 1.0;  ///< where, in units of the near plane's
-};
-
-/// A depth map that known distances are drawn into, as squares that face the light, and read back from.
-class StoredDepths {
- public:
-  /// Nothing is allocated before the first use, which throws Error as render::ShadowMap: where the GL lacks the format,
-  /// or stores it in other bits. `shaders` must outlive this object.
-  StoredDepths(render::ShaderLibrary& shaders, GLenum format) : shaders_(shaders), format_(format) {}
-
-  /// Looks at distances between the planes, and densely at both planes, where a quantum of depth counts most.
-  DepthError find_largest_error(const DepthPlan& plan);
-
-  /// The largest error, in units of the near plane's distance, at distances whose depths lie within some quanta
-  /// of one's.
-  double find_error_around(const DepthPlan& plan, double distance);
-
- private:
-  render::ShaderLibrary& shaders_;
-  GLenum format_;
-  std::optional<render::ShadowMap> map_;
-
-  /// Stores depths and reads them back.
-  std::vector<double> keep(const std::vector<double>& depths);
 };
 
 }  // namespace shadowbench::stress

@@ -165,9 +165,7 @@ document::Section make_stress_answer(const StressRecord& record) {
       "answer", "", {document::Paragraph{std::move(answer)}, std::move(table), document::Paragraph{kStressNote, true}}};
 }
 
-bool is_shown(const StressAxis& axis, const std::optional<double>& measured) {
-  return measured && (!axis.measured_log || *measured >= kLeastShown);
-}
+bool is_shown(const std::optional<double>& measured) { return measured.value_or(0.0) >= kLeastShown; }
 
 document::ChartAxis choose_value_axis(const StressAxis& axis) {
   if (axis.log) return document::choose_log_axis({axis.range.low, axis.range.high}, {});
@@ -181,10 +179,9 @@ document::ChartAxis choose_measured_axis(const StressAxis& axis) {
   std::vector<double> values = {axis.bound};
   for (const StressCase& item : axis.cases) {
     for (const records::StressSample& sample : item.samples)
-      if (is_shown(axis, sample.measured)) values.push_back(*sample.measured);
+      if (is_shown(sample.measured)) values.push_back(*sample.measured);
   }
-  return axis.measured_log ? document::choose_log_axis(values, {})
-                           : document::choose_axis(values, {}, document::TickKind::kNumber);
+  return document::choose_log_axis(values, {});
 }
 
 void add_case(document::Chart& chart, const StressAxis& axis, const StressCase& item,
@@ -196,7 +193,7 @@ void add_case(document::Chart& chart, const StressAxis& axis, const StressCase& 
   line.filled = false;
   line.line = model ? document::LineStyle::kDashed : document::LineStyle::kSolid;
   for (const records::StressSample& sample : item.samples) {
-    const bool shown = is_shown(axis, sample.measured);
+    const bool shown = is_shown(sample.measured);
     if (!shown && sample.verdict != StressVerdict::kBroken) continue;
     document::ChartPoint point = document::exact_point(sample.value, shown ? *sample.measured : chart.y.high);
     point.details = {line.title, fmt::format("{} {:.4g}: {}", axis.quantity, sample.value, name_of(sample.verdict)),
@@ -249,13 +246,6 @@ document::Section make_axis_section(const StressAxis& axis, std::size_t filters)
     for (const std::string& note : item.notes) notes.push_back(fmt::format("{}: {}.", label_of(item), note));
   add_sentences(details, "Not what theory says, and why:", describe_stress_limits(axis, StressAgreement::kExplained));
   add_sentences(details, "Also seen:", std::move(notes));
-  for (const records::StressExhibit& exhibit : axis.exhibits) {
-    details.blocks.insert(details.blocks.end(),
-                          {document::Heading{exhibit.title}, document::Sentences{{}, exhibit.sentences}});
-    if (exhibit.table) details.blocks.emplace_back(document::Table{exhibit.title, *exhibit.table});
-    for (const records::StressExhibit::Picture& picture : exhibit.pictures)
-      details.blocks.emplace_back(document::Gallery{{}, {{picture.file, picture.caption}}});
-  }
   section.blocks.emplace_back(std::move(details));
   return section;
 }

@@ -56,24 +56,6 @@ void visit_fields(const StressLimit& limit, auto&& visit) {
   visit("explanation", null_if_empty(limit.explanation));
 }
 
-void visit_fields(const TextTable& table, auto&& visit) {
-  visit("header", table.header);
-  visit("rows", table.rows);
-}
-
-void visit_fields(const StressExhibit::Picture& picture, auto&& visit) {
-  visit("file", picture.file);
-  visit("caption", picture.caption);
-}
-
-void visit_fields(const StressExhibit& exhibit, auto&& visit) {
-  visit("id", exhibit.id);
-  visit("title", exhibit.title);
-  visit("sentences", exhibit.sentences);
-  visit("table", exhibit.table);
-  visit("pictures", exhibit.pictures);
-}
-
 void visit_fields(const StressCase& item, auto&& visit) {
   visit("filter", null_if_empty(item.filter));
   visit("variant", item.variant);
@@ -99,7 +81,6 @@ void visit_fields(const StressAxis& axis, auto&& visit) {
   visit("bound", axis.bound);
   visit("broken_when", axis.broken_when);
   visit("cases", axis.cases);
-  visit("exhibits", axis.exhibits);
 }
 
 std::string make_stress_json(const StressRecord& record) {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "report/records/records.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::records {
 
@@ -89,19 +88,6 @@ struct StressCase {
   std::vector<std::string> notes;  ///< verdicts that got better again, and the axis' remarks
 };
 
-/// A table with pictures that an axis adds to its part of the page.
-struct StressExhibit {
-  struct Picture {
-    std::string file;  ///< relative to the page
-    std::string caption;
-  };
-  std::string id;  ///< unique in its axis: letters, digits and '-'
-  std::string title;
-  std::vector<std::string> sentences;
-  std::optional<TextTable> table;
-  std::vector<Picture> pictures;
-};
-
 /// What is said of an axis before anything is measured.
 struct StressAxisText {
   std::string id;  ///< the name of its file
@@ -113,15 +99,13 @@ struct StressAxisText {
 
   std::string measured;       ///< what samples measure: "largest error of visibility"
   std::string measured_unit;  ///< empty: a pure number
-  bool measured_log = true;
-  double bound = 0.0;       ///< a measured value above it is `degraded`
-  std::string broken_when;  ///< in words: "infinities in the map; NaN, all lit or all dark"
+  double bound = 0.0;         ///< a measured value above it is `degraded`
+  std::string broken_when;    ///< in words: "infinities in the map; NaN, all lit or all dark"
 };
 
 /// One axis with all its cases.
 struct StressAxis : StressAxisText {
   std::vector<StressCase> cases;
-  std::vector<StressExhibit> exhibits;
 };
 
 /// Everything that `shadowbench stress` found.

@@ -10,8 +10,8 @@ const draw = (count) => {
   while (performance.now() < end);
 };
 
-test("WithoutTimerQueries_ThePageIsAliveBetweenAllTimes", async () => {
-  const gl = new Proxy({ getExtension: () => null }, { get: (own, name) => own[name] ?? (() => 0) });
+test("ThePageIsAliveBetweenAllTimes", async () => {
+  const gl = new Proxy({}, { get: (own, name) => own[name] ?? (() => 0) });
   const seen = [];
   let ticks = 0, isOver = false;
   const tick = () => {

@@ -60,42 +60,6 @@ test("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => withBrowser(kMesa, asyn
   await close();
 }));
 
-// In a page before its scripts: timer queries that a test makes up.
-const haveQueries = (milliseconds) => {
-  const { getExtension } = WebGL2RenderingContext.prototype, kName = "EXT_disjoint_timer_query_webgl2";
-  const fake = (query, name) => { if (name === WebGL2RenderingContext.QUERY_RESULT) return milliseconds * 1e6 * (1 + Math.random()); return true; };
-  Object.assign(WebGL2RenderingContext.prototype, {
-    getExtension(name) { return name !== kName ? getExtension.call(this, name) : { TIME_ELAPSED_EXT: 1, GPU_DISJOINT_EXT: 0x0c11 }; },
-    beginQuery() {},
-    endQuery() {},
-    getQueryParameter: fake,
-  });
-};
-test("TimerQueriesAreACrossCheck_ThatNoTimeIsMadeOf", () => withBrowser(kMesa, async (browser) => {
-  for (const [init, words, columns] of [
-    [null, /Timer queries (agree|differ)/, 8],
-    [`${keepTime}; (${haveQueries})(1e6)`, /Timer queries differ from [1-9]\d* of [1-9]\d* times by more than both intervals \(\u2260\)\. A CPU draws here/, 8],
-    [`${keepTime}; (${haveQueries})(-1e6)`, /Timer queries differ/, 8],
-    [keepTime, /has no timer queries/, 6],
-  ]) {
-    const { page, messages, close } = await openLive(pageOf("untrue"), browser, init ? { init } : {});
-    await press(page, "Time on this GPU");
-    assert.match(await page.locator(".live .results").textContent(), words);
-    for (const row of await readTable(page)) {
-      assert.equal(row.length, columns);
-      assert.ok(Number(row[4]) < 1e3, row);
-      if (init && columns === 8) assert.match(row[6], /^((\u2260 )?[\d,.e+]+)?$/, "no time is below nought");
-    }
-    const [download] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
-    const parts = Object.values(JSON.parse(readFileSync(await download.path(), "utf8")).cells).map(({ filter }) => filter);
-    assert.ok(parts.every(({ queries }) => Boolean(queries?.rounds > 0) === (columns === 8)), JSON.stringify(parts));
-    const said = runProgram(["advise", folderOf("untrue"), "--times", await download.path(), "--json"]);
-    assert.ok(said.status !== 3 && !said.stderr.includes("is no time"), said.stderr);
-    assert.deepEqual(messages, []);
-    await close();
-  }
-}));
-
 test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () => withBrowser(kMesa, async (browser) => {
   const { page, messages, shoot, close } = await openLive(pageOf("ball"), browser);
   const canvas = page.locator(".live canvas"), look = async () => (await canvas.screenshot()).toString("base64"), note = page.locator(".live p.note").nth(1);

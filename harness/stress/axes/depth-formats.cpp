@@ -4,10 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "base/error.h"
 #include "harness/stress/axis.h"
 #include "harness/stress/synthetic_scene.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::stress {
 namespace depth_formats {
@@ -32,12 +30,17 @@ std::string name(const Setting& setting) {
                      setting.reversed ? ", reversed" : "");
 }
 
+filters::DepthFormat describe(GLenum format) {
+  const bool is_float = format == GL_DEPTH_COMPONENT32F;
+  return {is_float ? 32 : format == GL_DEPTH_COMPONENT24 ? 24 : 16, is_float};
+}
+
 /// Gives half a quantum of the depth that is stored where the relative error, (f/n - 1) times that, is largest: at the
 /// near plane of an orthographic light, where a distance is smallest; at the far plane of a perspective one, where a
 /// step is largest.
 double find_quantum(const Setting& setting) {
   const bool stores_one = setting.perspective != setting.reversed;
-  return largest_rounding(setting.format, stores_one ? 1.0 : 0.0);
+  return 0.5 * filters::depth_quantum(std::nextafter(stores_one ? 1.0 : 0.0, 0.0), describe(setting.format));
 }
 
 Theory make_theory(const Setting& setting, double error, Verdict predicts) {
@@ -56,6 +59,93 @@ Theory make_theory(const Setting& setting, double error, Verdict predicts) {
           predicts};
 }
 
+constexpr int kSize = 64;  // of the texture
+constexpr int kCount = kSize * kSize;
+constexpr int kPerQuantum = 128;  // depths that are tried at a plane
+
+/// Places a third of the depths over the range, at equal ratios of distance, and a third within some quanta of each
+/// end. The near plane is one unit away.
+std::vector<double> place_depths(double far, const filters::DepthCurve& curve, double quantum) {
+  std::vector<double> depths;
+  for (int i = 0; i < kCount; ++i) {
+    const int third = kCount / 3, k = i % third;
+    const double from_end = k * quantum / kPerQuantum;
+    if (i < third)
+      depths.push_back(from_end);
+    else if (i < 2 * third)
+      depths.push_back(1.0 - from_end);
+    else
+      depths.push_back(curve.store((std::pow(far, static_cast<double>(k % third) / third) - 1.0) / (far - 1.0)));
+  }
+  return depths;
+}
+
+/// Makes a square for every texel, at its depth. World and clip space of the light are the same, so that the depth that
+/// is drawn is this one, as a 32-bit float.
+scene::Scene make_squares(const std::vector<double>& depths) {
+  scene::Scene scene;
+  scene.materials.emplace_back();
+  scene::Mesh mesh;
+  for (int i = 0; i < kCount; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& [dx, dy] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
+      mesh.vertices.push_back({{2.0f * static_cast<float>(i % kSize + dx) / kSize - 1.0f,
+                                2.0f * static_cast<float>(i / kSize + dy) / kSize - 1.0f,
+                                static_cast<float>(depths[static_cast<std::size_t>(i)])},
+                               {0.0f, 0.0f, -1.0f},
+                               {}});
+    }
+    for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u}) mesh.indices.push_back(first + corner);
+  }
+  scene.meshes.push_back(std::move(mesh));
+  return scene;
+}
+
+/// A distance that came back as another one.
+struct DepthError {
+  double relative = 0.0;  ///< of the distance
+  double distance = 1.0;  ///< where, in units of the near plane's
+};
+
+/// A depth map that known distances are drawn into, as squares that face the light, and read back from. Nothing is
+/// allocated before the first use, which throws Error as render::ShadowMap: where the GL lacks the format, or stores it
+/// in other bits.
+class StoredDepths {
+ public:
+  StoredDepths(render::ShaderLibrary& shaders, GLenum format) : shaders_(shaders), format_(format) {}
+
+  /// Looks at distances between the planes, and densely at both planes, where a quantum of depth counts most.
+  DepthError find_largest_error(double far, const filters::DepthCurve& curve) {
+    const double quantum = format_ == GL_DEPTH_COMPONENT32F ? 0x1p-24 : filters::depth_quantum(0.0, describe(format_));
+    const std::vector<double> depths = place_depths(far, curve, quantum), kept = keep(depths);
+    const auto distance_of = [&](double depth) { return 1.0 + curve.linear(depth) * (far - 1.0); };
+    DepthError largest;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      const double distance = distance_of(depths[i]), relative = std::abs(distance_of(kept[i]) / distance - 1.0);
+      if (!(relative <= largest.relative)) largest = {relative, distance};
+    }
+    return largest;
+  }
+
+ private:
+  render::ShaderLibrary& shaders_;
+  GLenum format_;
+  std::optional<render::ShadowMap> map_;
+
+  /// Stores depths and reads them back.
+  std::vector<double> keep(const std::vector<double>& depths) {
+    if (!map_) map_.emplace(kSize, render::MapSettings{format_, {}});
+    map_->draw(shaders_, render::Geometry(make_squares(depths)), make_axis_frustum(2.0, kSize));
+    const std::vector<float> read = map_->texture().read_floats(1);
+    std::vector<double> kept(read.begin(), read.end());
+    if (format_ == GL_DEPTH_COMPONENT32F) return kept;
+    // Reading rounds to a float once more; the code that is stored has survived that.
+    const double codes = std::exp2(describe(format_).bits) - 1.0;
+    for (double& depth : kept) depth = std::round(depth * codes) / codes;
+    return kept;
+  }
+};
+
 Observation judge_error(const DepthError& seen) {
   const auto why = [&](double bound) {
     return fmt::format("off by {:.3g} of the distance at {:.4g} near-plane distances, over {:g}", seen.relative,
@@ -72,7 +162,7 @@ Case make_case(const AxisInputs& inputs, const Setting& setting) {
   item.theories = {make_theory(setting, kBound, Verdict::kDegraded), make_theory(setting, kBroken, Verdict::kBroken)};
   const auto depths = std::make_shared<StoredDepths>(inputs.renderer->shaders, setting.format);
   item.observe = [setting, depths](double ratio) {
-    return judge_error(depths->find_largest_error({ratio, setting.perspective, setting.reversed}));
+    return judge_error(depths->find_largest_error(ratio, {setting.reversed, setting.perspective ? ratio : 1.0}));
   };
   return item;
 }
@@ -92,44 +182,6 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
   return cases;
 }
 
-constexpr double kShownRatio = 1000.0;
-
-/// Tabulates the error at a few distances, over the error that theory has there.
-records::TextTable make_growth_table(render::ShaderLibrary& shaders) {
-  records::TextTable table{{"case"}, {}};
-  for (const double distance : {2.0, 10.0, 100.0, 900.0}) table.header.push_back(fmt::format("at {:g} n", distance));
-  for (const Setting& setting : list_settings()) {
-    std::vector<std::string> row = {name(setting)};
-    try {
-      StoredDepths depths(shaders, setting.format);
-      const DepthPlan plan{kShownRatio, setting.perspective, setting.reversed};
-      for (const double distance : {2.0, 10.0, 100.0, 900.0}) {
-        const double error = depths.find_error_around(plan, distance),
-                     theory = find_distance_error(setting.format, plan, distance);
-        row.push_back(fmt::format("{:.3g} n = {:.2f} x theory", error, error / theory));
-      }
-    } catch (const Error& error) {
-      row.resize(table.header.size(), fmt::format("not available: {}", error.what()));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
-  Exhibit exhibit;
-  exhibit.id = "growth";
-  exhibit.title = "What a stored distance is off by, at most, against theory";
-  exhibit.sentences = {fmt::format(
-      "Far plane at {:g} n, n the near plane's distance. Theory: half a quantum where depth is linear; d^2 (f - n) / "
-      "(n f) times that in perspective, "
-      "which grows with the square of the distance d, and is more where a step is no longer small against d. "
-      "The GL is handed 32-bit floats, whose own rounding adds up to as much again in D24.",
-      kShownRatio)};
-  exhibit.table = make_growth_table(inputs.renderer->shaders);
-  return {exhibit};
-}
-
 }  // namespace depth_formats
 
 Axis make_depth_formats_axis() {
@@ -144,7 +196,6 @@ Axis make_depth_formats_axis() {
   axis.bound = kBound;
   axis.broken_when = fmt::format("a distance reads back more than {:g} of itself off, or not finite", kBroken);
   axis.make_cases = make_cases;
-  axis.make_exhibits = make_exhibits;
   return axis;
 }
 

@@ -130,17 +130,6 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
                            "no chosen filter's front matter declares 'exponent' without 'moments'");
 }
 
-/// The mistake that the axis of warp exponents replays, with an exponential map: the exponent is fine in 32 bits.
-std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
-  const auto has_exponent = [](const filters::FilterRequest& request) { return !find_exponent(request.spec).empty(); };
-  if (std::ranges::none_of(inputs.filters, has_exponent)) return {};
-  const Mistake mistake{"stack",
-                        {"esm:c=80,store=r16f", "esm:c=80", "esm:c=80,store=r16f,combine=log", "esm:c=10,store=r16f",
-                         "esm:c=20,store=r16f"},
-                        {"vsm", "poisson"}};
-  return {replay(inputs, mistake, "mistake")};
-}
-
 }  // namespace esm_exponent
 
 Axis make_esm_exponent_axis() {
@@ -159,7 +148,6 @@ Axis make_esm_exponent_axis() {
       "from dark to light";
   axis.driven_param = find_exponent;
   axis.make_cases = make_cases;
-  axis.make_exhibits = make_exhibits;
   return axis;
 }
 

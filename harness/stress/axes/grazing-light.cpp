@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,85 +92,14 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
   return item;
 }
 
-bool compares(const filters::FilterRequest& request) { return request.spec.kind == filters::FilterKind::kComparison; }
-
 /// Lists how the light falls: along the diagonal or not.
 std::vector<bool> list_ways(const filters::FilterRequest& request) {
-  return compares(request) ? std::vector{false, true} : std::vector<bool>();
+  return request.spec.kind == filters::FilterKind::kComparison ? std::vector{false, true} : std::vector<bool>();
 }
 
 /// Models would draw the same lines beside the GL's.
 std::vector<Case> make_cases(const AxisInputs& inputs) {
   return make_filter_cases(inputs, list_ways, make_case, "no chosen filter is of kind comparison", {Level::kGl});
-}
-
-constexpr int kColumns = 110, kRows = 60;
-constexpr double kHighestBias = 12.0;  // texels
-
-/// Measures the share of receivers with acne, a column for each angle. More bias never brings more acne: above the
-/// first bias without acne nothing needs to be drawn.
-images::Image measure_acne(TiltedPlane& plane) {
-  images::Image acne(kColumns, kRows, 1);
-  for (int x = 0; x < kColumns; ++x) {
-    plane.tilt({90.0 * (x + 0.5) / kColumns, false});
-    for (int y = kRows - 1; y >= 0; --y) {
-      const Acne seen = plane.find_acne(kHighestBias * (kRows - y - 0.5) / kRows * kPlaneTexel_m);
-      *acne.at(x, y) = static_cast<float>(seen.share);
-      if (seen.mean_shadow == 0.0) break;
-    }
-  }
-  return acne;
-}
-
-/// Measures the bias at a few angles.
-std::string describe_growth(TiltedPlane& plane, const std::string& label, const Reach& reach) {
-  std::vector<std::string> needs;
-  for (const double angle : {45.0, 80.0, 89.0}) {
-    const PlaneTilt tilt{angle, false};
-    plane.tilt(tilt);
-    const std::optional<double> needed = plane.find_needed_bias(find_gain_m(tilt, reach.texels()));
-    if (needed) needs.push_back(fmt::format("{:.3g} texels of bias at {:g} degrees", *needed / kPlaneTexel_m, angle));
-  }
-  return fmt::format("{} needs {}: a bias that is enough at one angle is far from it at the next.", label,
-                     fmt::join(needs, ", "));
-}
-
-/// Chooses the comparison with the widest kernel, whose curve is the farthest from all others'.
-const filters::FilterRequest* choose_shown(const AxisInputs& inputs) {
-  const filters::FilterRequest* shown = nullptr;
-  for (const filters::FilterRequest& request : inputs.filters)
-    if (compares(request) && filters::find_kernel(request.spec, request.values) &&
-        (!shown || find_reach(request).texels() > find_reach(*shown).texels()))
-      shown = &request;
-  return shown;
-}
-
-std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
-  const filters::FilterRequest* shown = choose_shown(inputs);
-  if (!shown) return {};
-  const Reach reach = find_reach(*shown);
-  HeatMap map;
-  map.title = "Acne over angle and bias";
-  map.note = fmt::format("{} on an empty plane, light along a row, map {} · theory: {}", shown->label(),
-                         kPlaneMapTexels, describe_theory(reach, false));
-  map.quantity = "share of the lit plane that shows acne";
-  map.x = {
-      "angle between the light and the plane's normal, degrees", {0.0, 90.0}, {0, 10, 20, 30, 40, 50, 60, 70, 80, 90}};
-  map.y = {"bias, texels along the light", {0.0, kHighestBias}, {0, 2, 4, 6, 8, 10, 12}};
-  TiltedPlane plane(inputs, *shown);
-  map.values = measure_acne(plane);
-  map.scale = 1.0;
-  map.curve = [reach](double angle) {
-    return angle < 90.0 ? find_gain_m({angle, false}, reach.texels()) / kPlaneTexel_m
-                        : std::numeric_limits<double>::infinity();
-  };
-  Exhibit exhibit;
-  exhibit.id = "acne";
-  exhibit.title = map.title;
-  exhibit.sentences = {describe_growth(plane, shown->label(), reach)};
-  exhibit.pictures = {{"stress.acne.png", fmt::format("{}: acne, and the bias that theory asks for", shown->label())}};
-  images::write_figure(inputs.out / exhibit.pictures.front().file, make_figure(map));
-  return {exhibit};
 }
 
 }  // namespace grazing_light
@@ -191,7 +119,6 @@ Axis make_grazing_light_axis() {
   axis.bound = kBound;
   axis.broken_when = "the bias that is needed is more than 10 % off what the plane's depth gains over the kernel";
   axis.make_cases = make_cases;
-  axis.make_exhibits = make_exhibits;
   return axis;
 }
 

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <memory>
 
-#include "base/error.h"
 #include "harness/stress/synthetic_scene.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::stress {
 namespace map_size {
@@ -15,7 +12,6 @@ namespace map_size {
 constexpr int kReceivers = 65;
 constexpr int kLargestModelled = 256;  // texels per side; of larger maps, no model is made
 constexpr float kOccluder = 0.3f, kReceiver = 0.6f;
-constexpr double kSpareMemory = 1.5;  // of the map's bytes: drivers keep some beside it
 
 /// Occluders stand on the left half, the receivers' own surface on the right one; a map of one texel holds an occluder.
 SyntheticScene make_halves(int size) {
@@ -79,70 +75,10 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request) 
   return item;
 }
 
-/// MemAvailable of Linux; empty elsewhere.
-std::optional<double> find_available_bytes() {
-  std::ifstream file("/proc/meminfo");
-  std::string name;
-  double kibibytes = 0.0;
-  for (std::string rest; file >> name >> kibibytes; std::getline(file, rest))
-    if (name == "MemAvailable:") return kibibytes * 1024.0;
-  return std::nullopt;
-}
-
-std::string mebibytes(double bytes) { return fmt::format("{:.0f} MiB", bytes / (1 << 20)); }
-
-/// Draws one occluder into a map and looks two receivers up, one behind it, one beside it.
-std::string look_once(const AxisInputs& inputs, int size) {
-  const filters::Catalogue catalogue(inputs.resources.filters);
-  scene::Scene square;
-  square.materials.emplace_back();
-  scene::Mesh mesh;
-  for (const auto& [x, y] : {std::pair(-0.5f, -0.5f), std::pair(-0.25f, -0.5f), std::pair(-0.5f, -0.25f)})
-    mesh.vertices.push_back({{x, y, kOccluder}, {}, {}});
-  mesh.indices = {0, 1, 2};
-  square.meshes = {mesh};
-  scene::LightFrustum frustum = make_axis_frustum(2.0, size);  // clip space is the world
-  frustum.uv_depth_from_world = {
-      {0.5f, 0.0f, 0.0f, 0.0f}, {0.0f, 0.5f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f, 0.0f}, {0.5f, 0.5f, 0.0f, 1.0f}};
-  FilterBench bench(inputs, catalogue.parse_requests("none").front());
-  bench.resize({size, 2});
-  bench.map().draw(bench.shaders(), render::Geometry(square), frustum);
-  bench.upload_receivers({{-0.45f, -0.45f, kReceiver}, {0.5f, 0.5f, kReceiver}}, {0.0f, 0.0f, -1.0f});
-  const std::vector<float> seen = bench.look_up({frustum, 0.0, {}, inputs.seed, {}}, bench.request().values);
-  return seen[0] == 0.0f && seen[1] == 1.0f
-             ? "ok: dark behind an occluder, lit beside it"
-             : fmt::format("wrong: {} behind an occluder, {} beside it", seen[0], seen[1]);
-}
-
-std::string try_size(const AxisInputs& inputs, int size, int limit) {
-  const double bytes = 4.0 * size * size;
-  const std::optional<double> available = find_available_bytes();
-  if (size <= limit && available && *available < kSpareMemory * bytes) {
-    return fmt::format("not available: it needs {} with what drivers keep beside it, and {} of memory are free",
-                       mebibytes(kSpareMemory * bytes), mebibytes(*available));
-  }
-  try {
-    return look_once(inputs, size);
-  } catch (const Error& error) {
-    return fmt::format("refused: {}", error.what());
-  }
-}
-
-std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
-  const int limit = inputs.renderer->context->info().max_texture_size;
-  Exhibit exhibit;
-  exhibit.id = "limit";
-  exhibit.title = "At this GL's limit";
-  exhibit.sentences = {
-      fmt::format("This GL gives textures of up to {} texels per side. One map of that size is allocated, drawn and "
-                  "looked up once, where memory allows; what is larger is an "
-                  "error before anything is allocated.",
-                  limit)};
-  exhibit.table = records::TextTable{{"map", "bytes of depth", "one allocation and one lookup, filter none"}, {}};
-  for (const int size : {limit, limit + 1, 2 * limit})
-    exhibit.table->rows.push_back(
-        {fmt::format("{}", size), mebibytes(4.0 * size * size), try_size(inputs, size, limit)});
-  return {exhibit};
+std::vector<Case> make_cases(const AxisInputs& inputs) {
+  std::vector<Case> cases;
+  for (const filters::FilterRequest& request : inputs.filters) cases.push_back(make_case(inputs, request));
+  return cases;
 }
 
 }  // namespace map_size
@@ -160,8 +96,7 @@ Axis make_map_size_axis() {
   axis.bound = kVisibleError;
   axis.broken_when =
       "texels of the map overflowed, or visibility is not finite, all lit or all dark where it must not be";
-  axis.make_cases = [](const AxisInputs& inputs) { return make_gl_cases(inputs, make_case); };
-  axis.make_exhibits = make_exhibits;
+  axis.make_cases = make_cases;
   return axis;
 }
 

@@ -107,18 +107,6 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
   return cases;
 }
 
-/// A published comparison ranked a filter by a 16-bit exponential variance map that overflowed: its exponent was 10,
-/// and the limit is 5.54. Kernels here are as wide as those of the default run.
-std::vector<Exhibit> make_exhibits(const AxisInputs& inputs) {
-  const auto has_moments = [](const filters::FilterRequest& request) { return request.spec.holds_moments; };
-  if (std::ranges::none_of(inputs.filters, has_moments)) return {};
-  const Mistake mistake{
-      "steps",
-      {"teach_evsm:radius=1,c=10,store=rg16f", "teach_evsm:radius=1,c=5.54,store=rg16f", "teach_evsm:radius=1,c=10"},
-      {"vsm:radius=1", "poisson:radius=1"}};
-  return {replay(inputs, mistake, "evsm-mistake")};
-}
-
 }  // namespace warp_exponent
 
 Axis make_warp_exponent_axis() {
@@ -136,7 +124,6 @@ Axis make_warp_exponent_axis() {
       "finite, all lit or all dark";
   axis.driven_param = driven_param;
   axis.make_cases = make_cases;
-  axis.make_exhibits = make_exhibits;
   return axis;
 }
 

@@ -76,9 +76,7 @@ const showEstimates = () => {
 
 // Times that a GPU took, here or elsewhere, as costs beside those of the run. A file of them, gpu-times.json, has for
 // each cell, by its key, what its parts take: `map`, `prefilter` and `filter` (the lookup less its empty one), each with
-// the median, a 95 % interval or null, and how many rounds they are of, ms (the map null where it could not be drawn);
-// and where the browser has timer queries, what they say of it, in the same words: `queries`, a cross-check that no cost
-// is made of.
+// the median, a 95 % interval or null, and how many rounds they are of, ms (the map null where it could not be drawn).
 const kTimesSchema = "shadowbench gpu-times 1";
 const kTimedParts = ["map", "prefilter", "filter"];
 const kMostTimesBytes = 16e6;
@@ -86,11 +84,11 @@ const machines = []; // as files have them
 
 const isTime = (part) => {
   const isSound = (value) => Number.isFinite(value) && Math.abs(value) < 1e9;
-  const { median, interval, rounds, queries } = part ?? {};
+  const { median, interval, rounds } = part ?? {};
   const hasInterval =
     interval === null || (Array.isArray(interval) && interval.length === 2 && interval.every(isSound));
   const hasRounds = Number.isInteger(rounds) && rounds > 0;
-  return isSound(median) && hasInterval && hasRounds && (queries === undefined || isTime(queries));
+  return isSound(median) && hasInterval && hasRounds;
 };
 // Takes a file's text apart; throws what is wrong with it.
 const readTimes = (text) => {

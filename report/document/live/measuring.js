@@ -62,13 +62,8 @@ const subtractTimes = (lookup, empty) => {
     lookup.interval && empty.interval
       ? [lookup.interval[0] - empty.interval[1], lookup.interval[1] - empty.interval[0]]
       : null;
-  const queries = lookup.queries && empty.queries && subtractTimes(lookup.queries, empty.queries);
-  return { median: lookup.median - empty.median, interval, rounds: lookup.rounds, ...(queries && { queries }) };
+  return { median: lookup.median - empty.median, interval, rounds: lookup.rounds };
 };
-// Whether timer queries say something else, by more than both intervals.
-const areQueriesApart = ({ interval, queries }) =>
-  Boolean(interval && queries?.interval) && (queries.interval[0] > interval[1] || queries.interval[1] < interval[0]);
-
 // Checks and times the filters of a place as the run measured them: how far each is from the run, and what its parts take.
 const kRounds = 11;
 const kShownEveryMs = 500; // a table of many rows takes a while to lay out
@@ -185,20 +180,8 @@ const kResultColumns = [
   "filter, ms",
   "prefilter, ms",
 ];
-const kQueryColumns = ["filter by timer queries, ms", "prefilter by timer queries, ms"];
-// What timer queries say of the times of a place, in words; they are shown, and nothing is made of them.
-const sayQueries = (times, isSoftware) => {
-  const asked = times.filter((time) => time?.interval && time.queries?.interval);
-  if (!times.some(Boolean)) return "";
-  if (asked.length === 0 && times.some((time) => time?.queries)) return ""; // too few to hold against each other
-  if (asked.length === 0) return " This browser has no timer queries to hold its times against.";
-  const apart = asked.filter(areQueriesApart).length;
-  const cpu = isSoftware ? " A CPU draws here, of which such queries know little." : "";
-  if (apart === 0) return ` Timer queries agree with these times.${cpu}`;
-  return ` Timer queries differ from ${apart} of ${asked.length} times by more than both intervals (\u2260).${cpu}`;
-};
 // Shows what is known of the filters of a place.
-const fillResults = (box, place, { found, samplingAt, errorOfReference }, isSoftware) => {
+const fillResults = (box, place, { found, samplingAt, errorOfReference }) => {
   const whos = listFiltersAt(place);
   const rows = whos.map((who) => [who, found.get(cellAt(who, place).key) ?? {}]);
   box.replaceChildren();
@@ -212,19 +195,16 @@ const fillResults = (box, place, { found, samplingAt, errorOfReference }, isSoft
   const [, { map } = {}] = rows.find(([, { map }]) => map) ?? [];
   const ofMap = map ? ` The map takes ${format(map.median)} ms.` : "";
   const title = `What this GPU draws on ${run.places[place].title}.`;
-  const times = rows.flatMap(([, { filter, prefilter }]) => [filter, prefilter]);
-  const ofQueries = sayQueries(map ? [map, ...times] : times, isSoftware);
   const off = errorOfReference(place);
   const ofMaps =
     off === undefined
       ? ""
       : ` The mean of ${kReferenceMaps} maps from points of the light has an RMSE of ${format(off)} to the traced truth.`;
   // As a caption it would be as wide as the table, and be cut where the table is.
-  element(box, "p", { className: "note results" }, `${title} ${sampling}${ofMap}${ofQueries}${ofMaps}`);
+  element(box, "p", { className: "note results" }, `${title} ${sampling}${ofMap}${ofMaps}`);
   const table = element(element(box, "div", { className: "scroll", tabIndex: 0 }), "table", { ariaLabel: title });
   const head = element(element(table, "thead"), "tr");
-  const columns = [...kResultColumns, ...(times.some((time) => time?.queries) ? kQueryColumns : [])];
-  for (const column of columns) element(head, "th", { scope: "col" }, column);
+  for (const column of kResultColumns) element(head, "th", { scope: "col" }, column);
   const body = element(table, "tbody");
   const say = (each) => (each ? format(each.median) : "");
   const sayInterval = (each) =>
@@ -233,7 +213,7 @@ const fillResults = (box, place, { found, samplingAt, errorOfReference }, isSoft
     const row = element(body, "tr");
     element(element(row, "th", { scope: "row" }), "bdi", {}, nameOf(who));
     if (refused) {
-      element(row, "td", { colSpan: columns.length - 1, className: "text" }, refused);
+      element(row, "td", { colSpan: kResultColumns.length - 1, className: "text" }, refused);
       continue;
     }
     const isKnown = rmse !== undefined;
@@ -241,13 +221,5 @@ const fillResults = (box, place, { found, samplingAt, errorOfReference }, isSoft
     element(row, "td", { className: isKnown && !isSame ? "bad" : "" }, verdict);
     for (const value of [worst, all]) element(row, "td", {}, isKnown ? format(value) : "");
     for (const each of [filter, prefilter]) element(row, "td", { title: sayInterval(each) }, say(each));
-    if (columns.length === kResultColumns.length) continue;
-    for (const each of [filter, prefilter])
-      element(
-        row,
-        "td",
-        { title: sayInterval(each?.queries) },
-        each?.queries?.median > 0 ? (areQueriesApart(each) ? "\u2260 " : "") + say(each.queries) : "",
-      );
   }
 };

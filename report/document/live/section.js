@@ -265,7 +265,7 @@ const openLive = (holder) => {
     command.hidden = code.textContent === "";
     unsaid.textContent = listUnsaid(state, frame).join(" ");
   };
-  const fillTable = () => fillResults(results, state.place, measuring, engine.isSoftware);
+  const fillTable = () => fillResults(results, state.place, measuring);
   const sayRenderer = () =>
     isGpuLost
       ? `Nothing is drawn now: ${kGpuIsGone[0].toLowerCase()}${kGpuIsGone.slice(1)}`

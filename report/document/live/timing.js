@@ -3,7 +3,6 @@
 const kLeastBatchMs = 30;
 const kGrainsInBatch = 50; // the clock's grain is 2 % of a batch at most
 const kMostDraws = 4096;
-const kMostQueryMs = 2000;
 const median = (values) => {
   const sorted = [...values].sort((a, b) => a - b);
   const middle = sorted.length >> 1;
@@ -43,33 +42,7 @@ const whenSeen = async () => {
 };
 const pause = () => new Promise((resolve) => setTimeout(resolve));
 
-// Asks the browser's own timer of the GPU: what a draw takes by it, ms; null where there is none, or it was disturbed.
-// It is a cross-check: a browser may round such times, and a CPU that draws may have done nothing yet when it ends.
-const makeQueryTimer = (gl) => {
-  const timers = gl.getExtension("EXT_disjoint_timer_query_webgl2");
-  let isSilent = !timers; // a query that never came is the last one
-  return async ({ draw, count }) => {
-    if (isSilent) return null;
-    const query = gl.createQuery();
-    gl.getParameter(timers.GPU_DISJOINT_EXT); // forgets what was disturbed before
-    gl.beginQuery(timers.TIME_ELAPSED_EXT, query);
-    draw(count);
-    gl.endQuery(timers.TIME_ELAPSED_EXT);
-    gl.flush();
-    const end = performance.now() + kMostQueryMs;
-    const isThere = () => gl.getQueryParameter(query, gl.QUERY_RESULT_AVAILABLE);
-    do await pause();
-    while (!isThere() && performance.now() < end);
-    isSilent = !isThere();
-    const isSound = !isSilent && !gl.getParameter(timers.GPU_DISJOINT_EXT);
-    const value = isSound ? gl.getQueryParameter(query, gl.QUERY_RESULT) / 1e6 / count : null;
-    gl.deleteQuery(query);
-    return value;
-  };
-};
-
 const makeTimer = (gl) => {
-  const ask = makeQueryTimer(gl);
   const pixel = new Uint8Array(4);
   const { framebuffer } = makeTarget(gl, gl.RGBA8, 1, 1);
   // A pixel that is written after all that was drawn, and read back, comes when that is done.
@@ -94,13 +67,13 @@ const makeTimer = (gl) => {
   };
   const timeOnce = ({ draw, count }) => (timeBatch(draw, 2 * count) - timeBatch(draw, count)) / count;
 
-  // Promises what each of some functions, which draw so many times, takes for once, ms, with what timer queries say of it:
-  // in rounds, each in an order of its own. `isStopped` ends it early.
+  // Promises what each of some functions, which draw so many times, takes for once, ms: in rounds, each in an order of its
+  // own. `isStopped` ends it early.
   return async (draws, rounds, onRound, isStopped) => {
     const timed = [];
     for (const draw of draws) {
       draw(1);
-      timed.push({ draw, count: countDraws(draw), values: [], queries: [] });
+      timed.push({ draw, count: countDraws(draw), values: [] });
       await pause();
     }
     for (let round = 0; round < rounds && !isStopped(); ++round) {
@@ -109,16 +82,10 @@ const makeTimer = (gl) => {
         await whenSeen();
         const value = timeOnce(each);
         if (!document.hidden) each.values.push(value);
-        const asked = await ask(each);
-        if (!document.hidden && asked !== null) each.queries.push(asked);
         await pause();
       }
       onRound(round + 1);
     }
-    const sum = ({ values, queries }) => ({
-      ...summarise(values),
-      ...(queries.length > 0 && { queries: summarise(queries) }),
-    });
-    return timed.map((each) => (each.values.length > 0 ? sum(each) : null));
+    return timed.map(({ values }) => (values.length > 0 ? summarise(values) : null));
   };
 };

@@ -138,19 +138,6 @@ TEST_F(StressCommand, WhatIsNotAvailable_IsSaid) {
   EXPECT_THAT(read("out/stress.html"), HasSubstr("not available"));
 }
 
-/// The mistake: a 16-bit map at an exponent for 32 bits ranks its filter last; within its format it does not.
-TEST_F(StressCommand, ReplaysTheMistake_AndFlagsIt) {
-  succeed("stress --out out --filters esm --axes esm-exponent --range esm-exponent=1,200");
-  const json exhibit = read_stress()["axes"][0]["exhibits"][0];
-  const json rows = exhibit["table"]["rows"];
-  EXPECT_EQ(rows[0][0], "esm (c=80, store=r16f)");
-  EXPECT_EQ(rows[0][3], "3 of 3");
-  EXPECT_EQ(rows[0][1].get<std::string>().rfind("0 of", 0), std::string::npos);  // it has texels that are not finite
-  EXPECT_EQ(rows[1][1].get<std::string>().rfind("0 of", 0), 0u);
-  EXPECT_LT(std::stod(rows[1][2].get<std::string>()), std::stod(rows[0][2].get<std::string>()));
-  EXPECT_TRUE(exists("out/" + exhibit["pictures"][0]["file"].get<std::string>()));
-}
-
 TEST_F(StressCommand, BadInput_IsRefused) {
   expect_refusals({{"stress --out out --axes esm-exponnet", 2, {"--axes", "'esm-exponnet'", "esm-exponent"}},
                    {"stress --out out --axes esm-exponent, ", 2, {"--axes", "''"}},
@@ -161,6 +148,7 @@ TEST_F(StressCommand, BadInput_IsRefused) {
                     2,
                     {"--filter-file", "no scalar model", "nine_compares.glsl"}},
                    {"stress --out out --gl vulkan", 2, {"'vulkan'"}},
+                   {"stress --out out --cache kept", 2, {"--cache is gone"}},
                    {"stress --out /proc/none", 6, {"/proc/none"}}});
 }
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "filters/percentage_closer.h"
@@ -87,6 +88,47 @@ TEST_P(Contract, SameInput_SameBits) {
   Bench first(shared_context(), scene, 256, 160, 90), second(shared_context(), scene, 256, 160, 90);
   const std::vector<float> a = first.draw(request_of(GetParam())), b = second.draw(request_of(GetParam()));
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0);
+}
+
+/// Numbers that are no depths harm the receivers whose kernel holds them, and no others: in the GL, which may clamp
+/// what is uploaded, and in the model, which does not.
+TEST_P(Contract, PoisonedTexels_HarmNothingBeyondTheKernel) {
+  constexpr int kMap = 256;
+  Bench bench(shared_context(), load_builtin("cubes"), kMap, 160, 90);
+  const FilterRequest request = request_of(GetParam());
+  const auto model = filters::make_model(request.spec);
+  const auto receivers = bench.receivers(request);
+  const auto look = [&](filters::DepthMap map) {
+    bench.map().upload(map.stored);
+    const std::vector<float> image = bench.draw(request);
+    const auto modelled =
+        model ? model->prepare({request.spec, request.values, map, {}, 7}, filters::Precision::kFloat) : nullptr;
+    std::vector<double> seen;
+    for (const auto& r : receivers) {
+      seen.push_back(static_cast<double>(image[bench.index(r)]));
+      if (modelled) seen.push_back(modelled->at(r).visibility);
+    }
+    return seen;
+  };
+  filters::DepthMap map = bench.map().read();
+  const std::vector<double> healthy = look(map);
+  std::vector<glm::vec2> poisoned;
+  for (const float poison : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                             -std::numeric_limits<float>::infinity()}) {
+    const int texel = kMap * 128 + 100 + 20 * static_cast<int>(poisoned.size());
+    map.stored[static_cast<std::size_t>(texel)] = poison;
+    poisoned.emplace_back(texel % kMap, texel / kMap);
+  }
+  const std::vector<double> harmed = look(map);
+  const double reach = filters::radius_texels(request.spec, request.values) + 1.0;
+  for (std::size_t i = 0; i < harmed.size(); ++i) {
+    const filters::Receiver& r = receivers[i * receivers.size() / harmed.size()];
+    const auto holds = [&](const glm::vec2& texel) {
+      const glm::vec2 away = glm::abs(r.uv * float{kMap} - 0.5f - texel);
+      return static_cast<double>(std::max(away.x, away.y)) <= reach;
+    };
+    if (std::ranges::none_of(poisoned, holds)) ASSERT_NEAR(harmed[i], healthy[i], 1e-6) << r.uv.x << "," << r.uv.y;
+  }
 }
 
 /// Gives what a parameter may be driven to: the ends of its range, and all of its choices.

@@ -1,19 +1,7 @@
-// The axes that draw their own scenes, on the GL: planes, formats, stacked occluders, radii and taps.
-
-// What the axes of extreme maps measure, and that they see what is wrong.
-
 // The lookup draws what it is told, and the axes' GL cases break where theory says.
-
-// Mistakes of published comparisons, replayed.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <numbers>
 
 #include "base/error.h"
 #include "harness/stress/axis.h"
@@ -52,26 +40,11 @@ TEST(TiltedPlane, AcneGrowsAsTheBiasShrinks) {
   const PlaneTilt tilt{70.0, false};
   TiltedPlane plane = make_plane("tent3x3", tilt);
   const double theory = find_gain_m(tilt, 1.5);
-  const Acne none = plane.find_acne(0.0), half = plane.find_acne(0.5 * theory), enough = plane.find_acne(1.01 * theory);
-  EXPECT_NEAR(none.mean_shadow, 0.5, 0.02);
-  EXPECT_GT(none.share, half.share);
-  EXPECT_GT(half.share, half.mean_shadow);
-  EXPECT_EQ(enough.mean_shadow, 0.0);
-  EXPECT_EQ(enough.share, 0.0);
+  EXPECT_NEAR(plane.find_acne(0.0), 0.5, 0.02);
+  EXPECT_GT(plane.find_acne(0.0), plane.find_acne(0.5 * theory));
+  EXPECT_GT(plane.find_acne(0.5 * theory), 0.0);
+  EXPECT_EQ(plane.find_acne(1.01 * theory), 0.0);
 }
-
-TEST(StoredDepths, DistanceAndDepth_AreInverse) {
-  for (const DepthPlan& plan :
-       {DepthPlan{100.0, false, false}, DepthPlan{100.0, true, false}, DepthPlan{100.0, true, true}}) {
-    for (const double distance : {1.0, 3.0, 100.0})
-      EXPECT_NEAR(distance_of(plan, depth_of(plan, distance)), distance, 1e-9);
-    EXPECT_NEAR(depth_of(plan, 1.0), plan.reversed ? 1.0 : 0.0, 1e-12);
-  }
-}
-
-using ::testing::AllOf;
-using ::testing::AnyOf;
-using ::testing::HasSubstr;
 
 Case find_case(const AxisInputs& inputs, const std::string& axis, const std::string& filter, const std::string& part) {
   for (Case& item : choose_axes(axis)[0].make_cases(inputs))
@@ -81,14 +54,11 @@ Case find_case(const AxisInputs& inputs, const std::string& axis, const std::str
   return {};
 }
 
-/// Every case of these axes that runs on this GL keeps to its theory.
-TEST(ExtremeAxes, GlCases_MeetTheirTheories) {
-  for (const char* id : {"map-edge", "map-size", "poisoned-input"}) {
-    Axis axis = choose_axes(id)[0];
-    if (axis.whole) axis.range.high = std::min(axis.range.high, 512.0);  // larger maps cost seconds
-    expect_theories_met(axis, make_gl_inputs("none,box3x3,poisson,esm,vsm,msm_packed32,msm_packed64"), Level::kGl,
-                        false);
-  }
+/// Every case of this axis that runs on this GL keeps to its theory.
+TEST(MapSize, GlCases_MeetTheirTheories) {
+  Axis axis = choose_axes("map-size")[0];
+  axis.range.high = 512.0;  // larger maps cost seconds
+  expect_theories_met(axis, make_gl_inputs("none,box3x3,poisson,esm,vsm,msm_packed32,msm_packed64"), Level::kGl, false);
 }
 
 TEST(MapSize, OneTexelIsAMap) {
@@ -114,18 +84,6 @@ TEST(MapSize, WhatAFormulaLeavesOfTwoDepths_IsExpectedOfMapsOfEverySize) {
   const AxisInputs inputs = make_gl_inputs("csm_conv");
   const Case item = find_case(inputs, "map-size", "csm_conv", "half");
   for (const double size : {256.0, 257.0, 512.0}) EXPECT_LT(item.observe(size).measured.value(), 1e-3) << size;
-}
-
-TEST(MapSize, AboveTheLimit_IsRefusedBeforeAnythingIsAllocated) {
-  const AxisInputs inputs = make_gl_inputs("none");
-  const std::vector<Exhibit> exhibits = choose_axes("map-size")[0].make_exhibits(inputs);
-  ASSERT_EQ(exhibits.size(), 1u);
-  const auto& rows = exhibits[0].table->rows;
-  ASSERT_EQ(rows.size(), 3u);
-  EXPECT_THAT(rows[0][2],
-              AnyOf(HasSubstr("ok: dark behind an occluder, lit beside it"), HasSubstr("not available: it needs")));
-  for (std::size_t i = 1; i < 3; ++i)
-    EXPECT_THAT(rows[i][2], AllOf(HasSubstr("refused"), HasSubstr(fmt::format("at most {}", rows[0][0]))));
 }
 
 SyntheticScene make_scene() {
@@ -180,26 +138,6 @@ TEST(GlLookup, MapThatTheGlCannotGive_IsAnError_AndSoNotAvailable) {
 TEST(Axes, GlCases_MeetTheirTheories) {
   for (const char* id : {"esm-exponent", "vsm-cancellation"})
     expect_theories_met(choose_axes(id)[0], make_gl_inputs("vsm,esm,vsm_sat,vssm"), Level::kGl, true);
-}
-
-using ::testing::StartsWith;
-
-TEST(Replay, OfA16BitExponentialVarianceMap_ShowsBothRankings) {
-  AxisInputs inputs = make_gl_inputs("vsm");
-  inputs.out = std::filesystem::path(::testing::TempDir()) / fmt::format("replay{}", getpid());
-  std::filesystem::create_directories(inputs.out);
-  const std::vector<Exhibit> exhibits = choose_axes("warp-exponent")[0].make_exhibits(inputs);
-  ASSERT_EQ(exhibits.size(), 1u);
-  const auto& rows = exhibits[0].table->rows;
-  ASSERT_EQ(rows.size(), 5u);
-  EXPECT_THAT(rows[0][0], HasSubstr("(c=10, radius=1, store=rg16f"));
-  EXPECT_THAT(rows[0][1], Not(StartsWith("0 of")));
-  EXPECT_EQ(rows[0][3], "3 of 3");
-  EXPECT_THAT(rows[1][0], HasSubstr("(c=5.54, radius=1, store=rg16f"));
-  EXPECT_THAT(rows[1][1], StartsWith("0 of"));
-  EXPECT_EQ(rows[1][4], "1 of 3");
-  EXPECT_TRUE(std::filesystem::exists(inputs.out / exhibits[0].pictures.front().file));
-  std::filesystem::remove_all(inputs.out);
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
-// What the axes of extreme maps see without a GL.
-
-// The axes that draw their own scenes (grazing-light, light-bleeding, kernel-radius, taps), without a GL.
+// The axes without a GL.
 
 #include "harness/stress/axis.h"
 
@@ -141,7 +139,7 @@ TEST(Driven, ComesFromTheFrontMatter_AndKeepsTheUsersValues) {
 }
 
 TEST(Driven, WithoutAGl_GlCasesSayThatThereIsNone) {
-  for (const char* id : {"esm-exponent", "map-edge", "map-size", "poisoned-input"})
+  for (const char* id : {"esm-exponent", "map-size"})
     for (const Case& item : choose_axes(id)[0].make_cases(make_inputs("none,vsm,esm")))
       EXPECT_EQ(item.not_available.find("no GL") != std::string::npos, item.level == Level::kGl)
           << id << " " << item.variant;
@@ -218,18 +216,6 @@ TEST(VsmCancellation, SummedAreaTable_LosesBitsWithItsArea) {
               std::sqrt((all_others + 0.5 / 946745.0) / (all_others + 0.5 * rounding)), 1e-3);
 }
 
-TEST(PoisonedInput, ModelsKeepPoisonWithinTheKernel) {
-  const Axis axis = choose_axes("poisoned-input")[0];
-  int spread = 0;
-  for (const Case& item : axis.make_cases(make_inputs(""))) {
-    if (item.level != Level::kModel) continue;
-    const records::StressCase found = find_onsets(item, axis);
-    EXPECT_FALSE(found.broken) << item.filter << " " << item.variant << ": " << found.broken->why;
-    if (found.degraded) ++spread;
-  }
-  EXPECT_GT(spread, 0) << "the poison does nothing, so nothing was shown";
-}
-
 /// NUMBERS: occluders at .1 and .6, half each, receiver at .7.
 TEST(LayerStack, Chebyshev_OfTwoOccluders) {
   EXPECT_NEAR(find_chebyshev({{0.1, 0.6}, 0.7}, {0.5, 0.5}), 0.3378, 1e-4);
@@ -287,43 +273,6 @@ TEST(StraightEdge, FiltersThatFall_AreBroken_UnlessTheyAreStochastic) {
   EXPECT_EQ(judge_edge(falling, falling.visibility, filters::FilterKind::kBound).verdict, Verdict::kBroken);
   EXPECT_EQ(judge_edge(falling, falling.visibility, filters::FilterKind::kComparison).verdict, Verdict::kBroken);
   EXPECT_EQ(judge_edge(falling, falling.visibility, filters::FilterKind::kStochastic).verdict, Verdict::kOk);
-}
-
-HeatMap make_heat_map() {
-  HeatMap map{"title",
-              "note",
-              "quantity",
-              {"x", {0.0, 10.0}, {0, 10}},
-              {"y", {0.0, 4.0}, {0, 4}},
-              images::Image(2, 2, 1),
-              1.0,
-              [](double) { return 2.0; }};
-  *map.values.at(1, 0) = 1.0f;  // high x, high y
-  return map;
-}
-
-/// Counts the columns of a row of the picture in which a colour is reddish, and near black.
-std::pair<int, int> count_red_and_black(const images::Image& picture, int row) {
-  std::pair<int, int> counts;
-  for (int x = picture.width / 4; x < picture.width; ++x) {
-    const float* texel = picture.at(x, row);
-    counts.first += texel[0] > 2.0f * texel[1] ? 1 : 0;
-    counts.second += texel[0] < 0.2f && texel[2] < 0.2f ? 1 : 0;
-  }
-  return counts;
-}
-
-TEST(HeatMap, HighValuesLieAbove_AndTheCurveWhereItSays) {
-  const images::Image picture = images::draw_figure(make_figure(make_heat_map()));
-  std::vector<int> red_rows, curve_rows;
-  for (int y = 0; y < picture.height; ++y) {
-    const auto [red, black] = count_red_and_black(picture, y);
-    if (red > 400) red_rows.push_back(y);
-    if (black > 600) curve_rows.push_back(y);
-  }
-  ASSERT_FALSE(red_rows.empty() || curve_rows.empty());
-  EXPECT_NEAR(static_cast<double>(red_rows.size()), 240.0, 4.0);  // the upper half of the plot
-  EXPECT_NEAR(curve_rows.front(), red_rows.back(), 4);            // y = 2 of 4: where that ends
 }
 
 /// Every case that runs without a GL keeps to its theory.

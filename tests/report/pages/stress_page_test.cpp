@@ -54,7 +54,7 @@ records::StressRecord make_record() {
   axis.title = "Exponent";
   axis.quantity = "exponent c";
   axis.unit = "1/depth";
-  axis.log = axis.measured_log = true;
+  axis.log = true;
   axis.range = {1.0, 100.0};
   axis.measured = "error";
   axis.bound = 0.02;
@@ -65,11 +65,6 @@ records::StressRecord make_record() {
   absent.level = "GL";
   absent.not_available = "this GL lacks r8";
   axis.cases.push_back(absent);
-  axis.exhibits.push_back({"mistake",
-                           "A mistake",
-                           {"It was made."},
-                           records::TextTable{{"set-up"}, {{"a|b"}}},
-                           {{"stress.mistake.png", "pictures"}}});
   record.axes.push_back(axis);
   return record;
 }
@@ -99,7 +94,6 @@ TEST(StressJson, HoldsEverything_AbsentIsNull) {
   EXPECT_EQ(item["limits"][1]["explanation"], "the blur adds");
   EXPECT_EQ(axis["cases"][1]["not_available"], "this GL lacks r8");
   EXPECT_TRUE(axis["cases"][1]["broken"].is_null());
-  EXPECT_EQ(axis["exhibits"][0]["table"]["rows"][0][0], "a|b");
 }
 
 TEST(StressCsv, HasARowPerObservation_AndOneForWhatIsAbsent) {
