@@ -54,7 +54,6 @@ shadowbench_add_part(GPU_ESTIMATES "what filters cost on other GPUs" PACKAGES Th
 shadowbench_add_part(LIVE_PAGE "drawing in the reader's browser" PACKAGES Threads SPIRV-Tools-opt glslang
                      MODULES spirv-cross-c-shared
                      DEBIAN "glslang-dev glslang-tools libspirv-cross-c-shared-dev spirv-tools")
-shadowbench_add_part(DRACO "models that Draco compressed" PACKAGES draco DEBIAN "libdraco-dev")
 shadowbench_add_part(MESHOPT "models that meshoptimizer compressed" PACKAGES meshoptimizer DEBIAN "libmeshoptimizer-dev")
 if(NOT SHADOWBENCH_HAS_OSMESA AND NOT SHADOWBENCH_HAS_EGL AND NOT SHADOWBENCH_HAS_WINDOW)
   message(FATAL_ERROR "Nothing is left that could draw: OSMesa, EGL or the window is needed. Install libegl-dev or libosmesa6-dev.")

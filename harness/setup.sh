@@ -5,7 +5,7 @@ set -eu
 
 packages="
   cmake dpkg-dev file g++ git glslang-dev glslang-tools help2man ninja-build pkg-config python3-glad spirv-tools
-  libcli11-dev libdeflate-dev libdraco-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev
+  libcli11-dev libdeflate-dev libegl-dev libembree-dev libfmt-dev libfreetype-dev libgl-dev libglfw3-dev
   libglm-dev libgsl-dev libimgui-dev libmeshoptimizer-dev libnlopt-cxx-dev libopenimageio-dev libosmesa6-dev
   libpugixml-dev libspirv-cross-c-shared-dev libstb-dev libtbb-dev libtinygltf-dev libtinyobjloader-dev
   libtomlplusplus-dev libvulkan-dev libxxhash-dev nlohmann-json3-dev openimageio-tools

@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 PARTS = {"WINDOW": "run_view.cpp", "OSMESA": "context_osmesa.cpp", "EGL": "context_egl.cpp", "GPU_ESTIMATES": "null_device.cpp",
-         "LIVE_PAGE": "webgl.cpp", "DRACO": "gltf_draco.cpp", "MESHOPT": "gltf_meshopt.cpp"}
+         "LIVE_PAGE": "webgl.cpp", "MESHOPT": "gltf_meshopt.cpp"}
 EVERYTHING_LEFT_OUT_BUT_EGL = [f"-DSHADOWBENCH_WITH_{part}=OFF" for part in PARTS if part != "EGL"]
 AVAILABLE = set(PARTS)  # on this machine: Debian 14 will have no OSMesa
 
@@ -67,15 +67,16 @@ def check_parts(source):
     expect(least.exit_code == 0 and least.parts() == {"EGL"}, f"{least.parts()}: {least.output}")
     none = Configuration(source, *EVERYTHING_LEFT_OUT_BUT_EGL, "-DSHADOWBENCH_WITH_EGL=OFF")
     expect(none.exit_code != 0 and "Nothing is left that could draw" in none.output, none.output)
-    missing = Configuration(source, "-DCMAKE_DISABLE_FIND_PACKAGE_draco=ON")
-    sentence = "Left out: models that Draco compressed, since this was not found: draco. Install libdraco-dev to have it."
+    missing = Configuration(source, "-DCMAKE_DISABLE_FIND_PACKAGE_meshoptimizer=ON")
+    sentence = ("Left out: models that meshoptimizer compressed, since this was not found: meshoptimizer. Install "
+                "libmeshoptimizer-dev to have it.")
     expect(missing.exit_code == 0 and sentence in missing.output, missing.output)
-    expect(missing.parts() == AVAILABLE - {"DRACO"}, f"these parts are there: {missing.parts()}")
+    expect(missing.parts() == AVAILABLE - {"MESHOPT"}, f"these parts are there: {missing.parts()}")
     packed = subprocess.run(["cpack", "-G", "DEB"], cwd=missing.folder.name, text=True, capture_output=True, check=False)
-    expect(packed.returncode != 0 and "-DSHADOWBENCH_WITH_DRACO=OFF" in packed.stdout + packed.stderr,
+    expect(packed.returncode != 0 and "-DSHADOWBENCH_WITH_MESHOPT=OFF" in packed.stdout + packed.stderr,
            f"a package without a part that nobody left out: {packed.stdout}{packed.stderr}")
-    asked = Configuration(source, "-DCMAKE_DISABLE_FIND_PACKAGE_draco=ON", "-DSHADOWBENCH_WITH_DRACO=ON")
-    expect(asked.exit_code != 0 and "Install libdraco-dev, or configure with" in asked.output, asked.output)
+    asked = Configuration(source, "-DCMAKE_DISABLE_FIND_PACKAGE_meshoptimizer=ON", "-DSHADOWBENCH_WITH_MESHOPT=ON")
+    expect(asked.exit_code != 0 and "Install libmeshoptimizer-dev, or configure with" in asked.output, asked.output)
 
 
 def check_embree(source):
@@ -89,7 +90,7 @@ def main():
     parser.add_argument("--source", required=True, type=Path, help="the checkout")
     source = parser.parse_args().source.resolve()
     AVAILABLE.intersection_update(Configuration(source).parts())
-    expect("EGL" in AVAILABLE and "DRACO" in AVAILABLE, f"these parts are there: {AVAILABLE}")
+    expect("EGL" in AVAILABLE and "MESHOPT" in AVAILABLE, f"these parts are there: {AVAILABLE}")
     check_flags(source)
     check_parts(source)
     check_embree(source)

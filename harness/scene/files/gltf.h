@@ -41,19 +41,10 @@ const T& find_element(const std::vector<T>& list, int index, const std::string& 
 std::size_t read_whole_number(const tinygltf::Value& object, const std::string& key, const std::string& owner,
                               const std::string& where);
 
-/// The most that a file's compressed data may become, by either extension; 2 GiB.
-constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 31;
-
 /// Replaces every buffer view that EXT_meshopt_compression compresses by one of the bytes that it stands for.
 /// No buffer view may claim more than 64 times its compressed size, the most that the format can hold.
 /// Throws kInput, at `where`, for data that are damaged or claim too much, before anything is allocated for the claim.
 tinygltf::Model unpack_meshopt(tinygltf::Model model, const std::string& where);
-
-/// Gives every primitive that KHR_draco_mesh_compression compresses accessors of its own, with the indices, positions,
-/// normals and texture coordinates that the compressed data hold; it then is a list of triangles.
-/// Data may claim 256 MiB, or 1024 times their compressed size where that is more.
-/// Throws kInput, at `where`, for data that are damaged or claim too much, before anything is allocated for the claim.
-tinygltf::Model unpack_draco(tinygltf::Model model, const std::string& where);
 
 /// Reads an accessor's elements as floats, `components` per element; normalized integers become [-1,1] or [0,1].
 /// Checks the accessor, its buffer view and buffer before it reads a byte, sparse ones included.

@@ -87,6 +87,7 @@ struct PackedView {
 
 /// All of a file's compressed buffer views, which together claim no more than is allowed.
 std::vector<PackedView> list_packed_views(const tinygltf::Model& model, const std::string& where) {
+  constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 31;
   std::vector<PackedView> views;
   std::size_t claimed = 0;
   for (std::size_t i = 0; i < model.bufferViews.size(); ++i) {

@@ -126,15 +126,6 @@ void fill_fallbacks(nlohmann::json& buffers, bool glb) {
   }
 }
 
-/// KHR_draco_mesh_compression leaves indices without a buffer view, which the parser refuses too: the primitive gets
-/// its indices when it is unpacked.
-void drop_packed_indices(nlohmann::json& mesh) {
-  const nlohmann::json::json_pointer packed("/extensions/KHR_draco_mesh_compression");
-  if (!mesh.contains("primitives")) return;
-  for (nlohmann::json& primitive : mesh["primitives"])
-    if (primitive.contains(packed)) primitive.erase("indices");
-}
-
 /// The parser asks for matrices that glTF lets a skin leave out.
 void fill_inverse_binds(nlohmann::json& skin) {
   if (skin.is_object() && !skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
@@ -142,7 +133,7 @@ void fill_inverse_binds(nlohmann::json& skin) {
 
 /// Whether the parser would refuse something that is valid, or is never used.
 bool needs_mending(std::string_view json) {
-  constexpr std::array kWords{"EXT_meshopt_compression", "KHR_draco_mesh_compression", "\"animations\"", "\"skins\""};
+  constexpr std::array kWords{"EXT_meshopt_compression", "\"animations\"", "\"skins\""};
   return std::ranges::any_of(kWords, [&](const char* word) { return json.find(word) != json.npos; });
 }
 
@@ -152,7 +143,6 @@ std::string mend_json(std::string_view json, bool glb) {
   if (!document.is_object()) return std::string(json);
   document.erase("animations");
   if (document.contains("buffers")) fill_fallbacks(document["buffers"], glb);
-  if (document.contains("meshes")) std::ranges::for_each(document["meshes"], drop_packed_indices);
   if (document.contains("skins")) std::ranges::for_each(document["skins"], fill_inverse_binds);
   return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -204,9 +194,7 @@ void require_readable_extensions(const tinygltf::Model& model, const std::string
   for (const std::string& extension : model.extensionsRequired) {
     if (is_harmless_extension(extension) || is_partly_known(extension)) continue;
     fail_input(fmt::format("the file requires the extension {}, which {}; save it without", extension,
-                           extension == "EXT_meshopt_compression" || extension == "KHR_draco_mesh_compression"
-                               ? "this build leaves out"
-                               : "is not supported"),
+                           extension == "EXT_meshopt_compression" ? "this build leaves out" : "is not supported"),
                where);
   }
 }
@@ -252,9 +240,6 @@ bool is_harmless_extension(std::string_view extension) {
 #ifdef SHADOWBENCH_HAS_MESHOPT
       "EXT_meshopt_compression",
 #endif
-#ifdef SHADOWBENCH_HAS_DRACO
-      "KHR_draco_mesh_compression",
-#endif
       // Read.
       "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_pbrSpecularGlossiness",
       "KHR_materials_transmission", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_transform",
@@ -298,9 +283,6 @@ tinygltf::Model parse_gltf(const fs::path& file) {
   require_whole_names(model, where);
 #ifdef SHADOWBENCH_HAS_MESHOPT
   model = unpack_meshopt(std::move(model), where);
-#endif
-#ifdef SHADOWBENCH_HAS_DRACO
-  model = unpack_draco(std::move(model), where);
 #endif
   return model;
 }
