@@ -2,9 +2,6 @@
 // Source: Blinn 1977, Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH.
 #include "lib/gbuffer.glsl"
 #include "lib/light.glsl"
-#ifdef HAS_COOKIE
-#include "lib/cookie.glsl"
-#endif
 layout(binding = 10) uniform sampler2D gbuffer_shading_normal;
 layout(binding = 11) uniform sampler2D gbuffer_albedo;
 layout(binding = 4) uniform sampler2D visibility_image;
@@ -36,9 +33,5 @@ void main() {
   float visibility = texelFetch(visibility_image, pixel, 0).r;
   // The sky is brighter than the ground, so that ambient light models form as well.
   vec3 ambient = kAmbient * (ambient_at_side + (1.0 - ambient_at_side) * normal.y) * albedo;
-  vec3 radiance = light_radiance;
-#ifdef HAS_COOKIE
-  radiance *= cookie_at(position);
-#endif
-  out_color = vec4(ambient + visibility * light_strength(position) * radiance * (albedo * n_dot_l + specular), 1.0);
+  out_color = vec4(ambient + visibility * light_strength(position) * light_radiance * (albedo * n_dot_l + specular), 1.0);
 }

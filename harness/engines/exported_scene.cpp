@@ -162,8 +162,6 @@ ExportedScenes export_scenes(const options::RunOptions& options, options::Progre
   for (const auto& [folder, scene] : scenes) {
     const run::PlannedScene& planned = plan.scenes[scene.first->scene];
     write_exported_scene(folder, planned, *scene.first->task.camera, scene.second);
-    if (scene::find_cookie(planned.scene.light))
-      warn(fmt::format("{}: the picture that the light shines through is left out", planned.scene.name));
   }
   return exported;
 }

@@ -332,7 +332,7 @@ std::vector<RunOption> list_run_options() {
       .in(map)
       .rarely();
   t.add_switch(
-       "--behind-test", "exclude what is behind a spot light; off mirrors cone, cookie and map through the light",
+       "--behind-test", "exclude what is behind a spot light; off mirrors cone and map through the light",
        [](auto& o) -> auto& { return o.range.behind_test; })
       .in(map)
       .rarely();

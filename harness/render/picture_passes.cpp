@@ -10,30 +10,12 @@ namespace shadowbench::render {
 namespace {
 
 constexpr GLuint kVisibilityUnit = 4;  // of shade.frag
-constexpr GLuint kCookieUnit = 13;     // of lib/cookie.glsl
 
 Defines shade_defines(const scene::Light& light, const filters::RangeRule& range) {
   Defines defines;
   if (scene::find_beam(light)) defines.push_back(kPerspectiveLight);
   if (scene::find_beam(light) && !range.behind_test) defines.emplace_back("NO_BEHIND_TEST", "1");
-  if (scene::find_cookie(light)) defines.emplace_back("HAS_COOKIE", "1");
   return defines;
-}
-
-gl::Texture upload_cookie(const scene::Texture& picture) {
-  gl::Texture cookie("cookie " + picture.name, GL_SRGB8_ALPHA8, picture.width, picture.height);
-  cookie.upload_bytes(picture.rgba, 4);
-  cookie.set_filter(GL_LINEAR, GL_LINEAR);
-  return cookie;
-}
-
-void set_cookie(gl::Program& program, const gl::Texture& cookie, const scene::Beam& beam) {
-  const glm::dmat3 axes = glm::transpose(scene::light_rotation(beam.axis_ws));
-  program.set("light_right_ws", glm::vec3(axes[0]));
-  program.set("light_up_ws", glm::vec3(axes[1]));
-  program.set("cookie_tangent", static_cast<float>(std::tan(std::acos(beam.cos_outer))));
-  gl::Sampler::unbind(kCookieUnit);
-  cookie.bind(kCookieUnit);
 }
 
 }  // namespace
@@ -57,11 +39,6 @@ void shade_into(ImageTarget& target, ShaderLibrary& shaders, const ShadedView& v
   gbuffer.bind();
   gl::Sampler::unbind(kVisibilityUnit);
   visibility.bind(kVisibilityUnit);
-  std::optional<gl::Texture> cookie;
-  if (const scene::Texture* picture = scene::find_cookie(scene.light)) {
-    cookie = upload_cookie(*picture);
-    set_cookie(program, *cookie, *beam);
-  }
   program.use();
   gl::FullscreenTriangle().draw();
 }

@@ -24,7 +24,7 @@ struct ShadedView {
   const gl::Texture& visibility;  ///< R32F, of the G-buffer's size
   const scene::Scene& scene;
   const scene::Camera& camera;
-  filters::RangeRule range = {};  ///< without its behind test a lamp's cone and cookie are mirrored through it
+  filters::RangeRule range = {};  ///< without its behind test a lamp's cone is mirrored through it
 };
 
 /// Shades a view into `target` (RGBA32F, of its size): Blinn-Phong whose ambient part is never shadowed; linear RGB.

@@ -190,46 +190,20 @@ Value settle_by(Value value, std::string title, const Write& write, const Read& 
   return value;
 }
 
-/// The tables of [[key]], or the single [key].
-std::vector<toml::table*> list_tables(toml::table& document, std::string_view key) {
-  std::vector<toml::table*> tables;
-  if (toml::table* single = document[key].as_table()) tables.push_back(single);
-  if (toml::array* several = document[key].as_array())
-    for (toml::node& each : *several)
-      if (each.is_table()) tables.push_back(each.as_table());
-  return tables;
-}
-
 /// A scene file's own tables, to lie elsewhere.
-class MovedDocument {
- public:
-  MovedDocument(const fs::path& source, const fs::path& file)
-      : folder_(source.parent_path()), file_(file), document_(parse_toml_file(source)) {
-    move_path(document_, "model");
-    for (toml::table* object : list_tables(document_, "object")) move_path(*object, "file");
-    for (toml::table* light : list_tables(document_, "light")) move_path(*light, "cookie");
-  }
-
-  toml::table& document() { return document_; }
-
-  /// The cookies of its lights, in their order; empty for a light without one.
-  std::vector<std::string> list_cookies() {
-    std::vector<std::string> cookies;
-    for (toml::table* light : list_tables(document_, "light"))
-      cookies.push_back((*light)["cookie"].value_or(std::string()));
-    return cookies;
-  }
-
- private:
-  fs::path folder_;
-  fs::path file_;
-  toml::table document_;
-
-  void move_path(toml::table& table, std::string_view key) const {
+toml::table move_document(const fs::path& source, const fs::path& file) {
+  toml::table document = parse_toml_file(source);
+  const auto move_path = [&](toml::table& table, std::string_view key) {
     if (const auto path = table[key].value<std::string>())
-      table.insert_or_assign(key, name_from(folder_ / *path, file_));
-  }
-};
+      table.insert_or_assign(key, name_from(source.parent_path() / *path, file));
+  };
+  move_path(document, "model");
+  if (toml::table* object = document["object"].as_table()) move_path(*object, "file");
+  if (toml::array* objects = document["object"].as_array())
+    for (toml::node& each : *objects)
+      if (each.is_table()) move_path(*each.as_table(), "file");
+  return document;
+}
 
 /// A floor as the plane that make_floor() makes of it. Its place is written to the last digit of a double, since a
 /// plane is moved in double precision.
@@ -267,22 +241,10 @@ std::string name_from(const fs::path& file, const fs::path& from) {
 }
 
 std::string write_scene(const ShownScene& shown, const fs::path& file) {
-  toml::table document;
-  std::vector<std::string> cookies;
-  if (is_mesh_file(shown.source)) {
-    document = write_model(shown, file);
-  } else {
-    MovedDocument moved(shown.source, file);
-    cookies = moved.list_cookies();
-    document = std::move(moved.document());
-  }
+  toml::table document = is_mesh_file(shown.source) ? write_model(shown, file) : move_document(shown.source, file);
   toml::array cameras, lights;
   for (const Camera& camera : shown.cameras) cameras.push_back(write_camera(camera, shown.scene->origin_ws));
-  for (std::size_t i = 0; i < shown.lights.size(); ++i) {
-    toml::table light = write_light(shown.lights[i], shown.scene->origin_ws);
-    if (find_cookie(shown.lights[i]) && i < cookies.size()) light.insert("cookie", cookies[i]);
-    lights.push_back(std::move(light));
-  }
+  for (const Light& light : shown.lights) lights.push_back(write_light(light, shown.scene->origin_ws));
   document.insert_or_assign("camera", std::move(cameras));
   document.insert_or_assign("light", std::move(lights));
   return write_toml(document);
@@ -295,13 +257,9 @@ Camera settle(const Camera& camera) {
 }
 
 Light settle(const Light& light) {
-  const auto read = [&](const TomlTable& table) {
-    Light settled = checked_light(read_light(table), {});
-    if (auto* spot = std::get_if<Spot>(&settled.kind)) spot->cookie = std::get<Spot>(light.kind).cookie;
-    return settled;
-  };
   return settle_by(
-      light, "light '" + light.name + "'", [](const Light& each) { return write_light(each); }, read);
+      light, "light '" + light.name + "'", [](const Light& each) { return write_light(each); },
+      [](const TomlTable& table) { return checked_light(read_light(table), {}); });
 }
 
 }  // namespace shadowbench::scene

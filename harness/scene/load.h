@@ -65,7 +65,7 @@ struct ShownScene {
   std::filesystem::path source;  ///< the scene file or bare model
   const Scene* scene = nullptr;  ///< as it was loaded
   std::vector<Camera> cameras;
-  std::vector<Light> lights;  ///< in the order of the source, whose cookies they keep
+  std::vector<Light> lights;  ///< in the order of the source
 };
 
 /// Writes the scene file that is to lie at `file` and shows the scene: the source's own tables, or the model and its

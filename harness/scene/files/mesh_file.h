@@ -42,8 +42,8 @@ MeshFile import_mesh_file(const std::filesystem::path& file, const glm::dvec3& o
 
 /// Reads a glTF 2.0 file (.gltf or .glb): its default scene, node transforms applied.
 ///
-/// Reads triangles, strips and fans with indices of any type, quantised and compressed ones (EXT_meshopt_compression,
-/// KHR_draco_mesh_compression) too, as often as EXT_mesh_gpu_instancing says, unless KHR_node_visibility hides them,
+/// Reads triangles, strips and fans with indices of any type, quantised and compressed ones (EXT_meshopt_compression)
+/// too, as often as EXT_mesh_gpu_instancing says, unless KHR_node_visibility hides them,
 /// and skins as their joints stand at rest; materials as read_gltf_materials() does; perspective and orthographic
 /// cameras, and the lights of KHR_lights_punctual (their colour; all but those of 0 have intensity 1, because every
 /// picture has the same exposure). Missing normals become flat ones. Warns about what it leaves out: lights of other
@@ -62,8 +62,7 @@ MeshFile import_obj(const std::filesystem::path& file, const glm::dvec3& origin 
 /// The bytes of a .glb file of a scene: its meshes as they stand in the world, materials, textures, cameras of this
 /// aspect (width / height), and its light as KHR_lights_punctual has it. What glTF has no word for goes into
 /// `extras.shadowbench`, from where import_gltf() takes it: a light's size and all else of it in the words of a scene
-/// file, `casts_shadow` and `may_cull_front` of a node, `title` and `background` of the scene. A spot's cookie is left
-/// out.
+/// file, `casts_shadow` and `may_cull_front` of a node, `title` and `background` of the scene.
 /// Throws Error(kOutput) where a texture cannot be packed.
 std::string write_glb(const Scene& scene, double aspect);
 

@@ -140,17 +140,6 @@ namespace {
 
 constexpr double kLeastCone_deg = 0.1;
 
-/// Whatever is wrong with the picture is the fault of the line that names it.
-std::shared_ptr<const Texture> read_cookie(const TomlTable& table) {
-  const std::filesystem::path file = table.file("cookie");
-  try {
-    const std::string name = file.filename().string();
-    return std::make_shared<const Texture>(decode_texture(read_file_bytes(file), name, file.string(), {}));
-  } catch (const Error& e) {
-    throw table.error("cookie", fmt::format("'cookie' in {}, {}: {}", table.title(), file.string(), e.message()));
-  }
-}
-
 bool is_rectangle(const Spot& spot) { return spot.size_m.x > 0.0f && spot.size_m.y > 0.0f; }
 
 }  // namespace
@@ -163,7 +152,7 @@ double Beam::cone_at(const glm::dvec3& point_ws) const {
 }
 
 Spot read_spot(const TomlTable& table) {
-  require_light_keys(table, {"position", "target", "cone_deg", "inner_cone_deg", "radius", "size", "cookie"});
+  require_light_keys(table, {"position", "target", "cone_deg", "inner_cone_deg", "radius", "size"});
   Spot spot;
   spot.position_ws = glm::vec3(table.vec3("position", kAnyNumber));
   spot.target_ws = glm::vec3(table.vec3("target", kAnyNumber));
@@ -178,7 +167,6 @@ Spot read_spot(const TomlTable& table) {
   }
   if (spot.position_ws == spot.target_ws)
     throw table.error("target", "'target' in [light] is where the light stands: it has no direction");
-  if (table.has("cookie")) spot.cookie = read_cookie(table);
   return spot;
 }
 

@@ -88,11 +88,6 @@ std::optional<Beam> find_beam(const Light& light) {
   return std::visit([](const auto& kind) { return find_beam(kind); }, light.kind);
 }
 
-const Texture* find_cookie(const Light& light) {
-  const auto* spot = std::get_if<Spot>(&light.kind);
-  return spot ? spot->cookie.get() : nullptr;
-}
-
 bool shines_on(const Light& light, const glm::vec3& point_ws) {
   const std::optional<Beam> beam = find_beam(light);
   return !beam || beam->cone_at(glm::dvec3(point_ws)) > 0.0;
@@ -251,11 +246,6 @@ std::vector<std::string> list_light_content(Light light) {
   std::string text = fmt::format("{} {} {}", light.kind.index(), write_vector(light.color), light.intensity);
   for (const LightNumber& number : list_numbers(light)) text += fmt::format(" {}", fmt::join(number.values, " "));
   std::vector<std::string> content = {std::move(text)};
-  if (const Texture* cookie = find_cookie(light)) {
-    ContentHash texels;
-    texels.add_values(std::span<const std::uint8_t>(cookie->rgba));
-    content.push_back(fmt::format("cookie {} {} {}", cookie->width, cookie->height, texels.name()));
-  }
   if (!light.map_window) return content;
   const MapWindow& w = *light.map_window;
   content.push_back(fmt::format("window {} {} {} {}", w.center_ws.x, w.center_ws.y, w.center_ws.z, w.width_m));

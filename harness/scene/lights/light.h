@@ -42,9 +42,6 @@ glm::vec3 to_light(const Light& light, const glm::vec3& point_ws);
 /// The cone of a light that stands in the scene; nothing for one at infinity.
 std::optional<Beam> find_beam(const Light& light);
 
-/// The picture that a light shines through; null where it has none.
-const Texture* find_cookie(const Light& light);
-
 /// Whether any of the light goes to a point.
 bool shines_on(const Light& light, const glm::vec3& point_ws);
 
@@ -82,8 +79,7 @@ struct LightSlider {
 /// The numbers of a light beside its direction: its size first.
 std::vector<LightSlider> list_sliders(Light& light);
 
-/// What the [light] of a scene file says of it, but for its cookie, whose file it does not know. Reads back with the
-/// same origin.
+/// What the [light] of a scene file says of it. Reads back with the same origin.
 toml::table write_light(Light light, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// Returns the light of a glTF node, or nothing for a type that is not modelled. A spot's cones are given as half

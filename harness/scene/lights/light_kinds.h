@@ -102,8 +102,6 @@ struct Spot {
   float inner_cone_deg = 45.0f;  ///< the same, full strength within
   float radius_m = 0.05f;        ///< of the disk; 0: a point
   glm::vec2 size_m{0.0f};        ///< sides of a rectangle in place of the disk, along the map's u and v; 0: the disk
-  /// Colours the light, but no shadow: over the square around the outer cone. Null: none.
-  std::shared_ptr<const Texture> cookie = nullptr;
 };
 
 /// A cone must be narrower than a half-space: its map is drawn through one perspective.

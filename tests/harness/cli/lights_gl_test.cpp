@@ -1,4 +1,4 @@
-// Lights of several kinds, cascades and cookies, as a user of the program meets them.
+// Lights of several kinds, and cascades, as a user of the program meets them.
 
 #include <regex>
 #include <set>
@@ -133,58 +133,6 @@ TEST_F(LayersRun, ALampInsideACaster_IsWarnedOf) {
   write("inside.toml", scene);
   run_cells("--filters none --scene inside.toml");
   EXPECT_THAT(read_results()["warnings"].dump(), HasSubstr("the light reaches no surface in view"));
-}
-
-constexpr const char* kCookieRun = "--no-attribution --filters none,pcf2x2 --scene lamp.toml";
-
-class CookieRun : public ProgramTest {
- protected:
-  /// The scene `lamp` with more lines in its [light].
-  void write_lamp(const std::string& lines) const {
-    std::string text = read_source("data/scenes/teaching/lamp.toml");
-    text.insert(text.find("type = \"spot\""), lines);
-    write("lamp.toml", text);
-  }
-
-  void write_cookie(const std::vector<float>& grey_columns) const {
-    images::Image picture(static_cast<int>(grey_columns.size()), 1, 3);
-    for (std::size_t i = 0; i < picture.texels.size(); ++i) picture.texels[i] = grey_columns[i / 3];
-    images::write_picture_png(folder() / "cookie.png", picture);
-  }
-
-  std::string run_lamp() const { return succeed(small(kCookieRun)).err; }
-};
-
-TEST_F(CookieRun, OfBlack_LeavesTheErrorsOfVisibility_AndNoneInThePicture) {
-  write_lamp("");
-  const json plain = measure(kCookieRun);
-  write_lamp("cookie = 'cookie.png'\n");
-  write_cookie({0.0f});
-  const json black = measure(kCookieRun);
-  ASSERT_EQ(black.size(), plain.size());
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    json without = plain[i]["error"], with = black[i]["error"];
-    EXPECT_GT(without["flip"], 0.001);
-    EXPECT_EQ(with["flip"], 0.0) << "the truth is shaded with the same cookie";
-    without.erase("flip");
-    with.erase("flip");
-    EXPECT_EQ(with, without);
-    EXPECT_EQ(black[i]["artefact"], plain[i]["artefact"]);
-  }
-}
-
-TEST_F(CookieRun, AnotherPictureInTheSameFile_IsNoticedWhenARunGoesOn) {
-  write_lamp("cookie = 'cookie.png'\n");
-  write_cookie({0.0f, 1.0f});
-  run_lamp();
-  EXPECT_THAT(run_lamp(), HasSubstr("2 of them finished before"));
-  write_cookie({1.0f, 0.0f});
-  EXPECT_THAT(run_lamp(), Not(HasSubstr("finished before")));
-}
-
-TEST_F(CookieRun, WithoutThePicture_IsRefused) {
-  write_lamp("cookie = 'cookie.png'\n");
-  expect_refusal(small(kCookieRun), 3, {"lamp.toml:10", "'cookie' in [light]", "there is no file", "cookie.png"});
 }
 
 /// A sun, a spot and a lamp that stands inside a building, without a camera: the city block where SHADOWBENCH_SCENES

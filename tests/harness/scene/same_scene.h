@@ -38,7 +38,7 @@ inline void expect_same_camera(const scene::Camera& a, const scene::Camera& b) {
   EXPECT_EQ(a.orthographic_height_m, b.orthographic_height_m) << a.name;
 }
 
-/// By what the name of a cell is made from, which holds every number of a light and its cookie's texels.
+/// By what the name of a cell is made from, which holds every number of a light.
 inline void expect_same_light(const scene::Light& a, const scene::Light& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(scene::list_light_content(a), scene::list_light_content(b)) << a.name;

@@ -53,11 +53,9 @@ TEST(GltfWriter, ASceneIsReadAsItWasWritten) {
       EXPECT_EQ(read.cameras[c].vertical_fov_rad, scene.cameras[c].vertical_fov_rad);
       EXPECT_EQ(read.cameras[c].orthographic_height_m, scene.cameras[c].orthographic_height_m);
     }
-    Light light = scene.light;
-    if (auto* spot = std::get_if<Spot>(&light.kind)) spot->cookie.reset();  // it is left out
     Light back = read.light;
     if (auto* sun = std::get_if<Sun>(&back.kind)) sun->direction_ws += 0.0f;  // makes 0 of -0
-    EXPECT_EQ(list_light_content(back).front(), list_light_content(light).front());
+    EXPECT_EQ(list_light_content(back).front(), list_light_content(scene.light).front());
   }
 }
 
