@@ -332,10 +332,12 @@ std::string describe_unseen_light(const options::RunOptions& options, const scen
   std::vector<scene::Camera> views;
   for (const scene::Camera* each : choose_views(options, scene)) views.push_back(*each);
   const double aspect = static_cast<double>(options.width) / options.height;
-  const std::string advice = scene::advise_on_unseen_light(scene, views, aspect);
-  if (views.empty() || advice.empty()) return "";
-  return fmt::format("{}: the light reaches no surface in view, so that nothing is tested under it; {}", scene.name,
-                     advice);
+  if (views.empty() || scene::is_light_in_view(scene, views, aspect)) return "";
+  return fmt::format(
+      "{}: the light reaches no surface in view, so that nothing is tested under it; give its file another place of "
+      "the "
+      "light, or a [[camera]] that sees what it lights",
+      scene.name);
 }
 
 /// The map of a sun has no behind, and a light without a cone shines there too.

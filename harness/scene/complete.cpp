@@ -292,7 +292,7 @@ void choose_for_light(Scene& scene, const Scene& lit, const ViewFreedom& free, d
     scene.cameras.push_back(frame_choice(free.sun ? scene : lit, choice, aspect, free));
     if (!light.empty()) scene.cameras.back().name = scene.cameras.back().light = light;
   }
-  // Of a light that reaches nothing in view, who draws the scene says more: advise_on_unseen_light().
+  // Of a light that reaches nothing in view, who draws the scene says more: is_light_in_view().
   if (choice.tried > 0 && choice.edges.lit == 0) return;
   (choice.shows_edges() ? scene.notes : scene.warnings).push_back(describe_choice(choice, free, light));
 }
