@@ -50,7 +50,7 @@ const kRuns = {
 const make = (name) => {
   const words = kRuns[name];
   rmSync(join(folder, name, "results.json"), { force: true });  // else a run that is finished writes no page
-  const { status, stderr } = spawnSync(program, [...words, "--cache", "cache", "--out", name], { cwd: folder, encoding: "utf8" });
+  const { status, stderr } = spawnSync(program, [...words, "--out", name], { cwd: folder, encoding: "utf8", env: { ...process.env, XDG_CACHE_HOME: folder } });
   if (status !== 0) {
     console.error(`shadowbench ${words.join(" ")} ended with ${status}:\n${stderr}`);
     process.exit(1);
