@@ -109,7 +109,7 @@ int advise(const AdviseArguments& arguments) {
   const analysis::Advice advice = analysis::advise(results.cells, request);
   if (arguments.json) {
     const auto json = pages::make_advice_json(results.run, advice);
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
     print("{}", pages::make_advice_text(results.run, advice));
   }
@@ -129,7 +129,7 @@ Command make_advise_command() {
       "configurations not clearly better than 'none' are left out.\nA configuration that was not measured on every "
       "scene, did not finish, or lacks a limited value is left out. A fault with too few receivers in a scene is "
       "judged on the other scenes. Times from different machines are never compared: estimates, fetches or bytes take "
-      "their place.\nExit code 1: nothing keeps the limits; the message names the ones in the way.";
+      "their place.\nExit code 1: nothing keeps the limits; the message names what comes closest.";
   auto a = std::make_shared<AdviseArguments>();
   command.add("RUN", &a->run, "a run's folder, or its results.json").names(ValueKind::kFile).require();
   for (std::size_t i = 0; i < a->limits.size(); ++i) {

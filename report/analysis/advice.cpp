@@ -155,19 +155,19 @@ Verdict judge_claim(const Configuration& configuration, const std::string& claim
 std::variant<Candidate, Unjudged> judge(const Configuration& configuration, const Advice& advice, bool needs_rmse) {
   const AdviceRequest& request = advice.request;
   if (std::string gap = find_missing_cell(configuration, advice.places); !gap.empty())
-    return Unjudged{configuration, std::move(gap), {}};
+    return Unjudged{configuration, std::move(gap)};
   Candidate candidate{configuration, {}, {}, combine_rmse(configuration.cells)};
   candidate.seam = find_seam(configuration.cells);
   for (const Demand& demand : request.demands) {
     Verdict verdict = demand.spec ? judge_limit(configuration, demand, request.light, advice.places)
                                   : judge_claim(configuration, demand.claim);
-    if (!verdict.absent.empty()) return Unjudged{configuration, verdict.absent, candidate.verdicts.size()};
+    if (!verdict.absent.empty()) return Unjudged{configuration, verdict.absent};
     candidate.verdicts.push_back(std::move(verdict));
   }
   std::string gap = find_gap(configuration.cells, cost_spec(request.cheapest), request.light, advice.places);
   if (gap.empty() && needs_rmse)
     gap = find_gap(configuration.cells, limit_of(kRmseField), request.light, advice.places);
-  if (!gap.empty()) return Unjudged{configuration, std::move(gap), {}};
+  if (!gap.empty()) return Unjudged{configuration, std::move(gap)};
   candidate.cost = *measure_cost(configuration.cells, request.cheapest, request.light);
   return candidate;
 }
@@ -234,51 +234,17 @@ void take_out_no_gain(Advice& advice) {
     advice.no_gain = take_out(advice.keeping, std::not_fn(&Candidate::gains));
 }
 
-std::vector<std::size_t> list_failed(const Candidate& candidate) {
-  std::vector<std::size_t> failed;
-  for (std::size_t i = 0; i < candidate.verdicts.size(); ++i)
-    if (!candidate.verdicts[i].kept) failed.push_back(i);
-  return failed;
-}
-
-Obstacle find_obstacle(const Advice& advice, std::size_t demand) {
-  Obstacle obstacle;
-  for (std::size_t i = 0; i < advice.failing.size(); ++i) {
-    if (advice.failing[i].verdicts[demand].kept) continue;
-    ++obstacle.failing;
-    if (list_failed(advice.failing[i]).size() == 1) obstacle.alone.push_back(i);
-  }
-  for (const Unjudged& unjudged : advice.unjudged) obstacle.unknown += unjudged.demand == demand;
-  // The cheaper of two that are as near comes first. A claim has no size: there every one is as near.
-  std::ranges::stable_sort(obstacle.alone, {},
-                           [&](std::size_t i) { return advice.failing[i].verdicts[demand].worst.value_or(0.0); });
-  const Candidate* last = advice.keeping.empty() ? nullptr : &advice.keeping.front();
-  for (const std::size_t i : obstacle.alone) {
-    const Candidate& next = advice.failing[i];
-    if (!last || next.cost.mean >= last->cost.mean || compare_costs(next, *last, advice.request.cheapest).tied)
-      continue;
-    obstacle.buys.push_back(i);
-    last = &next;
-  }
-  return obstacle;
-}
-
-// How far beyond its limits a candidate is; beyond a limit of 0, or without a claim, infinitely.
-double measure_excess(const Candidate& candidate, const std::vector<Demand>& demands) {
-  double excess = 0.0;
-  for (const std::size_t i : list_failed(candidate)) {
+// How many limits a candidate breaks, and how far beyond one it is at most; beyond a limit of 0, or without a claim,
+// infinitely.
+std::pair<int, double> measure_excess(const Candidate& candidate, const std::vector<Demand>& demands) {
+  std::pair<int, double> broken;
+  for (std::size_t i = 0; i < demands.size(); ++i) {
+    if (candidate.verdicts[i].kept) continue;
     const double worst = candidate.verdicts[i].worst.value_or(kInfinity);
-    excess = std::max(excess, demands[i].most > 0.0 ? worst / demands[i].most : kInfinity);
+    ++broken.first;
+    broken.second = std::max(broken.second, demands[i].most > 0.0 ? worst / demands[i].most : kInfinity);
   }
-  return excess;
-}
-
-std::optional<std::size_t> find_closest(const Advice& advice) {
-  if (advice.failing.empty()) return std::nullopt;
-  const auto key = [&](const Candidate& candidate) {
-    return std::pair(list_failed(candidate).size(), measure_excess(candidate, advice.request.demands));
-  };
-  return static_cast<std::size_t>(std::ranges::min_element(advice.failing, {}, key) - advice.failing.begin());
+  return broken;
 }
 
 void require_gpu(const std::vector<records::CellRecord>& cells, const std::string& gpu) {
@@ -353,15 +319,11 @@ std::optional<Cost> measure_cost(const std::vector<const records::CellRecord*>& 
   return cost;
 }
 
-CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
+bool are_costs_tied(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
   const Cost &a = cheaper.cost, &b = dearer.cost;
-  CostGap gap{b.mean - a.mean, a.mean > 0.0 ? (b.mean - a.mean) / a.mean : 0.0, b.mean <= a.mean, Basis::kExact};
-  if (kind != CostKind::kTime) return gap;
+  if (kind != CostKind::kTime) return b.mean <= a.mean;
   const bool alike = cheaper.configuration.surroundings == dearer.configuration.surroundings;
-  const bool common = a.ci95 && b.ci95 && alike;
-  gap.basis = common ? Basis::kInterval : Basis::kQuartiles;
-  gap.tied = common ? a.ci95->high >= b.ci95->low : a.quartiles.high >= b.quartiles.low;
-  return gap;
+  return a.ci95 && b.ci95 && alike ? a.ci95->high >= b.ci95->low : a.quartiles.high >= b.quartiles.low;
 }
 
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request) {
@@ -381,25 +343,21 @@ Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest
       continue;
     }
     auto& candidate = std::get<Candidate>(verdict);
-    (list_failed(candidate).empty() ? advice.keeping : advice.failing).push_back(std::move(candidate));
+    const bool keeps = std::ranges::all_of(candidate.verdicts, &Verdict::kept);
+    (keeps ? advice.keeping : advice.failing).push_back(std::move(candidate));
   }
   sort_by_cost(advice.keeping, advice.request);
   compare_with_unfiltered(advice, asked);
   if (!request.whole) take_out_beaten(advice);
   if (!request.whole && !limits_what_is_seen(request)) take_out_no_gain(advice);
   sort_by_cost(advice.failing, advice.request);
-  for (std::size_t i = 0; i < request.demands.size(); ++i) advice.obstacles.push_back(find_obstacle(advice, i));
-  advice.closest = find_closest(advice);
+  std::ranges::stable_sort(advice.failing, {}, [&](const auto& each) { return measure_excess(each, request.demands); });
   return advice;
 }
 
 namespace {
 
 constexpr const char* kNoBest = "; no best one is named, as RMSEs are too uncertain: take more --phases";
-
-bool are_costs_told_apart(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind) {
-  return !compare_costs(cheaper, dearer, kind).tied;
-}
 
 // How far a candidate is below the straight line between two others, in the plane where they are (0, 1) and (1, 0).
 double measure_knee(const Candidate& fast, const Candidate& best, const Candidate& candidate) {
@@ -420,13 +378,12 @@ std::optional<std::size_t> find_best(const std::vector<Candidate>& keeping) {
 
 std::optional<std::size_t> find_knee(const std::vector<Candidate>& keeping, std::size_t last, const CostKind& kind) {
   const Candidate &fast = keeping.front(), &best = keeping[last];
-  if (!are_costs_told_apart(fast, best, kind)) return std::nullopt;
+  if (are_costs_tied(fast, best, kind)) return std::nullopt;
   std::optional<std::size_t> knee;
   double most = 0.0;
   for (std::size_t i = 1; i < last; ++i) {
     const double below = measure_knee(fast, best, keeping[i]);
-    if (below <= most || !is_clearly_less_error(*keeping[i].rmse, *fast.rmse) ||
-        !are_costs_told_apart(keeping[i], best, kind))
+    if (below <= most || !is_clearly_less_error(*keeping[i].rmse, *fast.rmse) || are_costs_tied(keeping[i], best, kind))
       continue;
     knee = i;
     most = below;
@@ -441,8 +398,8 @@ std::size_t avoid_seam(const std::vector<Candidate>& keeping, std::size_t pick, 
   for (std::size_t i = 0; own.rmse && i < keeping.size(); ++i) {
     const Candidate& other = keeping[i];
     if (other.seam >= keeping[least].seam || !other.rmse) continue;
-    const bool apart = are_costs_told_apart(i < pick ? other : own, i < pick ? own : other, kind);
-    if (!apart && !is_clearly_less_error(*other.rmse, *own.rmse) && !is_clearly_less_error(*own.rmse, *other.rmse))
+    const bool tied = are_costs_tied(i < pick ? other : own, i < pick ? own : other, kind);
+    if (tied && !is_clearly_less_error(*other.rmse, *own.rmse) && !is_clearly_less_error(*own.rmse, *other.rmse))
       least = i;
   }
   return least;
@@ -464,7 +421,7 @@ std::string explain_balanced(const Candidate& fast, const Candidate& knee, const
 
 /// How many times the cost of the fast one; nothing where that cannot be said.
 std::optional<double> compare_with_fast(const Candidate& fast, const Candidate& best, const CostKind& kind) {
-  if (!are_costs_told_apart(fast, best, kind) || fast.cost.mean <= 0.0) return std::nullopt;
+  if (are_costs_tied(fast, best, kind) || fast.cost.mean <= 0.0) return std::nullopt;
   return best.cost.mean / fast.cost.mean;
 }
 

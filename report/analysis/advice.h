@@ -89,34 +89,11 @@ bool limits_what_is_seen(const AdviceRequest& request);
 struct Unjudged {
   Configuration configuration;
   std::string reason;
-  std::optional<std::size_t> demand;  ///< the first one that has no value
 };
 
-/// Which spread decided whether two costs differ.
-enum class Basis {
-  kExact,      ///< all but times have none
-  kInterval,   ///< 95 % intervals, measured under the same circumstances
-  kQuartiles,  ///< of the times, where circumstances differ or there is no interval
-};
-
-/// How much more one configuration costs than another.
-struct CostGap {
-  double difference = 0.0;  ///< of the means, 0 or more
-  double share = 0.0;       ///< of the cheaper one's mean; 0 where that is 0
-  bool tied = false;        ///< the intervals overlap, or exact costs are equal
-  Basis basis = Basis::kExact;
-};
-
-/// Compares two costs. Requires that the mean of `cheaper` is not above that of `dearer`.
-CostGap compare_costs(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind);
-
-/// How far one demand is in the way. Indices are into Advice::failing.
-struct Obstacle {
-  std::size_t failing = 0;         ///< judged configurations that fail it
-  std::size_t unknown = 0;         ///< configurations that have no value for it
-  std::vector<std::size_t> alone;  ///< those that fail it alone, the one that fails it by the least first
-  std::vector<std::size_t> buys;   ///< of these, those that cost less than the advised one and all before them
-};
+/// Whether two costs are the same, or their intervals overlap: the 95 % intervals of times that were measured under the
+/// same circumstances, else their quartiles. Requires that the mean of `cheaper` is not above that of `dearer`.
+bool are_costs_tied(const Candidate& cheaper, const Candidate& dearer, const CostKind& kind);
 
 /// What can be said about a choice.
 struct Advice {
@@ -128,10 +105,8 @@ struct Advice {
   std::vector<Candidate> keeping;  ///< all demands, unbeaten, cheapest first: the first is advised
   std::vector<Candidate> beaten;   ///< keep all demands, but one that does so too beats them; cheapest first
   std::vector<Candidate> no_gain;  ///< unbeaten, but no better than unfiltered, where nothing that is seen is limited
-  std::vector<Candidate> failing;  ///< cheapest first
+  std::vector<Candidate> failing;  ///< nearest first: fails the fewest demands, among those by the least
   std::vector<Unjudged> unjudged;
-  std::vector<Obstacle> obstacles;     ///< one per demand
-  std::optional<std::size_t> closest;  ///< index into `failing`: fails the fewest demands, among those by the least
 };
 
 /// Finds the configurations that keep every demand in every place, the worst place deciding, and that no other which

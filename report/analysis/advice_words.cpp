@@ -17,62 +17,6 @@
 namespace shadowbench::analysis {
 namespace {
 
-// What the order by cost hides: the one that is named second may be the more accurate.
-std::string compare_errors(const Candidate& first, const Candidate& second) {
-  const std::optional<Estimate>&a = first.rmse, &b = second.rmse;
-  if (!a || !b) return "";
-  const bool is_lower = b->value < a->value;
-  const Estimate gap = is_lower ? subtract(*a, *b) : subtract(*b, *a);
-  if (gap.value == 0.0) return "; it has the same RMSE";
-  const auto number = [](double value) { return records::format_number(value); };
-  if (gap.low <= 0.0)
-    return fmt::format("; its RMSE is {} by no more than is uncertain, {} [{}, {}]", is_lower ? "lower" : "higher",
-                       number(gap.value), number(gap.low), number(gap.high));
-  const std::string interval = gap.low < gap.high ? fmt::format(" [{}, {}]", number(gap.low), number(gap.high)) : "";
-  return fmt::format("; its RMSE is {} by {}{}", is_lower ? "lower" : "higher", number(gap.value), interval);
-}
-
-// Follows the order that advise() gives to equal costs.
-std::string explain_order(const Candidate& first, const Candidate& second, LightMotion light) {
-  const auto time_a = measure_cost(first.configuration.cells, CostKind::kTime, light),
-             time_b = measure_cost(second.configuration.cells, CostKind::kTime, light);
-  if (time_a && (!time_b || time_a->mean < time_b->mean)) return "its shorter time";
-  return "standing first in the run";
-}
-
-std::string describe_tie(const Advice& advice, const CostGap& gap) {
-  const Candidate &first = advice.keeping[0], &second = advice.keeping[1];
-  const std::string& name = first.configuration.name;
-  if (gap.basis == Basis::kExact) {
-    return fmt::format("a tie, at the same cost: {} is named first for {}", name,
-                       explain_order(first, second, advice.request.light));
-  }
-  return fmt::format("a tie, for their {} overlap: {} is named first for its lower mean",
-                     gap.basis == Basis::kInterval ? "95 % intervals" : "quartiles", name);
-}
-
-std::string count_ties(const Advice& advice) {
-  std::vector<std::string> labels;
-  for (std::size_t i = 2; i < advice.keeping.size(); ++i) {
-    const CostGap gap = compare_costs(advice.keeping[0], advice.keeping[i], advice.request.cheapest);
-    if (!gap.tied) continue;
-    labels.push_back(advice.keeping[i].configuration.name);
-  }
-  if (labels.empty()) return "";
-  if (labels.size() > 3) return fmt::format("; {} more are tied with it", labels.size());
-  return fmt::format("; tied with it too: {}", fmt::join(labels, ", "));
-}
-
-std::string describe_obstacle(const Advice& advice, std::size_t i) {
-  const Obstacle& obstacle = advice.obstacles[i];
-  const Candidate& nearest = advice.failing[obstacle.alone.front()];
-  const auto worst = nearest.verdicts[i].worst;
-  const std::string way = worst ? format_limit(*worst) + " would let" : "without it there is";
-  return fmt::format("{} ({} {} it alone; {} {}{})", describe_demand(advice.request.demands[i]), obstacle.alone.size(),
-                     obstacle.alone.size() > 1 ? "fail" : "fails", way, nearest.configuration.name,
-                     worst ? " through" : "");
-}
-
 std::string list_settings_that_vary(const std::set<std::string>& values) {
   return values.size() > 1 ? fmt::format("{}", fmt::join(values, ", ")) : "";
 }
@@ -217,29 +161,14 @@ std::string describe_cost(const Advice& advice) {
                              : make_frame_measure(request.cheapest, request.light, list_judged_cells(advice)).meaning);
 }
 
-std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl) {
-  assert(advice.keeping.size() > 1);
-  const CostKind kind = advice.request.cheapest;
-  const CostGap gap = compare_costs(advice.keeping[0], advice.keeping[1], kind);
-  const std::string errors = compare_errors(advice.keeping[0], advice.keeping[1]);
-  if (gap.tied) return describe_tie(advice, gap) + errors + count_ties(advice);
-  const char* apart = gap.basis == Basis::kExact      ? ""
-                      : gap.basis == Basis::kInterval ? "; the 95 % intervals are apart"
-                                                      : "; the quartiles are apart";
-  return fmt::format("dearer by {} ({:.0f} %){}{}", format_cost(gap.difference, kind, gl), 100.0 * gap.share, apart,
-                     errors);
-}
-
-std::string describe_closest(const Advice& advice) {
-  assert(advice.closest);
-  const Candidate& closest = advice.failing[*advice.closest];
+std::string describe_broken(const Advice& advice, const Candidate& candidate) {
   std::vector<std::string> broken;
-  for (std::size_t i = 0; i < closest.verdicts.size(); ++i) {
-    if (closest.verdicts[i].kept) continue;
-    const auto worst = closest.verdicts[i].worst;
+  for (std::size_t i = 0; i < candidate.verdicts.size(); ++i) {
+    if (candidate.verdicts[i].kept) continue;
+    const auto worst = candidate.verdicts[i].worst;
     broken.push_back(describe_demand(advice.request.demands[i]) + (worst ? " with " + format_limit(*worst) : ""));
   }
-  return fmt::format("{} comes closest, and breaks {}", closest.configuration.name, fmt::join(broken, " and "));
+  return fmt::format("{}", fmt::join(broken, " and "));
 }
 
 JudgedLights count_judged_lights(const Advice& advice) {
@@ -265,12 +194,8 @@ std::string describe_failure(const Advice& advice) {
   const std::size_t total = advice.failing.size() + advice.unjudged.size();
   if (advice.failing.empty())
     return fmt::format("none of {} configurations can be judged: {}", total, fmt::join(count_unjudged(advice), "; "));
-  std::vector<std::string> obstacles;
-  for (std::size_t i = 0; i < advice.obstacles.size(); ++i)
-    if (!advice.obstacles[i].alone.empty()) obstacles.push_back(describe_obstacle(advice, i));
-  return fmt::format("none of {} configurations keeps the limits; {}", total,
-                     obstacles.empty() ? "no single one is in the way: " + describe_closest(advice)
-                                       : fmt::format("in the way: {}", fmt::join(obstacles, ", ")));
+  return fmt::format("none of {} configurations keeps the limits; {} comes closest, and breaks {}", total,
+                     advice.failing.front().configuration.name, describe_broken(advice, advice.failing.front()));
 }
 
 std::vector<std::string> list_advice_notes(const Advice& advice, const records::GlRecord& gl) {
@@ -283,8 +208,6 @@ std::vector<std::string> list_advice_notes(const Advice& advice, const records::
         fmt::format("Left out, as another is no dearer and has no larger RMSE: {}.", list_names(advice.beaten)));
   for (std::string& note : list_run_notes(advice, gl)) notes.push_back(std::move(note));
   add_notes_of_nothing_to_see(notes, advice);
-  if (std::string best = describe_best_map(list_map_families(list_judged_cells(advice))); !best.empty())
-    notes.push_back(std::move(best));
   if (advice.keeping.empty()) return notes;
   for (const records::CellRecord* cell : advice.keeping.front().configuration.cells) {
     if (cell->nan.value_or(0) == 0) continue;

@@ -29,11 +29,8 @@ std::string describe_frame(const AdviceRequest& request);
 /// Says what its cost is: of a frame, of which one, and what is left out.
 std::string describe_cost(const Advice& advice);
 
-/// Why the runner-up lost, or that it ties and why it is named second. Requires two that keep the demands.
-std::string describe_runner_up(const Advice& advice, const records::GlRecord& gl);
-
-/// Which demands the closest of those that fail breaks, and by what. Requires that there is one.
-std::string describe_closest(const Advice& advice);
+/// Which demands a candidate that fails breaks, and by what: "--max-rmse 0.03 with 0.04 and --max-ms 5 with 10".
+std::string describe_broken(const Advice& advice, const Candidate& candidate);
 
 /// Of how many lights of a run is known which filter is better.
 struct JudgedLights {
@@ -47,7 +44,7 @@ JudgedLights count_judged_lights(const Advice& advice);
 /// Says it on one line, with the lights that were not tested and why; empty where all were.
 std::string describe_judged_lights(const Advice& advice);
 
-/// Says on one line which demands are in the way. Requires that nothing keeps them all.
+/// Says on one line what is nearest to the demands. Requires that nothing keeps them all.
 std::string describe_failure(const Advice& advice);
 
 /// Says in one sentence each what weakens the advice.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,29 +18,6 @@ std::optional<double> find_mean(const Configuration& configuration, const CostKi
   return cost ? std::optional(cost->mean) : std::nullopt;
 }
 
-/// The costs that were estimated and measured.
-struct Pairs {
-  std::vector<const GpuCost*> costs;
-  std::vector<double> estimated, measured;
-};
-
-Pairs list_pairs(const std::vector<GpuCost>& costs) {
-  Pairs pairs;
-  for (const GpuCost& cost : costs) {
-    if (!cost.estimate_ms || !cost.measured_ms) continue;
-    pairs.costs.push_back(&cost);
-    pairs.estimated.push_back(*cost.estimate_ms);
-    pairs.measured.push_back(*cost.measured_ms);
-  }
-  return pairs;
-}
-
-/// The place of a value among values, the smallest first, counted from 1.
-std::ptrdiff_t find_rank(const std::vector<double>& values, double value) {
-  return 1 + std::ranges::count_if(
-                 values, [&](double other) { return other < value; });
-}
-
 const records::ShaderFacts* find_facts(const records::GpuRecord& record, const char* pass) {
   const auto found = std::ranges::find(record.facts, pass, &records::GpuPassRecord::pass);
   return found == record.facts.end() ? nullptr : &found->facts;
@@ -51,40 +27,6 @@ int count_loops(const records::GpuRecord& record) {
   int loops = 0;
   for (const records::GpuPassRecord& pass : record.facts) loops += pass.facts.loops;
   return loops;
-}
-
-/// The filter that stands farthest apart in the two orders.
-std::string describe_farthest(const Pairs& pairs) {
-  std::size_t farthest = 0;
-  std::ptrdiff_t most = 0;
-  for (std::size_t i = 0; i < pairs.costs.size(); ++i) {
-    const std::ptrdiff_t apart =
-        std::abs(find_rank(pairs.estimated, pairs.estimated[i]) - find_rank(pairs.measured, pairs.measured[i]));
-    if (apart <= most) continue;
-    most = apart;
-    farthest = i;
-  }
-  if (most == 0) return "";
-  return fmt::format(" Farthest apart is {}: number {} here, cheapest first, and {} there.",
-                     pairs.costs[farthest]->configuration->name, find_rank(pairs.measured, pairs.measured[farthest]),
-                     find_rank(pairs.estimated, pairs.estimated[farthest]));
-}
-
-/// The configurations whose estimates are within a hundredth of one of them, and that the same resource bounds: of
-/// several such groups the largest, of three at least.
-std::vector<const GpuCost*> find_level_group(const std::vector<GpuCost>& costs) {
-  std::vector<const GpuCost*> largest;
-  for (const GpuCost& first : costs) {
-    std::vector<const GpuCost*> group;
-    for (const GpuCost& other : costs) {
-      const bool is_level = first.estimate_ms && other.estimate_ms && *other.estimate_ms >= *first.estimate_ms &&
-                            *other.estimate_ms <= 1.01 * *first.estimate_ms;
-      if (is_level && other.record->estimate->bound_by == first.record->estimate->bound_by) group.push_back(&other);
-    }
-    if (group.size() > largest.size()) largest = group;
-  }
-  if (largest.size() < 3) largest.clear();
-  return largest;
 }
 
 }  // namespace
@@ -120,32 +62,8 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
   return costs;
 }
 
-std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs) {
-  const Pairs pairs = list_pairs(costs);
-  const std::size_t count = pairs.costs.size();
-  if (count < 3) return std::nullopt;
-  std::vector<double> work(2 * count);
-  const double correlation =
-      gsl_stats_spearman(pairs.estimated.data(), 1, pairs.measured.data(), 1, count, work.data());
-  return std::isfinite(correlation) ? std::optional(correlation) : std::nullopt;
-}
-
 std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs) {
   std::vector<std::string> sentences;
-  const Pairs pairs = list_pairs(costs);
-  if (const auto correlation = correlate_ranks(costs)) {
-    sentences.push_back(
-        fmt::format("{}: over {} configurations, the rank correlation of estimates and times here (moving light) is "
-                    "{:.2f}.{}",
-                    gpu, pairs.costs.size(), *correlation, describe_farthest(pairs)));
-  }
-  if (const auto level = find_level_group(costs); !level.empty()) {
-    std::vector<std::string> names;
-    for (const GpuCost* cost : level) names.push_back(cost->configuration->name);
-    sentences.push_back(fmt::format("{}: {} cost the same, {} ms: what bounds them all is {}.", gpu,
-                                    fmt::join(names, ", "), records::format_number(level.front()->estimate_ms),
-                                    level.front()->record->estimate->bound_by));
-  }
   std::vector<std::string> looped, spilled;
   for (const GpuCost& cost : costs) {
     const std::string& name = cost.configuration->name;

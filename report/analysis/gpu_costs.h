@@ -33,12 +33,7 @@ struct GpuCost {
 /// The costs of all configurations that have a record of the GPU and are right everywhere.
 std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurations, const std::string& gpu);
 
-/// How alike two orders of the same filters are: Spearman's rank correlation of estimated and measured costs, 1 for the
-/// same order, -1 for the opposite; nothing for fewer than three that have both.
-std::optional<double> correlate_ranks(const std::vector<GpuCost>& costs);
-
-/// Says how alike the orders are, which filter's place differs most, which filters cost the same, and what was refused
-/// or guessed.
+/// Says what was refused or guessed.
 std::vector<std::string> describe_gpu(const std::string& gpu, const std::vector<GpuCost>& costs);
 
 /// One row for each configuration that the GPU's compiler took: the estimate, beside the time of the GPU that drew the

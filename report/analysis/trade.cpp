@@ -258,9 +258,6 @@ bool has_several_fits(std::span<const MapPoint> maps) {
       maps, [&](const MapPoint& map) { return map.name != maps.front().name; });
 }
 
-/// Layers that share the bytes of one map are rounded down to whole texels.
-constexpr double kEqualBytes = 0.99;
-
 /// The maps that all families have.
 MapFamily join_families(const std::vector<MapFamily>& families, const Quantity& cost) {
   std::map<std::pair<std::string, int>, std::vector<MapPoint>> by_map;
@@ -282,27 +279,6 @@ MapFamily join_families(const std::vector<MapFamily>& families, const Quantity& 
   }
   std::ranges::stable_sort(joined.maps, {}, &MapPoint::bytes);
   return joined;
-}
-
-/// The least error of every kind of fit but that of `best`, ascending.
-std::string list_other_fits(std::span<const MapPoint> maps, const MapPoint& best) {
-  std::vector<MapPoint> others(maps.begin(), maps.end());
-  std::ranges::sort(others, {}, [](const MapPoint& each) { return each.rmse.value; });
-  std::set<std::string> kinds = {best.kind};
-  std::vector<std::string> texts;
-  for (const MapPoint& each : others)
-    if (kinds.insert(each.kind).second)
-      texts.push_back(fmt::format("{} by {}", records::format_number(each.rmse.value), each.name));
-  return texts.empty() ? "" : fmt::format(" ({})", fmt::join(texts, "; "));
-}
-
-/// Of those whose error is not clearly above the least, the one with the least seam; one without any goes first.
-const MapPoint& choose_map(std::span<const MapPoint> maps) {
-  const MapPoint& least = *std::ranges::min_element(maps, {}, [](const MapPoint& each) { return each.rmse.value; });
-  const MapPoint* best = &least;
-  for (const MapPoint& each : maps)
-    if (each.seam < best->seam && !is_clearly_less_error(least.rmse, each.rmse)) best = &each;
-  return *best;
 }
 
 }  // namespace
@@ -370,29 +346,6 @@ std::vector<MapFamily> list_map_families(const std::vector<const records::CellRe
     if (MapFamily joined = join_families(families, cost); has_several_fits(joined.maps))
       families.insert(families.begin(), std::move(joined));
   return families;
-}
-
-std::string describe_best_map(const std::vector<MapFamily>& families) {
-  if (families.empty()) return {};
-  const MapFamily& family = families.front();
-  std::string text;
-  for (std::span<const MapPoint> rest = family.maps; !rest.empty();) {
-    const double bytes = rest.back().bytes;
-    const auto first =
-        std::ranges::find_if(rest, [&](const MapPoint& each) { return each.bytes > kEqualBytes * bytes; });
-    const std::span<const MapPoint> maps(first, rest.end());
-    rest = {rest.begin(), first};
-    if (!has_several_fits(maps)) continue;
-    const MapPoint& best = choose_map(maps);
-    const auto ties = std::ranges::count_if(
-        maps, [&](const MapPoint& each) { return &each != &best && !is_clearly_less_error(best.rmse, each.rmse); });
-    text += fmt::format("{} {}: {}, {} texels a side, RMSE {}", text.empty() ? "Best map at" : "; at",
-                        records::format_bytes(bytes), best.name, best.size, records::format_number(best.rmse.value));
-    if (best.seam) text += ", seam " + records::format_number(best.seam);
-    if (ties > 0) text += fmt::format(", tied with {} other{}", ties, ties > 1 ? "s" : "");
-    if (rest.size() + maps.size() == family.maps.size()) text += list_other_fits(maps, best);
-  }
-  return text.empty() ? text : text + ".";
 }
 
 }  // namespace shadowbench::analysis

@@ -132,10 +132,4 @@ Quantity make_map_measure(const std::vector<const records::CellRecord*>& cells);
 /// have. Suspect cells, and those without error, bytes or time, are left out.
 std::vector<MapFamily> list_map_families(const std::vector<const records::CellRecord*>& cells);
 
-/// Says in one sentence which map has the least error at each number of bytes that maps of several fits have, and what
-/// the best of every other fit has at the most. Of maps whose errors are tied it is that with the least seam, or none.
-/// Empty
-/// where no two fits have maps of as many bytes.
-std::string describe_best_map(const std::vector<MapFamily>& families);
-
 }  // namespace shadowbench::analysis

@@ -14,8 +14,7 @@ std::string make_advice_text(const records::RunRecord& run, const analysis::Advi
 /// The answer alone: the sentence, then fast, balanced and best, a line each. Some configuration must be left.
 std::string make_answer_text(const records::RunRecord& run, const analysis::Advice& advice);
 
-/// Writes an advice as JSON. The same fields every time: a value that does not exist is null, and `absent` beside it
-/// says why.
-nlohmann::ordered_json make_advice_json(const records::RunRecord& run, const analysis::Advice& advice);
+/// Writes an advice as JSON, with the same fields every time. What cells have is in results.json, under their keys.
+nlohmann::json make_advice_json(const records::RunRecord& run, const analysis::Advice& advice);
 
 }  // namespace shadowbench::pages

@@ -66,8 +66,7 @@ json list_ties(const analysis::Advice& advice, std::size_t rank) {
   json ranges = json::array();
   std::size_t end = 0;
   for (std::size_t other = rank + 1; other < advice.keeping.size(); ++other) {
-    const auto gap = analysis::compare_costs(advice.keeping[rank], advice.keeping[other], advice.request.cheapest);
-    if (!gap.tied) continue;
+    if (!analysis::are_costs_tied(advice.keeping[rank], advice.keeping[other], advice.request.cheapest)) continue;
     if (end != other) ranges.push_back({other, other});
     ranges.back()[1] = end = other + 1;
   }

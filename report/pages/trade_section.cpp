@@ -374,8 +374,6 @@ document::Section make_trade_section(const records::RunRecord& run, const std::v
   add_charts(section.blocks, "Error of maps of several fits, over their bytes",
              make_map_choice(trade.map_families, analysis::make_map_measure(analysis::point_to(cells)), run.gl),
              kMapsNote);
-  if (std::string best = analysis::describe_best_map(trade.map_families); !best.empty())
-    section.blocks.emplace_back(document::Paragraph{std::move(best)});
   return section;
 }
 

@@ -65,9 +65,9 @@ std::vector<double> list_told(const std::vector<CellRecord>& cells, const CellRe
   analysis::AdviceRequest request = pages::choose_request(cells);
   request.whole = true;
   const auto advice = pages::make_advice_json(records::make_run(), analysis::advise(cells, request));
-  EXPECT_EQ(advice["advised"]["cells"][0]["key"], cell.key);
-  told.push_back(advice["advised"]["cost"]["mean"]);
-  told.push_back(advice["advised"]["cells"][0]["cost"]);
+  EXPECT_EQ(advice["keeping"][0]["cells"][0]["key"], cell.key);
+  told.push_back(advice["keeping"][0]["cost"]["mean"]);
+  told.push_back(advice["keeping"][0]["cells"][0]["cost"]);
   told.push_back(advice["picks"][0]["cost"]);
   return told;
 }

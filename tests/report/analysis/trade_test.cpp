@@ -314,25 +314,7 @@ CellRecord with_rmse(CellRecord cell, double rmse) {
   return cell;
 }
 
-TEST(BestMap, IsTheLeastWrongOfAsManyBytes_AndOfTiesTheOneWithTheLeastSeam) {
-  const std::vector<CellRecord> cells = {with_rmse(make_map_cell("view", 2048), 0.10),
-                                         with_rmse(make_map_cell("lispsm", 2048), 0.06),
-                                         with_rmse(make_map_cell("lispsm", 1024), 0.08),
-                                         with_rmse(make_map_cell("view", 1024), 0.2),
-                                         make_cascades("0.5", 0.05, 0.01),
-                                         make_cascades("1", 0.0498, 0.03)};
-  EXPECT_EQ(
-      describe_best_map(list_map_families(point_to(cells))),
-      "Best map at 16 MiB: 4 cascades, split 0.5, 1024 texels a side, RMSE 0.05, seam 0.01, tied with 1 other (0.06 "
-      "by lispsm fit; 0.1 by view fit); at 4 MiB: lispsm fit, 1024 texels a side, RMSE 0.08.");
-  EXPECT_EQ(describe_best_map(list_map_families({&cells[1], &cells[3]})), "") << "nothing has as many bytes";
-  const MapFamily family = list_map_families({&cells[0], &cells[4]}).front();
-  EXPECT_THAT(family.maps, ElementsAre(testing::Field(&MapPoint::seam, std::optional(0.01)),
-                                       testing::Field(&MapPoint::seam, std::nullopt)));
-  EXPECT_EQ(describe_best_map(list_map_families({&cells[0], &cells[3]})), "") << "one fit";
-}
-
-TEST(BestMap, OfSeveralFilters_TakesTheRootMeanSquareOfTheMapsThatAllHave) {
+TEST(MapFamilies, OfSeveralFilters_TakeTheRootMeanSquareOfTheMapsThatAllHave) {
   const std::vector<CellRecord> cells = {with_rmse(make_map_cell("view", 2048), 0.03), make_cascades("1", 0.04, 0.0),
                                          with_rmse(make_map_cell("view", 2048, "esm"), 0.05),
                                          make_cascades("1", 0.01, 0.0, "esm"), make_cascades("0.5", 0.001, 0.0)};
@@ -341,8 +323,6 @@ TEST(BestMap, OfSeveralFilters_TakesTheRootMeanSquareOfTheMapsThatAllHave) {
   EXPECT_EQ(families[0].title, "all filters");
   ASSERT_THAT(families[0].maps, SizeIs(2)) << "esm was not measured with a split of 0.5";
   EXPECT_NEAR(families[0].maps[0].rmse.value, std::sqrt(0.5 * (0.04 * 0.04 + 0.01 * 0.01)), 1e-9);
-  EXPECT_THAT(describe_best_map(list_map_families(point_to(cells))),
-              testing::StartsWith("Best map at 16 MiB: 4 cascades, split 1,"));
 }
 
 }  // namespace
