@@ -16,9 +16,7 @@
 #include "harness/cli/terminal.h"
 #include "harness/run/compare_pictures.h"
 #include "reference/metrics/flip.h"
-#include "report/files/folder_lock.h"
 #include "report/images/heat_figures.h"
-#include "report/pages/comparison_page.h"
 #include "report/records/format.h"
 #include "report/regress/regress.h"
 
@@ -35,9 +33,8 @@ struct DiffArguments {
   std::optional<std::string> mask;
   double pixels_per_degree = metrics::kDefaultPixelsPerDegree;
   std::string metric = kAllMetrics;
-  std::optional<std::string> out;   ///< a PNG file
-  std::optional<std::string> html;  ///< a folder
-  bool force = false;
+  std::optional<std::string> out;  ///< a PNG file
+  std::string html;                ///< gone
   bool json = false;
 };
 
@@ -93,53 +90,39 @@ void require_picture(const std::filesystem::path& argument) {
 }
 
 /// The numbers in one line each.
-std::vector<std::pair<std::string, std::string>> list_numbers(const run::ComparisonOptions& options,
-                                                              const run::Comparison& result, bool in_full) {
-  std::vector<std::pair<std::string, std::string>> numbers;
+void print_text(const run::ComparisonOptions& options, const run::Comparison& result) {
+  const auto print_line = [](std::string_view name, const auto& value) { print("{:<11} {}\n", name, value); };
   for (const metrics::Metric& metric : options.metrics) {
     const std::string name(metric.name());
-    const auto value = result.values.find(name);
-    numbers.emplace_back(name, value == result.values.end() ? "absent: " + result.absent.at(name)
-                               : in_full                    ? fmt::format("{}", value->second)
-                                                            : records::format_number(value->second));
+    if (const auto value = result.values.find(name); value != result.values.end())
+      print_line(name, value->second);
+    else
+      print_line(name, "absent: " + result.absent.at(name));
   }
-  numbers.emplace_back("compared", fmt::format("{}", result.compared));
-  numbers.emplace_back("not_finite", fmt::format("{}", result.not_finite));
-  return numbers;
+  print_line("compared", result.compared);
+  print_line("not_finite", result.not_finite);
 }
 
-void write_images(const DiffArguments& arguments, const run::ComparisonOptions& options,
-                  const run::Comparison& result) {
-  const auto numbers = list_numbers(options, result, false);
-  const run::ComparedImages& made = *result.images;
-  if (arguments.out) {
-    std::vector<std::string> facts;
-    for (const auto& [name, value] : result.values)
-      facts.push_back(fmt::format("{} {}", name, records::format_number(value)));
-    std::string note = fmt::format("{}", fmt::join(facts, " · "));
-    if (const auto no_flip = result.absent.find("flip"); made.flip.empty())
-      note += "; no FLIP: " + (no_flip == result.absent.end() ? "" : no_flip->second);
-    images::write_figure(*arguments.out, {fmt::format("{} less {}", options.image, options.truth), note,
-                                          images::show_difference(made.difference, made.flip), 2});
-  }
-  if (!arguments.html) return;
-  const files::FolderLock lock(*arguments.html, arguments.force);
-  pages::write_comparison_page(*arguments.html, {options.image, options.truth, made.image, made.truth, made.image_grey,
-                                                 made.truth_grey, made.mask, made.flip, numbers});
+void write_image(const std::string& file, const run::ComparisonOptions& options, const run::Comparison& result) {
+  std::vector<std::string> facts;
+  for (const auto& [name, value] : result.values)
+    facts.push_back(fmt::format("{} {}", name, records::format_number(value)));
+  std::string note = fmt::format("{}", fmt::join(facts, " · "));
+  if (const auto no_flip = result.absent.find("flip"); result.flip.empty())
+    note += "; no FLIP: " + (no_flip == result.absent.end() ? "" : no_flip->second);
+  images::write_figure(file, {fmt::format("{} less {}", options.image, options.truth), note,
+                              images::show_difference(result.difference, result.flip), 2});
 }
 
 /// Refuses what would be written over a picture that is read.
-void check_outputs(const DiffArguments& arguments) {
-  if (arguments.out && std::filesystem::path(*arguments.out).extension() != ".png")
-    fail(fmt::format("--out: '{}' must end in .png; --html writes a page", *arguments.out));
+void check_output(const DiffArguments& arguments) {
+  if (!arguments.out) return;
+  if (std::filesystem::path(*arguments.out).extension() != ".png")
+    fail(fmt::format("--out: '{}' must end in .png", *arguments.out));
   for (const std::string& read : {arguments.image, arguments.truth, arguments.mask.value_or("")}) {
-    const std::filesystem::path file = read.substr(0, read.find('#'));
     std::error_code ignored;
-    if (arguments.out && std::filesystem::equivalent(file, *arguments.out, ignored))
+    if (std::filesystem::equivalent(read.substr(0, read.find('#')), *arguments.out, ignored))
       fail(fmt::format("--out: '{}' is read by this command and would be lost: choose another file", *arguments.out));
-    if (arguments.html &&
-        std::filesystem::equivalent(file.parent_path(), std::filesystem::path(*arguments.html) / "images", ignored))
-      fail(fmt::format("--html: '{}' holds '{}', which could be lost: choose another folder", *arguments.html, read));
   }
 }
 
@@ -147,13 +130,13 @@ int diff(const DiffArguments& arguments) {
   require_picture(arguments.image);
   require_picture(arguments.truth);
   check_pixels_per_degree(arguments.pixels_per_degree);
-  check_outputs(arguments);
+  check_output(arguments);
   const run::ComparisonOptions options{arguments.image,
                                        arguments.truth,
                                        arguments.mask,
                                        choose_metrics(arguments.metric),
                                        arguments.pixels_per_degree,
-                                       arguments.out || arguments.html};
+                                       arguments.out.has_value()};
   const run::Comparison result = run::compare_pictures(options);
   for (const std::string& warning : result.warnings) print_message("warning: {}\n", warning);
   if (arguments.json) print_json(options, result);
@@ -161,9 +144,8 @@ int diff(const DiffArguments& arguments) {
     throw Error(ErrorKind::kInput, fmt::format("nothing can be compared: {}", result.absent.begin()->second),
                 options.image + " and " + options.truth);
   }
-  if (result.images) write_images(arguments, options, result);
-  if (arguments.json) return 0;
-  for (const auto& [name, value] : list_numbers(options, result, true)) print("{:<11} {}\n", name, value);
+  if (arguments.out) write_image(*arguments.out, options, result);
+  if (!arguments.json) print_text(options, result);
   return 0;
 }
 
@@ -237,8 +219,7 @@ Command make_diff_command() {
   command.add("--mask", &a->mask, "one-channel image; pixels count where it is not 0").names(ValueKind::kFile);
   command.add("--pixels-per-degree", &a->pixels_per_degree, "resolution of FLIP's observer");
   command.add("--out", &a->out, "PNG of the signed difference and of FLIP, with scales").names(ValueKind::kFile);
-  command.add("--html", &a->html, "page to compare the two images").names(ValueKind::kFolder);
-  add_force_option(command, a->force);
+  command.add("--html", &a->html, "").gone("--out draws the difference");
   add_json_option(command, a->json);
   command.action = [a](const CommandLine&) { return diff(*a); };
   return command;

@@ -182,24 +182,20 @@ images::Image average_channels(const images::Image& image) {
   return grey;
 }
 
-ComparedImages make_images(const Pair& pair, const ComparisonOptions& options) {
+void add_images(Comparison& result, const Pair& pair, double pixels_per_degree) {
   const images::Image &a = pair.image.image, &b = pair.truth.image;
-  const bool has_colors = a.channels == 1 || a.channels == 3;
-  ComparedImages made{{}, {}, average_channels(a), average_channels(b), images::Image(a.width, a.height, 1), {}, {}};
-  for (std::size_t i = 0; i < made.difference.texels.size(); ++i)
-    made.difference.texels[i] = !pair.counts[i] ? std::numeric_limits<float>::infinity()
-                                : pair.mask[i]  ? made.image_grey.texels[i] - made.truth_grey.texels[i]
-                                                : std::numeric_limits<float>::quiet_NaN();
-  if (options.mask) made.mask = images::make_image(a.width, a.height, pair.counts);
-  if (!has_colors) return made;
-  made.image = to_linear_rgb(pair.image);
-  made.truth = to_linear_rgb(pair.truth);
-  const auto seen = measure::view_picture(made.image, options.pixels_per_degree),
-             expected = measure::view_picture(made.truth, options.pixels_per_degree);
-  if (!seen || !expected) return made;
-  made.flip = images::Image(a.width, a.height, 1);
-  made.flip.texels = metrics::measure_flip(*seen, *expected);
-  return made;
+  const images::Image grey = average_channels(a), expected_grey = average_channels(b);
+  result.difference = images::Image(a.width, a.height, 1);
+  for (std::size_t i = 0; i < grey.texels.size(); ++i)
+    result.difference.texels[i] = !pair.counts[i] ? std::numeric_limits<float>::infinity()
+                                  : pair.mask[i]  ? grey.texels[i] - expected_grey.texels[i]
+                                                  : std::numeric_limits<float>::quiet_NaN();
+  if (a.channels != 1 && a.channels != 3) return;
+  const auto seen = measure::view_picture(to_linear_rgb(pair.image), pixels_per_degree),
+             expected = measure::view_picture(to_linear_rgb(pair.truth), pixels_per_degree);
+  if (!seen || !expected) return;
+  result.flip = images::Image(a.width, a.height, 1);
+  result.flip.texels = metrics::measure_flip(*seen, *expected);
 }
 
 }  // namespace
@@ -208,7 +204,7 @@ Comparison compare_pictures(const ComparisonOptions& options) {
   const Pair pair = read_pair(options);
   Comparison result = describe(pair);
   add_metrics(result, pair, options);
-  if (options.images) result.images = make_images(pair, options);
+  if (options.images) add_images(result, pair, options.pixels_per_degree);
   return result;
 }
 

@@ -19,19 +19,7 @@ struct ComparisonOptions {
   std::optional<std::string> mask;       ///< pixels count where it is not 0; empty: all do
   std::vector<metrics::Metric> metrics;  ///< out of metrics::picture_metrics()
   double pixels_per_degree = 0.0;        ///< for FLIP; positive
-  bool images = false;                   ///< give the images too
-};
-
-/// What people look at of a comparison.
-struct ComparedImages {
-  images::Image image;       ///< linear RGB; empty where there are neither 1 nor 3 channels
-  images::Image truth;       ///< the same
-  images::Image image_grey;  ///< 1 channel: mean over the channels of the values as stored
-  images::Image truth_grey;  ///< the same
-  images::Image difference;  ///< 1 channel: the first grey less the second; NaN where one is not finite, infinite where
-                             ///< a pixel does not count
-  images::Image mask;        ///< 1 channel: 1 where a pixel counts; empty where there is no mask
-  images::Image flip;        ///< 1 channel; empty where there is none
+  bool images = false;                   ///< give `difference` and `flip` too
 };
 
 /// What a comparison gave.
@@ -44,7 +32,9 @@ struct Comparison {
   std::map<std::string, double> values;       ///< by metric's name, image less truth; only those that exist
   std::map<std::string, std::string> absent;  ///< metric's name to why it does not exist
   std::vector<std::string> warnings;
-  std::optional<ComparedImages> images;  ///< where they were asked for
+  images::Image difference;  ///< 1 channel: the means over the channels, first less second; NaN where one is not
+                             ///< finite, infinite where a pixel does not count
+  images::Image flip;  ///< 1 channel; empty where there is none
 };
 
 /// Compares two pictures as a run compares its own: measure_error() over all channels of the values as stored, and

@@ -1,90 +1,42 @@
 #include "report/analysis/trade.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <span>
+#include <tuple>
 
-#include "filters/kernel.h"
-#include "report/analysis/cells.h"
 #include "report/files/file_name.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
-#include "report/records/json_values.h"
 
 namespace shadowbench::analysis {
 namespace {
 
 constexpr std::size_t kFewestCells = 3;
 
-// Reads cells' errors and costs; those of several scenes are combined.
-class CellReader {
- public:
-  explicit CellReader(const std::vector<records::CellRecord>& cells) : costs_(list_cost_measures(cells)) {}
-
-  const std::vector<Quantity>& costs() const { return costs_; }
-
-  TradeConfiguration read(const CellList& cells) const {
-    const records::CellRecord& first = *cells.front();
-    const bool is_as_wide = std::ranges::all_of(
-        cells, [&](const auto* cell) { return cell->kernel.sigma_texels == first.kernel.sigma_texels; });
-    TradeConfiguration result{
-        first.filter, records::named_params(first), first.map_size, {}, find_class(first), {}, cells, {}, {}};
-    if (is_as_wide) result.sigma_texels = first.kernel.sigma_texels;
-    for (std::size_t i = 0; i < kErrorMeasures; ++i)
-      result.errors[i] = combine(cells, read_error, list_error_measures()[i]);
-    for (const Quantity& cost : costs_) result.costs.push_back(combine(cells, read_cost, cost));
-    return result;
-  }
-
- private:
-  std::vector<Quantity> costs_;
-
-  static Measured combine(const CellList& cells, Measured (*read_one)(const records::CellRecord&, const Quantity&),
-                          const Quantity& measure) {
-    std::vector<Estimate> estimates;
-    for (const records::CellRecord* cell : cells) {
-      const bool is_suspect = cell->status == records::CellStatus::kSuspect;
-      Measured one = is_suspect ? Measured{std::nullopt, "suspect: see the warnings"} : read_one(*cell, measure);
-      if (!one.estimate || cells.size() == 1) return one;
-      estimates.push_back(*one.estimate);
-    }
-    return {measure.combine(estimates), {}};
-  }
-};
-
-TradeScope make_place_scope(const CellList& cells, const CellReader& reader) {
+TradeScope make_place_scope(const CellList& cells) {
   const records::CellRecord& first = *cells.front();
-  TradeScope scope;
-  scope.scene = first.scene;
-  scope.view = first.view;
-  scope.title = fmt::format("{} · view {} · {} × {}", first.scene, first.view, first.width, first.height);
-  scope.id = files::make_file_stem(fmt::format("{}.{}.{}x{}", first.scene, first.view, first.width, first.height));
-  for (const CellList& own : pivot(cells, {})) scope.configurations.push_back(reader.read({own.front()}));
-  return scope;
+  return {files::make_file_stem(fmt::format("{}.{}.{}x{}", first.scene, first.view, first.width, first.height)),
+          fmt::format("{} · view {} · {} × {}", first.scene, first.view, first.width, first.height), false,
+          list_configurations(cells)};
 }
 
-TradeScope make_joint_scope(const CellList& cells, const CellReader& reader) {
+TradeScope make_joint_scope(const CellList& cells) {
   const records::CellRecord& first = *cells.front();
   std::set<std::string> names;
   for (const records::CellRecord* cell : cells) names.insert(cell->scene);
   const std::size_t places = list_places(cells).size(), scenes = names.size();
-  TradeScope scope;
-  scope.title = fmt::format("{} · {} × {}",
-                            places == scenes ? fmt::format("all {} scenes", scenes)
-                                             : fmt::format("all {} views of {} scenes", places, scenes),
-                            first.width, first.height);
-  scope.id = fmt::format("all.{}x{}", first.width, first.height);
+  const std::string title = places == scenes ? fmt::format("all {} scenes", scenes)
+                                             : fmt::format("all {} views of {} scenes", places, scenes);
+  CellList everywhere;
   for (const CellList& own : pivot(cells, {"scene", "view"}))
-    if (own.size() == places)
-      scope.configurations.push_back(reader.read(own));
-    else
-      ++scope.incomplete;
-  return scope;
+    if (own.size() == places) everywhere.insert(everywhere.end(), own.begin(), own.end());
+  return {fmt::format("all.{}x{}", first.width, first.height),
+          fmt::format("{} · {} × {}", title, first.width, first.height), true, list_configurations(everywhere)};
 }
 
 // Scopes that differ in another setting than those that their names have are numbered.
@@ -97,126 +49,78 @@ void make_unique(std::vector<TradeScope>& scopes) {
   }
 }
 
-// The parameters of a filter that say no more than its width: each of their values has one width and each width one
-// value.
-std::set<std::string> find_width_params(const std::vector<TradeConfiguration>& configurations,
-                                        const std::vector<std::size_t>& chosen, const std::string& filter) {
-  std::map<std::string, std::set<std::pair<double, std::string>>> pairs;
-  std::map<std::string, std::set<std::string>> values;
-  std::set<double> widths;
-  for (const std::size_t i : chosen) {
-    if (configurations[i].filter != filter || !configurations[i].sigma_texels) continue;
-    widths.insert(*configurations[i].sigma_texels);
-    for (const auto& [name, value] : configurations[i].params) {
-      const std::string text = records::describe_params({{name, value}});
-      pairs[name].insert({*configurations[i].sigma_texels, text});
-      values[name].insert(text);
-    }
-  }
-  std::set<std::string> names;
-  for (const auto& [name, found] : pairs)
-    if (found.size() == widths.size() && values[name].size() == widths.size() && widths.size() > 1) names.insert(name);
-  return names;
-}
-
-// A series' parameters are named where its filter has several.
-void label_series(std::vector<WidthSeries>& all) {
-  std::map<std::string, int> counts;
-  for (const WidthSeries& series : all) ++counts[series.filter];
-  for (WidthSeries& series : all) {
-    const bool told = counts[series.filter] > 1 && !series.label.empty();
-    series.label = told ? fmt::format("{} ({})", series.filter, series.label) : series.filter;
-  }
-}
-
-// By what differs among them, as records::CellNames does.
-void label_configurations(std::vector<TradeConfiguration>& configurations) {
-  CellList firsts;
-  for (const TradeConfiguration& each : configurations) firsts.push_back(each.cells.front());
-  const records::CellNames names(firsts);
-  for (TradeConfiguration& each : configurations) each.label = names.name(*each.cells.front());
-}
-
 }  // namespace
 
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells) {
   const CellList all = point_to(cells);
-  const CellReader reader(cells);
   std::vector<TradeScope> scopes;
   const std::vector<LeftOutPlace> left_out = list_left_out(all);
   CellList counted = all;
   std::erase_if(counted, [&](const auto* cell) { return is_left_out(*cell, left_out); });
   for (const CellList& picture : pivot(counted, {"filter", "params", "map_size", "scene", "view"}))
-    if (list_places(picture).size() > 1) scopes.push_back(make_joint_scope(picture, reader));
-  for (const CellList& place : pivot(all, {"filter", "params", "map_size"}))
-    scopes.push_back(make_place_scope(place, reader));
+    if (list_places(picture).size() > 1) scopes.push_back(make_joint_scope(picture));
+  for (const CellList& place : pivot(all, {"filter", "params", "map_size"})) scopes.push_back(make_place_scope(place));
+  std::erase_if(scopes, [](const TradeScope& scope) { return scope.configurations.empty(); });
   std::set<std::string> fits;
   for (const records::CellRecord& cell : cells) fits.insert(cell.fit);
-  for (TradeScope& scope : scopes) {
-    const records::CellRecord* first = scope.configurations.empty() ? nullptr : scope.configurations[0].cells[0];
-    scope.width = first ? first->width : 0;
-    scope.height = first ? first->height : 0;
-    scope.costs = reader.costs();
-    if (first && fits.size() > 1) scope.title += " · " + records::name_fit(first->fit, fits);
-    label_configurations(scope.configurations);
-  }
-  std::erase_if(scopes, [](const TradeScope& scope) { return scope.configurations.empty(); });
+  for (TradeScope& scope : scopes)
+    if (fits.size() > 1)
+      scope.title += " · " + records::name_fit(scope.configurations.front().cells.front()->fit, fits);
   make_unique(scopes);
   return scopes;
 }
 
-std::vector<WidthSeries> list_width_series(const std::vector<TradeConfiguration>& configurations,
-                                           const std::vector<std::size_t>& chosen) {
-  std::vector<WidthSeries> all;
-  std::map<std::string, std::size_t> places;
-  std::map<std::string, std::set<std::string>> names;
-  for (const std::size_t i : chosen) {
-    const TradeConfiguration& each = configurations[i];
-    if (!each.sigma_texels) continue;
-    if (!names.contains(each.filter)) names[each.filter] = find_width_params(configurations, chosen, each.filter);
-    records::ParamMap params = each.params;
-    std::erase_if(params, [&](const auto& param) { return names[each.filter].contains(param.first); });
-    const std::string key =
-        fmt::format("{} {} {}", each.filter, each.map_size, records::dump_line(records::value_json(params)));
-    const auto [place, is_new] = places.emplace(key, all.size());
-    if (is_new) all.push_back({each.filter, records::describe_params(params), {}});
-    all[place->second].configurations.push_back(i);
+Measured measure(const Configuration& configuration, const Quantity& quantity) {
+  std::vector<Estimate> estimates;
+  for (const records::CellRecord* cell : configuration.cells) {
+    const bool is_suspect = cell->status == records::CellStatus::kSuspect;
+    Measured one = is_suspect      ? Measured{std::nullopt, "suspect: see the warnings"}
+                   : quantity.cost ? read_cost(*cell, quantity)
+                                   : read_error(*cell, quantity);
+    if (!one.estimate || configuration.cells.size() == 1) return one;
+    estimates.push_back(*one.estimate);
   }
-  for (WidthSeries& series : all)
-    std::ranges::stable_sort(series.configurations, {}, [&](std::size_t i) { return *configurations[i].sigma_texels; });
-  label_series(all);
-  return all;
+  return {quantity.combine(estimates), {}};
 }
 
-TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::size_t cost) {
-  TradeFront front;
-  front.error = error;
-  front.cost = cost;
-  for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
-    const Measured& e = scope.configurations[i].errors[error];
-    const Measured& c = scope.configurations[i].costs[cost];
-    if (!e.estimate || !c.estimate) {
-      ++front.left_out[e.estimate ? c.absent : e.absent];
-      continue;
-    }
-    front.configurations.push_back(i);
-    front.points.push_back({*e.estimate, *c.estimate, scope.configurations[i].width_class});
+std::vector<FrontPoint> list_points(const TradeScope& scope, const Quantity& error, const Quantity& cost) {
+  std::vector<FrontPoint> points;
+  for (const Configuration& each : scope.configurations) {
+    const Measured wrong = measure(each, error), paid = measure(each, cost);
+    if (wrong.estimate && paid.estimate)
+      points.push_back({&each, *wrong.estimate, *paid.estimate, find_class(*each.cells.front())});
   }
-  front.placements = find_front(front.points);
-  front.members = list_members(front.points, front.placements);
-  return front;
+  return points;
 }
 
-bool has_trade(const std::vector<TradeScope>& scopes) {
-  const auto has_one = [](const auto& measured) {
-    return std::any_of(
-        measured.begin(), measured.end(), [](const Measured& each) { return each.estimate.has_value(); });
+std::vector<std::size_t> find_front(const std::vector<FrontPoint>& points) {
+  std::vector<std::size_t> order(points.size()), leaders(points.size()), members;
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {},
+                           [&](std::size_t i) { return std::tuple(points[i].cost.value, points[i].error.value); });
+  for (const std::size_t i : order) {
+    const auto leader = std::ranges::find_if(members, [&](std::size_t member) {
+      return points[member].group == points[i].group && points[member].error.value <= points[i].error.value;
+    });
+    leaders[i] = leader == members.end() ? i : *leader;
+    if (leaders[i] == i && points[i].group) members.push_back(i);
+  }
+  return leaders;
+}
+
+bool is_tied(const FrontPoint& a, const FrontPoint& b) {
+  return a.group && a.group == b.group && !is_clearly_less_error(a.error, b.error) &&
+         !is_clearly_less_error(b.error, a.error) && !is_clearly_less_cost(a.cost, b.cost) &&
+         !is_clearly_less_cost(b.cost, a.cost);
+}
+
+bool has_trade(const std::vector<TradeScope>& scopes, const std::vector<Quantity>& costs) {
+  const auto has_both = [&](const Configuration& each) {
+    const auto has = [&](const Quantity& quantity) { return measure(each, quantity).estimate.has_value(); };
+    return std::ranges::any_of(list_error_measures(), has) && std::ranges::any_of(costs, has);
   };
-  return std::any_of(scopes.begin(), scopes.end(), [&](const TradeScope& scope) {
-    const auto count =
-        std::count_if(scope.configurations.begin(), scope.configurations.end(),
-                      [&](const TradeConfiguration& each) { return has_one(each.errors) && has_one(each.costs); });
-    return static_cast<std::size_t>(count) >= kFewestCells;
+  return std::ranges::any_of(scopes, [&](const TradeScope& scope) {
+    return static_cast<std::size_t>(std::ranges::count_if(scope.configurations, has_both)) >= kFewestCells;
   });
 }
 
@@ -229,28 +133,65 @@ std::vector<std::string> list_filters(const std::vector<records::CellRecord>& ce
 
 namespace {
 
-CostCurve make_width_curve(const TradeScope& scope, const WidthSeries& series) {
-  const records::CellRecord& last = *scope.configurations[series.configurations.back()].cells.front();
-  CostCurve curve{series.filter, series.label, {}, last.cost.prefilter_texels.value_or(0) > 0};
-  for (const std::size_t i : series.configurations) {
-    const TradeConfiguration& each = scope.configurations[i];
-    curve.points.push_back(
-        {*each.sigma_texels, {*each.costs[kMovingCost].estimate, *each.costs[kStaticCost].estimate}});
+/// A configuration whose width and costs are known.
+struct Timed {
+  const records::CellRecord* cell = nullptr;
+  CurvePoint point;
+  records::ParamMap params;  ///< as they were asked for
+};
+
+// The parameters of a filter that say no more than its width: each of their values has one width and each width one
+// value.
+std::set<std::string> find_width_params(const std::vector<Timed>& all, const std::string& filter) {
+  std::map<std::string, std::set<std::pair<double, std::string>>> pairs;
+  std::map<std::string, std::set<std::string>> values;
+  std::set<double> widths;
+  for (const Timed& each : all) {
+    if (each.cell->filter != filter) continue;
+    widths.insert(each.point.sigma_texels);
+    for (const auto& [name, value] : each.params) {
+      const std::string text = records::describe_params({{name, value}});
+      pairs[name].insert({each.point.sigma_texels, text});
+      values[name].insert(text);
+    }
   }
-  return curve;
+  std::set<std::string> names;
+  for (const auto& [name, found] : pairs)
+    if (found.size() == widths.size() && values[name].size() == widths.size() && widths.size() > 1) names.insert(name);
+  return names;
 }
 
-std::vector<CostCurve> make_width_curves(const TradeScope& scope, int map_size) {
-  std::vector<std::size_t> timed;
-  for (std::size_t i = 0; i < scope.configurations.size(); ++i) {
-    const TradeConfiguration& each = scope.configurations[i];
-    if (each.map_size == map_size && each.costs[kStaticCost].estimate && each.costs[kMovingCost].estimate)
-      timed.push_back(i);
-  }
+std::vector<CostCurve> join_curves(const std::vector<Timed>& all) {
   std::vector<CostCurve> curves;
-  for (const WidthSeries& series : list_width_series(scope.configurations, timed))
-    curves.push_back(make_width_curve(scope, series));
+  for (const Timed& each : all) {
+    records::ParamMap params = each.params;
+    const std::set<std::string> of_width = find_width_params(all, each.cell->filter);
+    std::erase_if(params, [&](const auto& param) { return of_width.contains(param.first); });
+    const CostCurve own{each.cell->filter, records::describe_params(params), {}};
+    auto curve = std::ranges::find_if(
+        curves, [&](const CostCurve& known) { return known.filter == own.filter && known.label == own.label; });
+    if (curve == curves.end()) curve = curves.insert(curve, own);
+    curve->points.push_back(each.point);
+    curve->prefiltered = curve->prefiltered || each.cell->cost.prefilter_texels.value_or(0) > 0;
+  }
+  for (CostCurve& curve : curves) {
+    std::ranges::stable_sort(curve.points, {}, &CurvePoint::sigma_texels);
+    const bool is_told = std::ranges::count(curves, curve.filter, &CostCurve::filter) > 1 && !curve.label.empty();
+    curve.label = is_told ? fmt::format("{} ({})", curve.filter, curve.label) : curve.filter;
+  }
   return curves;
+}
+
+std::vector<CostCurve> make_width_curves(const TradeScope& scope, const std::vector<Quantity>& costs, int map_size) {
+  std::vector<Timed> timed;
+  for (const Configuration& each : scope.configurations) {
+    const records::CellRecord& cell = *each.cells.front();
+    const Measured moving = measure(each, costs[kMovingCost]), still = measure(each, costs[kStaticCost]);
+    if (cell.map_size == map_size && cell.kernel.sigma_texels && moving.estimate && still.estimate)
+      timed.push_back(
+          {&cell, {*cell.kernel.sigma_texels, {*moving.estimate, *still.estimate}}, records::named_params(cell)});
+  }
+  return join_curves(timed);
 }
 
 bool has_several_fits(std::span<const MapPoint> maps) {
@@ -290,15 +231,15 @@ std::vector<double> CostChart::widths() const {
   return {widths.begin(), widths.end()};
 }
 
-std::vector<CostChart> make_width_charts(const std::vector<TradeScope>& scopes) {
+std::vector<CostChart> make_width_charts(const std::vector<TradeScope>& scopes, const std::vector<Quantity>& costs) {
   std::vector<CostChart> charts;
   for (const TradeScope& scope : scopes) {
-    if (scope.scene.empty()) continue;
+    if (scope.is_joint) continue;
     std::set<int> map_sizes;
-    for (const TradeConfiguration& each : scope.configurations) map_sizes.insert(each.map_size);
+    for (const Configuration& each : scope.configurations) map_sizes.insert(each.cells.front()->map_size);
     for (const int map_size : map_sizes) {
-      CostChart chart{scope.id, fmt::format("{} · map {}", scope.title, map_size), map_size, scope.costs,
-                      make_width_curves(scope, map_size)};
+      CostChart chart{fmt::format("{}.map{}", scope.id, map_size), fmt::format("{} · map {}", scope.title, map_size),
+                      make_width_curves(scope, costs, map_size)};
       const auto has_several = [](const CostCurve& curve) { return curve.points.size() > 1; };
       if (std::ranges::any_of(chart.curves, has_several)) charts.push_back(std::move(chart));
     }
@@ -333,9 +274,9 @@ std::vector<MapFamily> list_map_families(const std::vector<const records::CellRe
       const records::CellRecord& cell = *each;
       const Measured paid = read_cost(cell, cost), rmse = read_error(cell, list_error_measures()[0]);
       if (cell.status != records::CellStatus::kOk || !paid.estimate || !rmse.estimate || !cell.cost.map_bytes) continue;
-      own[find_place(places, cell)].maps.push_back(
-          {cell.fit.substr(0, cell.fit.find_first_of(": ")), records::name_fit(cell.fit, fits), cell.map_size,
-           static_cast<double>(*cell.cost.map_bytes), *paid.estimate, *rmse.estimate, cell.artefact.seam});
+      own[find_place(places, cell)].maps.push_back({records::name_fit(cell.fit, fits), cell.map_size,
+                                                    static_cast<double>(*cell.cost.map_bytes), *paid.estimate,
+                                                    *rmse.estimate, cell.artefact.seam});
     }
     for (MapFamily& family : own) {
       std::ranges::stable_sort(family.maps, {}, &MapPoint::bytes);

@@ -2,42 +2,22 @@
 
 #include <array>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
-#include "report/records/records.h"
 
 namespace shadowbench::analysis {
-
-/// A filter with its parameters and a map size, and what it got and paid in one scope.
-struct TradeConfiguration {
-  std::string filter;
-  records::ParamMap params;  ///< as they were asked for
-  int map_size = 0;
-  std::optional<double> sigma_texels;      ///< width of its kernel; none where that differs between scenes
-  std::optional<std::size_t> width_class;  ///< see find_class()
-  std::string label;                       ///< tells it apart in its scope: "vsm (radius 4), map 512"
-  CellList cells;                          ///< of the run: one, or one per scene and view
-  std::array<Measured, kErrorMeasures> errors;
-  std::vector<Measured> costs;  ///< one for each of the scope's
-};
 
 /// What may be compared on one front: all cells of one scene, view and picture size, or all scenes and views
 /// together. Map format, bias, fit, light and range rule are the same throughout.
 struct TradeScope {
-  std::string id;     ///< fit for a file name, and unique
-  std::string title;  ///< "cubes · view main · 480 × 270"
-  std::string scene;  ///< empty for all scenes together
-  std::string view;
-  int width = 0;
-  int height = 0;
-  std::vector<Quantity> costs;  ///< those that the run has: list_cost_measures() of its cells
-  std::vector<TradeConfiguration> configurations;
-  std::size_t incomplete = 0;  ///< configurations left out because not every scene and view has a cell of them
+  std::string id;                             ///< fit for a file name, and unique
+  std::string title;                          ///< "cubes · view main · 480 × 270"
+  bool is_joint = false;                      ///< all scenes together
+  std::vector<Configuration> configurations;  ///< never empty; of one cell each, or of one per scene and view
 };
 
 /// Sorts a run's cells into scopes: scenes together first, where there are several, then each scene by itself in the
@@ -45,35 +25,31 @@ struct TradeScope {
 /// view has, and leave out what list_left_out() does. Requires that the cells outlive what is returned.
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells);
 
-/// The configurations of one filter that differ in nothing but the width of their kernel and the parameters that it
-/// follows from: those whose value changes exactly with the width.
-struct WidthSeries {
-  std::string filter;
-  std::string label;                        ///< with the parameters that tell it from the filter's other series
-  std::vector<std::size_t> configurations;  ///< indices, narrow before wide
+/// Reads an error or a cost of a configuration, as the measure combines scenes. Suspect cells have none.
+Measured measure(const Configuration& configuration, const Quantity& quantity);
+
+/// A configuration in the plane of the trade; less is better in both.
+struct FrontPoint {
+  const Configuration* configuration = nullptr;
+  Estimate error;
+  Estimate cost;
+  /// The class of its kernel: a wider one is a softer shadow, not a worse filter. Empty: it is compared with nothing.
+  std::optional<std::size_t> group = {};
 };
 
-/// Sorts those of `configurations` that `chosen` holds into series, in the order in which each first appears. Each map
-/// size has its own; configurations whose kernel's width is unknown are left out.
-std::vector<WidthSeries> list_width_series(const std::vector<TradeConfiguration>& configurations,
-                                           const std::vector<std::size_t>& chosen);
+/// Makes the points of a scope for one error and one cost, of what has both.
+std::vector<FrontPoint> list_points(const TradeScope& scope, const Quantity& error, const Quantity& cost);
 
-/// The front of a scope for one error and one cost.
-struct TradeFront {
-  std::size_t error = 0;                    ///< index into list_error_measures()
-  std::size_t cost = 0;                     ///< index into the scope's costs
-  std::vector<std::size_t> configurations;  ///< those that have both, indices into the scope's
-  std::vector<FrontPoint> points;           ///< entry i is of configurations[i]
-  std::vector<Placement> placements;        ///< likewise; `by` is an index into `points`
-  std::vector<std::size_t> members;  ///< indices into `points`; by group, that is class of width, then cheapest first
-  std::map<std::string, int> left_out;  ///< reason to number of configurations without one of the two
-};
+/// Finds each class's Pareto front, by the values as advise() does: taken cheapest first, each must have a smaller
+/// error than all before it. Gives for each point the cheapest member that is as good, itself for a member and for what
+/// has no class.
+std::vector<std::size_t> find_front(const std::vector<FrontPoint>& points);
 
-/// Finds the front of a scope: one of each class of width, for a wider kernel is a softer shadow, not a worse filter.
-TradeFront make_trade_front(const TradeScope& scope, std::size_t error, std::size_t cost);
+/// Does neither error nor cost tell two points of a class apart?
+bool is_tied(const FrontPoint& a, const FrontPoint& b);
 
 /// Is there a scope in which three cells or more have an error and a cost? Below that there is no trade to show.
-bool has_trade(const std::vector<TradeScope>& scopes);
+bool has_trade(const std::vector<TradeScope>& scopes, const std::vector<Quantity>& costs);
 
 /// Lists the run's filters in order of first appearance: a filter's place gives its colour and mark in all plots.
 std::vector<std::string> list_filters(const std::vector<records::CellRecord>& cells);
@@ -84,7 +60,8 @@ struct CurvePoint {
   std::array<Estimate, 2> costs;  ///< kMovingCost and kStaticCost
 };
 
-/// One filter over the kernel's width, all else being equal.
+/// The configurations of one filter that differ in nothing but the width of their kernel and the parameters that it
+/// follows from: those whose value changes exactly with the width.
 struct CostCurve {
   std::string filter;
   std::string label;               ///< with the parameters that tell it from the filter's other curves
@@ -94,23 +71,19 @@ struct CostCurve {
 
 /// The curves of one scene, view, map size and picture size.
 struct CostChart {
-  std::string scope_id;
+  std::string id;     ///< "cubes.main.480x270.map512"
   std::string title;  ///< "cubes · view main · 480 × 270 · map 512"
-  int map_size = 0;
-  std::vector<Quantity> costs;  ///< of its scope
   std::vector<CostCurve> curves;
 
   /// Lists the widths of its curves, ascending.
   std::vector<double> widths() const;
 };
 
-/// Sorts cells into charts over the width, whose curves are those of list_width_series(). Charts in which no filter has
-/// several widths are left out.
-std::vector<CostChart> make_width_charts(const std::vector<TradeScope>& scopes);
+/// Makes charts over the width, of what has both `costs`. Those in which no filter has several widths are left out.
+std::vector<CostChart> make_width_charts(const std::vector<TradeScope>& scopes, const std::vector<Quantity>& costs);
 
 /// What a filter got and paid with one map, in a frame that draws the map.
 struct MapPoint {
-  std::string kind;  ///< of its fit: "cascades"
   std::string name;  ///< of its fit: "4 cascades, split 0.8"
   int size = 0;      ///< texels along a side
   double bytes = 0.0;

@@ -12,9 +12,7 @@ if (run.cells.some(({ picture, values }) => picture || values)) {
   new ResizeObserver(() => requestAnimationFrame(fitCanvases)).observe(paneBox);
   window.addEventListener("hashchange", openLink);
   const [first = kTruth, second = first] = listAll(0);
-  wanted = run.opens ?? null;
-  if (!openLink())
-    start({ place: 0, left: first, right: second, ...(run.opens && { mode: "difference", layer: "visibility" }) });
+  if (!openLink()) start({ place: 0, left: first, right: second });
 } else section.hidden = true;
 if (timesHere() && run.scopes.length > 0) addMachine(timesHere(), true);
 for (const [name, begin] of [

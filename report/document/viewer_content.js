@@ -2,8 +2,6 @@
 const kLoadedFirst = 12;
 const kNote = " (its visibility: only filters have this layer)";
 const keepColours = makeStore(24e6);
-const white = Number((run.white || 1).toPrecision(2));
-const digits = Math.max(3, 2 - Math.floor(Math.log10(white)));
 const known = new Map(); // the visibility of the place's filters and of its truth
 let scale = 1;
 let turn = 0;
@@ -38,13 +36,13 @@ const makeSides = async (place, layer, mode) => {
   const mask = await getMask(place);
   const planes = found.filter(({ value }, i) => value && names[i] === name).map(({ value }) => value);
   const palette = differs ? "diverging" : look.palette;
-  const top = palette === "grey" ? white : findScale(planes, mask, white * Math.min(0.05, look.least));
+  const top = palette === "grey" ? 1 : findScale(planes, mask, Math.min(0.05, look.least));
   const files = await attemptAll(whos.map((who) => loadFile(who, place)));
   const file = files.find(({ value }) => value)?.value;
   const colour = ({ value, message }, i) => {
     if (!value) return { message };
     const isOwn = names[i] === name;
-    const [counts, shades, most] = isOwn ? [mask, palette, top] : [undefined, "grey", white];
+    const [counts, shades, most] = isOwn ? [mask, palette, top] : [undefined, "grey", 1];
     const rect = { x: 0, y: 0, width: file.width, height: file.height };
     const key = [place, whos[i], differs && whos[1], names[i], shades, most].join();
     const make = () => paint(value, counts, file.width, rect, shades, most);
@@ -63,7 +61,7 @@ const showScale = ({ top, palette, look, differs }) => {
   say(signed ? `\u2212${top}` : "0", low);
   element(bar, "i").style.background = `linear-gradient(to right,${kPalettes[palette]})`;
   say(signed ? `+${top}` : String(top), high);
-  element(bar, "span", { className: "hatch" }, `hatched: ${run.hatched || "not a receiver"}`);
+  element(bar, "span", { className: "hatch" }, "hatched: not a receiver");
 };
 const labelPane = (pane, titles) => {
   const isDifference = state.mode === "difference";
@@ -181,9 +179,9 @@ const readPixel = () => {
     const here = value[at];
     const gap = who === kTruth ? undefined : here - truth;
     const sign = gap < 0 ? "\u2212" : "+";
-    cells[0].textContent = here === undefined ? "" : here.toFixed(digits);
+    cells[0].textContent = here === undefined ? "" : here.toFixed(3);
     cells[1].textContent =
-      here === undefined || truth === undefined || gap === undefined ? "" : sign + Math.abs(gap).toFixed(digits);
+      here === undefined || truth === undefined || gap === undefined ? "" : sign + Math.abs(gap).toFixed(3);
   }
 };
 const point = ({ x, y }) => {
@@ -224,7 +222,7 @@ const showHardest = async (place) => {
   fillStrip(hardest, `Shares of the squared error of ${some} filters`);
   for (const { rect, share } of findTiles(sums, width, height, 6)) {
     const caption = `${(100 * share).toFixed(0)} %`;
-    const make = async () => (picture ? cut(picture, rect, 1) : paint(truth, null, width, rect, "grey", white));
+    const make = async () => (picture ? cut(picture, rect, 1) : paint(truth, null, width, rect, "grey", 1));
     addThumb(hardest, caption, () => showRect(rect), make).title = `at x\u00a0${rect.x}, y\u00a0${rect.y}`;
   }
 };
@@ -260,7 +258,7 @@ const showCrops = () => {
     const values = await getNumbers(who, place, name);
     const mask = await getMask(place);
     const { palette } = layerOf(name);
-    return paint(values, mask, size.width, crop, palette, palette === "grey" ? white : scale);
+    return paint(values, mask, size.width, crop, palette, palette === "grey" ? 1 : scale);
   };
   for (const who of listAll(place))
     addThumb(

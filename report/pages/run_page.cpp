@@ -334,8 +334,7 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
 }  // namespace
 
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                             const std::optional<Trade>& trade, const std::vector<records::BiasToShip>& biases,
-                             const std::string& so_far) {
+                             const std::vector<records::BiasToShip>& biases, const std::string& so_far) {
   const analysis::AdviceRequest request = choose_request(cells);
   document::Page page{"Shadow filters compared", {}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };
@@ -355,7 +354,7 @@ document::Page make_run_page(const records::RunRecord& run, const std::vector<re
     page.data = make_run_data(run, cells, biases);
   }
   if (auto external = make_external_section(cells)) add(std::move(*external));
-  if (trade) add(make_trade_section(run, own, *trade));
+  if (auto trade = make_trade_section(run, own)) add(std::move(*trade));
   if (auto cascades = make_cascade_section(own)) add(std::move(*cascades));
   if (auto gpus = make_gpu_section(own)) add(std::move(*gpus));
   add(make_evidence_section(run, cells, so_far.empty()));

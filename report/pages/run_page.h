@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "report/document/blocks.h"
-#include "report/pages/trade_section.h"
 #include "report/records/bias_record.h"
 #include "report/records/records.h"
 
@@ -17,7 +16,6 @@ namespace shadowbench::pages {
 /// `biases` are what a sweep of the bias recommends. A run under way says on top how far it is, `so_far`, and has no
 /// data files to link to.
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                             const std::optional<Trade>& trade, const std::vector<records::BiasToShip>& biases = {},
-                             const std::string& so_far = {});
+                             const std::vector<records::BiasToShip>& biases = {}, const std::string& so_far = {});
 
 }  // namespace shadowbench::pages

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <map>
-#include <span>
+#include <string>
+#include <vector>
 
 #include "filters/kernel.h"
 #include "report/analysis/cells.h"
+#include "report/analysis/trade.h"
+#include "report/document/chart.h"
 #include "report/files/file_name.h"
 #include "report/pages/tables.h"
 #include "report/records/format.h"
@@ -15,22 +18,27 @@
 namespace shadowbench::pages {
 namespace {
 
-using Configuration = analysis::TradeConfiguration;
 using document::ChartSeries;
 
 constexpr const char* kFrontInk = "#a9aeb6";
 constexpr document::ChartStyle kMarkStyle{document::kInk, document::Mark::kCircle};
 
-/// An axis over all configurations of a scope that have the measure.
-document::ChartAxis choose_measure_axis(const analysis::TradeScope& scope, const auto& values_of, bool bytes) {
+document::ChartAxis choose_axis(const std::vector<analysis::Estimate>& estimates, bool bytes) {
   std::vector<double> values, ends;
-  for (const Configuration& configuration : scope.configurations) {
-    const analysis::Measured& measured = values_of(configuration);
-    if (!measured.estimate) continue;
-    values.push_back(measured.estimate->value);
-    ends.insert(ends.end(), {measured.estimate->low, measured.estimate->high});
+  for (const analysis::Estimate& each : estimates) {
+    values.push_back(each.value);
+    ends.insert(ends.end(), {each.low, each.high});
   }
   return document::choose_axis(values, ends, bytes ? document::TickKind::kBytes : document::TickKind::kNumber);
+}
+
+/// An axis over all configurations of a scope that have the measure.
+document::ChartAxis choose_measure_axis(const analysis::TradeScope& scope, const analysis::Quantity& quantity) {
+  std::vector<analysis::Estimate> estimates;
+  for (const analysis::Configuration& each : scope.configurations)
+    if (const analysis::Measured measured = analysis::measure(each, quantity); measured.estimate)
+      estimates.push_back(*measured.estimate);
+  return choose_axis(estimates, quantity.is(analysis::CostKind::kBytes));
 }
 
 document::ChartStyle style_among(const std::vector<std::string>& filters, const std::string& filter) {
@@ -66,19 +74,17 @@ std::string say_value(const analysis::Quantity& measure, const analysis::Estimat
 /// Makes the chart of one front.
 class FrontChart {
  public:
-  FrontChart(const analysis::TradeScope& scope, const analysis::TradeFront& front,
-             const std::vector<records::CellRecord>& cells, const records::GlRecord& gl)
-      : scope_(scope), front_(front), cells_(cells), gl_(gl) {}
+  FrontChart(const analysis::TradeScope& scope, const analysis::Quantity& error, const analysis::Quantity& cost,
+             bool is_large, const records::GlRecord& gl)
+      : scope_(scope), error_(error), cost_(cost), is_large_(is_large), gl_(gl) {}
 
   document::Chart make() const {
-    const auto cost_of = [this](const Configuration& each) -> const auto& { return each.costs[front_.cost]; };
-    const auto error_of = [this](const Configuration& each) -> const auto& { return each.errors[front_.error]; };
     document::Chart chart{fmt::format("{}.{}.{}", scope_.id, error_.id, cost_.id),
                           scope_.title,
                           analysis::name_axis(cost_, gl_),
                           analysis::name_axis(error_, gl_),
-                          choose_measure_axis(scope_, cost_of, cost_.is(analysis::CostKind::kBytes)),
-                          choose_measure_axis(scope_, error_of, false),
+                          choose_measure_axis(scope_, cost_),
+                          choose_measure_axis(scope_, error_),
                           {},
                           {}};
     add_fronts(chart);
@@ -87,85 +93,82 @@ class FrontChart {
   }
 
  private:
-  const Configuration& configuration_of(std::size_t point) const {
-    return scope_.configurations[front_.configurations[point]];
-  }
-
   /// A line through each front that has more than a point.
   void add_fronts(document::Chart& chart) const {
-    for (auto first = front_.members.begin(); first != front_.members.end();) {
-      const auto group = front_.points[*first].group;
-      const auto last = std::find_if(first, front_.members.end(),
-                                     [&](std::size_t member) { return front_.points[member].group != group; });
-      if (last - first > 1) chart.series.push_back(make_front({first, last}));
-      first = last;
+    std::map<std::size_t, ChartSeries> lines;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (leaders_[i] != i || !points_[i].group) continue;
+      ChartSeries& line =
+          lines.try_emplace(*points_[i].group, start_line({}, kFrontInk, document::LineStyle::kSteps)).first->second;
+      line.points.push_back(make_corner(points_[i]));
+    }
+    for (auto& [group, line] : lines) {
+      std::ranges::stable_sort(line.points, {}, [](const document::ChartPoint& point) { return point.x.value; });
+      if (line.points.size() > 1) chart.series.push_back(std::move(line));
     }
   }
 
-  ChartSeries make_front(std::span<const std::size_t> members) const {
-    ChartSeries line = start_line({}, kFrontInk, document::LineStyle::kSteps);
-    for (const std::size_t member : members) line.points.push_back(make_corner(member));
-    return line;
-  }
-
-  document::ChartPoint make_corner(std::size_t point) const {
-    document::ChartPoint made{front_.points[point].cost, front_.points[point].error};
-    made.group = analysis::name_class(configuration_of(point).width_class);
+  static document::ChartPoint make_corner(const analysis::FrontPoint& point) {
+    document::ChartPoint made{point.cost, point.error};
+    made.group = analysis::name_class(point.group);
     return made;
   }
 
-  std::string describe_standing(std::size_t point) const {
-    const analysis::Placement& placement = front_.placements[point];
-    const std::string& leader = configuration_of(placement.by).label;
-    return placement.standing == analysis::Standing::kFront  ? "on the front"
-           : placement.standing == analysis::Standing::kTied ? "tied with " + leader
-           : placement.standing == analysis::Standing::kApart
-               ? "compared with nothing: its kernel is of no class of width"
-               : "beaten by " + leader;
-  }
-
-  document::ChartPoint make_point(std::size_t point) const {
-    const Configuration& configuration = configuration_of(point);
-    const analysis::FrontPoint& values = front_.points[point];
+  document::ChartPoint make_point(const analysis::FrontPoint& point, std::string standing) const {
+    const analysis::Configuration& configuration = *point.configuration;
+    const records::CellRecord& cell = *configuration.cells.front();
+    const records::ParamMap params = records::named_params(cell);
     document::ChartPoint made = make_corner(point);
-    made.label = configuration.label;
-    made.details = {configuration.label,
-                    configuration.params.empty() ? "no parameters" : records::describe_params(configuration.params),
-                    "kernel: " + records::describe_kernel(configuration.cells.front()->kernel),
-                    fmt::format("map {0} × {0}", configuration.map_size),
-                    say_value(error_, values.error, gl_),
-                    say_value(cost_, values.cost, gl_),
-                    describe_standing(point)};
+    made.label = configuration.name;
+    made.details = {configuration.name,
+                    params.empty() ? "no parameters" : records::describe_params(params),
+                    "kernel: " + records::describe_kernel(cell.kernel),
+                    fmt::format("map {0} × {0}", cell.map_size),
+                    say_value(error_, point.error, gl_),
+                    say_value(cost_, point.cost, gl_),
+                    std::move(standing)};
     const auto worst = std::ranges::max_element(configuration.cells, {},
-                                                [](const auto* cell) { return cell->error.rmse.value_or(0.0); });
+                                                [](const auto* each) { return each->error.rmse.value_or(0.0); });
     made.opens = (*worst)->key;
     return made;
   }
 
-  /// Configurations on a front; tied, or compared with nothing; beaten.
+  /// The cheapest cell of the front that a point is tied with: no dearer than it.
+  const analysis::FrontPoint* find_tie(std::size_t i) const {
+    const analysis::FrontPoint* tie = nullptr;
+    for (std::size_t k = 0; k < points_.size(); ++k)
+      if (k != i && leaders_[k] == k && points_[k].cost.value <= points_[i].cost.value &&
+          analysis::is_tied(points_[k], points_[i]) && (!tie || points_[k].cost.value < tie->cost.value))
+        tie = &points_[k];
+    return tie;
+  }
+
+  /// Configurations on a front; tied with a cheaper one there, or compared with nothing; beaten.
   void add_marks(document::Chart& chart) const {
     ChartSeries members = start_series({}, kMarkStyle), tied = members, beaten = members;
     tied.filled = beaten.filled = false;
     beaten.faint = true;
-    for (std::size_t i = 0; i < front_.points.size(); ++i) {
-      const analysis::Standing standing = front_.placements[i].standing;
-      if (standing == analysis::Standing::kFront)
-        members.points.push_back(make_point(i));
-      else if (standing != analysis::Standing::kDominated)
-        tied.points.push_back(make_point(i));
-      else if (cells_.size() <= kMostCellsInDetail)
-        beaten.points.push_back(make_point(i));
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const analysis::FrontPoint& own = points_[i];
+      if (!own.group)
+        tied.points.push_back(make_point(own, "compared with nothing: its kernel is of no class of width"));
+      else if (const auto* tie = find_tie(i))
+        tied.points.push_back(make_point(own, "tied with " + tie->configuration->name));
+      else if (leaders_[i] == i)
+        members.points.push_back(make_point(own, "on the front"));
+      else if (!is_large_)
+        beaten.points.push_back(make_point(own, "beaten by " + points_[leaders_[i]].configuration->name));
     }
     for (ChartSeries* each : {&beaten, &tied, &members})
       if (!each->points.empty()) chart.series.push_back(std::move(*each));
   }
 
   const analysis::TradeScope& scope_;
-  const analysis::TradeFront& front_;
-  const std::vector<records::CellRecord>& cells_;
+  const analysis::Quantity &error_, &cost_;
+  bool is_large_;
   const records::GlRecord& gl_;
-  const analysis::Quantity& error_ = analysis::list_error_measures()[front_.error];
-  const analysis::Quantity& cost_ = scope_.costs[front_.cost];
+  const std::vector<analysis::FrontPoint> points_ = analysis::list_points(scope_, error_, cost_);
+  const std::vector<std::size_t> leaders_ = analysis::find_front(points_);
 };
 
 /// A logarithmic axis for what series have on the y axis.
@@ -183,13 +186,14 @@ document::ChartAxis choose_y_axis(const std::vector<ChartSeries>& series) {
 /// Cost over the kernel's width, of one state of the light: kMovingCost or kStaticCost.
 class WidthChart {
  public:
-  WidthChart(const analysis::CostChart& chart, std::size_t light, const records::GlRecord& gl)
-      : chart_(chart), light_(light), gl_(gl) {}
+  WidthChart(const analysis::CostChart& chart, std::size_t light, const analysis::Quantity& cost,
+             const records::GlRecord& gl)
+      : chart_(chart), light_(light), cost_(cost), gl_(gl) {}
 
   document::Chart make(const std::vector<std::string>& filters) const {
     document::Chart made;
     const char* state = light_ == analysis::kStaticCost ? "static" : "moving";
-    made.id = fmt::format("{}.map{}.width.{}", chart_.scope_id, chart_.map_size, state);
+    made.id = fmt::format("{}.width.{}", chart_.id, state);
     made.title = chart_.title;
     made.x_name = "kernel width (standard deviation), texels";
     made.y_name = analysis::name_axis(cost_, gl_);
@@ -216,8 +220,8 @@ class WidthChart {
 
   const analysis::CostChart& chart_;
   std::size_t light_;
+  const analysis::Quantity& cost_;
   const records::GlRecord& gl_;
-  const analysis::Quantity& cost_ = chart_.costs[light_];
 };
 
 /// The maps of a filter: RMSE over their bytes, a curve for each fit.
@@ -255,37 +259,34 @@ document::Chart make_map_chart(const analysis::MapFamily& family, const analysis
   return made;
 }
 
-}  // namespace
-
 document::ChartChoice make_front_choice(const std::vector<analysis::TradeScope>& scopes,
-                                        const std::vector<records::CellRecord>& cells, const records::GlRecord& gl) {
+                                        const std::vector<analysis::Quantity>& costs, bool is_large,
+                                        const records::GlRecord& gl) {
   document::ChartChoice choice{"front", {{"scene", {}}, {"error", {}}, {"cost", {}}}, {}};
   for (const analysis::Quantity& error : analysis::list_error_measures())
     choice.selectors[1].options.push_back(error.title);
-  for (const analysis::Quantity& cost : analysis::list_cost_measures(cells)) {
+  for (const analysis::Quantity& cost : costs) {
     choice.selectors[2].options.push_back(cost.title);
     choice.selectors[2].costs.push_back(cost.id);
   }
   for (const analysis::TradeScope& scope : scopes) {
     choice.selectors[0].options.push_back(scope.title);
-    for (std::size_t error = 0; error < analysis::kErrorMeasures; ++error) {
-      for (std::size_t cost = 0; cost < scope.costs.size(); ++cost) {
-        const analysis::TradeFront front = analysis::make_trade_front(scope, error, cost);
-        choice.charts.push_back(FrontChart(scope, front, cells, gl).make());
-      }
-    }
+    for (const analysis::Quantity& error : analysis::list_error_measures())
+      for (const analysis::Quantity& cost : costs)
+        choice.charts.push_back(FrontChart(scope, error, cost, is_large, gl).make());
   }
   return choice;
 }
 
 document::ChartChoice make_width_choice(const std::vector<analysis::CostChart>& charts,
+                                        const std::vector<analysis::Quantity>& costs,
                                         const std::vector<std::string>& filters, const records::GlRecord& gl) {
   document::ChartChoice choice{
       "width", {{"where", {}}, {"light", {"static: lookup", "moving: map, prefilter, lookup"}}}, {}};
   for (const analysis::CostChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
     for (const std::size_t light : {analysis::kStaticCost, analysis::kMovingCost})
-      choice.charts.push_back(WidthChart(chart, light, gl).make(filters));
+      choice.charts.push_back(WidthChart(chart, light, costs[light], gl).make(filters));
   }
   return choice;
 }
@@ -300,19 +301,17 @@ document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& fa
   return choice;
 }
 
-namespace {
-
 using Blocks = std::vector<document::Block>;
 
 constexpr const char* kFrontsNote =
-    "Lower left is better. Line: the Pareto front of a class of width. Hollow: tied. Pale: beaten. Ringed: the "
-    "answers.";
+    "Lower left is better. Line: the Pareto front of a class of width. Hollow: tied with a cheaper one of the front. "
+    "Pale: beaten. Ringed: the answers.";
 constexpr const char* kLargeNote = "The run has more than {} cells: beaten ones are left out of these charts.";
 constexpr const char* kMapsNote =
     "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
     "stand still; every other fit follows a camera, and is drawn anew whenever it moves.";
 
-/// How fronts are read: what dominated and tied mean, what the intervals are, how scenes are combined, and what each of
+/// How fronts are read: what beaten and tied mean, what the intervals are, how scenes are combined, and what each of
 /// `costs` is.
 std::vector<std::string> explain_fronts(const std::vector<analysis::Quantity>& costs) {
   std::vector<std::string> sentences = {
@@ -321,11 +320,11 @@ std::vector<std::string> explain_fronts(const std::vector<analysis::Quantity>& c
           "and is no worse filter. Kernel width is the standard deviation along an axis, in texels; each "
           "class has a front of its own: {}.",
           filters::describe_classes()),
-      "A cell of the front beats another of its class, which is then dominated, where it costs no more, its error is "
-      "not clearly larger, and one of the two is clearly less. A cell is tied with one of the front where neither is "
-      "clearly less. Clearly: errors where the 95 % interval of their difference, which is taken group by group of "
-      "the phases that all cells share, does not hold 0; times whose 95 % intervals do not overlap; everything else "
-      "where the numbers differ. Of several that beat a cell, the cheapest is named."};
+      "A cell is beaten where another of its class costs no more and has no larger error; of several, the cheapest is "
+      "named. It is tied with a cheaper cell of the front where neither differs clearly: errors where the 95 % "
+      "interval "
+      "of their difference, which is taken group by group of the phases that all cells share, does not hold 0; times "
+      "whose 95 % intervals do not overlap; everything else where the numbers differ."};
   const auto explain = [&](const analysis::Quantity& measure) {
     sentences.push_back(
         fmt::format("{}: {}. All scenes together: {}.", measure.title, measure.meaning, measure.over_scenes));
@@ -333,16 +332,6 @@ std::vector<std::string> explain_fronts(const std::vector<analysis::Quantity>& c
   std::ranges::for_each(analysis::list_error_measures(), explain);
   std::ranges::for_each(costs, explain);
   return sentences;
-}
-
-void add_fronts(Blocks& blocks, const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                const Trade& trade) {
-  blocks.emplace_back(document::Paragraph{kFrontsNote, true});
-  if (cells.size() > kMostCellsInDetail)
-    blocks.emplace_back(document::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
-  blocks.emplace_back(make_front_choice(trade.scopes, cells, run.gl));
-  blocks.emplace_back(document::Details{"How to read the fronts",
-                                        {document::Sentences{{}, explain_fronts(trade.scopes.front().costs)}}});
 }
 
 void add_charts(Blocks& blocks, const char* heading, document::ChartChoice charts, const char* note) {
@@ -354,26 +343,29 @@ void add_charts(Blocks& blocks, const char* heading, document::ChartChoice chart
 
 }  // namespace
 
-std::optional<Trade> make_trade(const std::vector<records::CellRecord>& cells) {
-  Trade trade;
-  trade.scopes = analysis::make_trade_scopes(cells);
-  trade.has_fronts = analysis::has_trade(trade.scopes);
-  trade.map_families = analysis::list_map_families(analysis::point_to(cells));
-  if (!trade.has_fronts && trade.map_families.empty()) return std::nullopt;
-  if (trade.has_fronts) trade.width_charts = analysis::make_width_charts(trade.scopes);
-  return trade;
-}
-
-document::Section make_trade_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                                     const Trade& trade) {
+std::optional<document::Section> make_trade_section(const records::RunRecord& run,
+                                                    const std::vector<records::CellRecord>& cells) {
+  const std::vector<analysis::Quantity> costs = analysis::list_cost_measures(cells);
+  const std::vector<analysis::TradeScope> scopes = analysis::make_trade_scopes(cells);
+  const auto all = analysis::point_to(cells);
+  const std::vector<analysis::MapFamily> families = analysis::list_map_families(all);
+  const bool has_fronts = analysis::has_trade(scopes, costs);
+  if (!has_fronts && families.empty()) return std::nullopt;
   document::Section section{"trade", "The trade", {}};
-  const std::vector<std::string> filters = analysis::list_filters(cells);
-  if (trade.has_fronts) add_fronts(section.blocks, run, cells, trade);
-  add_charts(section.blocks, "Cost over the kernel width", make_width_choice(trade.width_charts, filters, run.gl),
-             nullptr);
+  if (has_fronts) {
+    const bool is_large = cells.size() > kMostCellsInDetail;
+    section.blocks = {document::Paragraph{kFrontsNote, true}};
+    if (is_large) section.blocks.emplace_back(document::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
+    section.blocks.emplace_back(make_front_choice(scopes, costs, is_large, run.gl));
+    section.blocks.emplace_back(
+        document::Details{"How to read the fronts", {document::Sentences{{}, explain_fronts(costs)}}});
+    add_charts(
+        section.blocks, "Cost over the kernel width",
+        make_width_choice(analysis::make_width_charts(scopes, costs), costs, analysis::list_filters(cells), run.gl),
+        nullptr);
+  }
   add_charts(section.blocks, "Error of maps of several fits, over their bytes",
-             make_map_choice(trade.map_families, analysis::make_map_measure(analysis::point_to(cells)), run.gl),
-             kMapsNote);
+             make_map_choice(families, analysis::make_map_measure(all), run.gl), kMapsNote);
   return section;
 }
 

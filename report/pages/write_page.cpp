@@ -15,7 +15,6 @@
 #include "report/pages/frames_page.h"
 #include "report/pages/grid_sheets.h"
 #include "report/pages/run_page.h"
-#include "report/pages/tables.h"
 #include "report/records/bias_record.h"
 #include "report/records/csv_tables.h"
 #include "report/records/json_io.h"
@@ -163,14 +162,12 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run,
   write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));
   const auto withheld = analysis::withhold_mixed_times(cells);
   const std::vector<records::CellRecord>& shown = withheld ? *withheld : cells;
-  const auto without_external = analysis::leave_out_external(shown);
-  const std::vector<records::CellRecord>& own = without_external ? *without_external : shown;
   if (std::ranges::any_of(cells, [](const records::CellRecord& cell) { return cell.accumulation.has_value(); }))
     write_page(dir, "frames", make_frames_page(cells, run));
   else
     remove_page(dir, "frames");  // of another run into this folder
   write_grids(dir, shown, run.gl, width);
-  write_page(dir, "run", make_run_page(run, shown, make_trade(own), biases));
+  write_page(dir, "run", make_run_page(run, shown, biases));
   records::write_results(dir, run, cells);
 }
 
@@ -181,7 +178,7 @@ void write_early_report(const std::filesystem::path& dir, records::RunRecord run
   const auto withheld = analysis::withhold_mixed_times(cells);
   const std::vector<records::CellRecord>& shown = withheld ? *withheld : cells;
   write_grids(dir, shown, run.gl, width);
-  write_early_page(dir, "run", make_run_page(run, shown, make_trade(shown), {}, so_far));
+  write_early_page(dir, "run", make_run_page(run, shown, {}, so_far));
 }
 
 }  // namespace shadowbench::pages

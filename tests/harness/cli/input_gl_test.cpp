@@ -31,6 +31,7 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {"submit sweep --engine slurm", 2, {"'shadowbench submit'", "harness/slurm.sh"}},
       {"status big", 2, {"'shadowbench status'", "harness/slurm.sh"}},
       {"flicker --frames 2", 2, {"is gone", "error.flicker"}},
+      {"diff a b --html page", 2, {"--html is gone", "--out"}},
       {"merge out --times gpu-times.json", 2, {"--times is gone", "'advise --times'"}},
       {"merge nosuch", 2, {"--out"}},
       {"list filter", 2, {"'shadowbench list filter'", "did you mean 'filters'"}},

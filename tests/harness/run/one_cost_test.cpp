@@ -51,7 +51,7 @@ double read_chart(const document::Page& page, const std::string& key) {
 
 /// The cost that everything begins with, of a cell, everywhere it is told.
 std::vector<double> list_told(const std::vector<CellRecord>& cells, const CellRecord& cell) {
-  const document::Page page = pages::make_run_page(records::make_run(), cells, pages::make_trade(cells));
+  const document::Page page = pages::make_run_page(records::make_run(), cells);
   const std::string field = page.data["costs"][0]["field"];
   EXPECT_EQ(page.data["costs"][0]["id"], page.data["cost"]);
   std::vector<double> told = {read_chart(page, cell.key)};
@@ -115,7 +115,7 @@ TEST(OneCost, SaysOfWhichFrameItIs_AndWhatIsLeftOut) {
   EXPECT_THAT(meaning(estimate, LightMotion::kStatic), HasSubstr("static light: lookups; left out: what every lookup"));
   EXPECT_THAT(meaning(CostKind::kTime, LightMotion::kMoving),
               HasSubstr("ms of a 960x540 frame with one map, measured, moving light: map, prefilter and lookups"));
-  const document::Page page = pages::make_run_page(records::make_run(), cells, pages::make_trade(cells));
+  const document::Page page = pages::make_run_page(records::make_run(), cells);
   EXPECT_EQ(page.data["costs"][0]["text"], meaning(estimate, LightMotion::kMoving));
   EXPECT_EQ(page.data["costs"][3]["text"], meaning(CostKind::kTime, LightMotion::kStatic));
 }

@@ -120,9 +120,9 @@ TEST(LightWidths, OneFilter_IsOneConfigurationOnAllScenes) {
   const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(3));
   EXPECT_THAT(scopes[0].configurations, SizeIs(2));
-  EXPECT_EQ(scopes[0].incomplete, 0u);
-  EXPECT_EQ(scopes[0].configurations[1].sigma_texels, std::nullopt) << "it has two widths";
-  EXPECT_EQ(name_class(scopes[0].configurations[0].width_class), "light") << "none is compared with them";
+  const auto points = list_points(scopes[0], list_error_measures()[0], list_cost_measures(cells)[kMovingCost]);
+  ASSERT_THAT(points, SizeIs(2));
+  EXPECT_EQ(name_class(points[0].group), "light") << "none is compared with them";
 }
 
 TEST(LightWidths, AreTold_WithWhatCannotBeSoNarrow_AndWhatIsWorseThanNone) {

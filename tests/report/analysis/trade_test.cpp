@@ -12,11 +12,19 @@ using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::SizeIs;
 
-const Estimate& error_of(const TradeScope& scope, std::size_t i, std::size_t measure) {
-  return *scope.configurations[i].errors[measure].estimate;
+Estimate error_of(const TradeScope& scope, std::size_t i, std::size_t which) {
+  return *measure(scope.configurations[i], list_error_measures()[which]).estimate;
 }
-const Estimate& cost_of(const TradeScope& scope, std::size_t i, std::size_t measure) {
-  return *scope.configurations[i].costs[measure].estimate;
+Estimate cost_of(const TradeScope& scope, std::size_t i, std::size_t which) {
+  return *measure(scope.configurations[i], list_cost_measures()[which]).estimate;
+}
+
+std::vector<FrontPoint> points_of(const TradeScope& scope, std::size_t cost = kMovingCost) {
+  return list_points(scope, list_error_measures()[0], list_cost_measures()[cost]);
+}
+
+FrontPoint make_point(double error, double cost, std::optional<std::size_t> group = 0) {
+  return {nullptr, {error, error, error}, {cost, cost, cost}, group};
 }
 
 TEST(TradeScopes, AreEachScene_AndAllTogetherFirst) {
@@ -24,7 +32,8 @@ TEST(TradeScopes, AreEachScene_AndAllTogetherFirst) {
   ASSERT_THAT(scopes, SizeIs(3));
   EXPECT_EQ(scopes[0].title, "all 2 scenes · 960 × 540");
   EXPECT_EQ(scopes[1].title, "cubes · view main · 960 × 540");
-  EXPECT_EQ(scopes[2].scene, "stack");
+  EXPECT_TRUE(scopes[0].is_joint);
+  EXPECT_EQ(scopes[2].title, "stack · view main · 960 × 540");
   EXPECT_THAT(make_trade_scopes({make_sweep_cell({"cubes"})}), SizeIs(1));
 }
 
@@ -44,14 +53,13 @@ TEST(TradeScopes, MapSizesShareAFront_PicturesDoNot) {
   const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(2));
   ASSERT_THAT(scopes[0].configurations, SizeIs(2));
-  EXPECT_EQ(scopes[0].configurations[1].label, "none, map 2048");
+  EXPECT_EQ(scopes[0].configurations[1].name, "none, map 2048");
 }
 
 TEST(TradeScopes, OfAll_HoldOnlyWhatEverySceneHas) {
   const auto scopes = make_trade_scopes(
       {make_sweep_cell({"cubes"}), make_sweep_cell({"cubes", "vsm", 4.0}), make_sweep_cell({"stack"})});
   EXPECT_THAT(scopes[0].configurations, SizeIs(1));
-  EXPECT_EQ(scopes[0].incomplete, 1u);
 }
 
 TEST(TradeScopes, Labels_NameOnlyWhatDiffers) {
@@ -59,8 +67,8 @@ TEST(TradeScopes, Labels_NameOnlyWhatDiffers) {
                                             make_sweep_cell({"cubes", "vsm", 4.0}), make_sweep_cell({})};
   for (records::CellRecord& cell : cells) cell.params["store"] = std::string("rg32f");
   const auto scopes = make_trade_scopes(cells);
-  EXPECT_EQ(scopes[0].configurations[0].label, "vsm (radius 2)");
-  EXPECT_EQ(scopes[0].configurations[2].label, "none");
+  EXPECT_EQ(scopes[0].configurations[0].name, "vsm (radius 2)");
+  EXPECT_EQ(scopes[0].configurations[2].name, "none");
 }
 
 TEST(TradeScopes, ScopesThatDifferOtherwise_HaveTheirOwnNames) {
@@ -142,70 +150,64 @@ TEST(TradeMeasures, EveryCost_IsOneMeanOverScenes_WhateverItsIntervals) {
   }
 }
 
-TEST(TradeFronts, AbsentValues_AreLeftOutWithTheirReason) {
+TEST(TradeFronts, WhatHasNoValue_IsLeftOutWithItsReason) {
   std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "mine"}),
-                                            make_sweep_cell({"cubes", "vsm"})};
+                                            make_sweep_cell({"cubes", "vsm"}), make_sweep_cell({"cubes", "esm"}),
+                                            make_sweep_cell({"cubes", "wrong"})};
   cells[1].cost.fetches.reset();
   cells[1].absent["cost.fetches"] = "the filter reads the map's samplers itself";
   cells[2].error.rmse.reset();
   cells[2].absent["error"] = "no truth";
+  cells[3].error.rmse = std::nan("");
+  cells[4].status = records::CellStatus::kSuspect;
   const TradeScope scope = make_trade_scopes(cells)[0];
-  const TradeFront front = make_trade_front(scope, 0, 2);
-  EXPECT_THAT(front.configurations, ElementsAre(0));
-  EXPECT_THAT(front.left_out, ::testing::UnorderedElementsAre(
-                                  ::testing::Pair("cost.fetches: the filter reads the map's samplers itself", 1),
-                                  ::testing::Pair("error.rmse: no truth", 1)));
+  const auto points = points_of(scope, 2);
+  ASSERT_THAT(points, SizeIs(1));
+  EXPECT_EQ(points[0].configuration, &scope.configurations[0]);
+  const auto reason = [&](std::size_t i, const Quantity& quantity) {
+    return measure(scope.configurations[i], quantity).absent;
+  };
+  EXPECT_EQ(reason(1, list_cost_measures()[2]), "cost.fetches: the filter reads the map's samplers itself");
+  EXPECT_EQ(reason(2, list_error_measures()[0]), "error.rmse: no truth");
+  EXPECT_EQ(reason(4, list_error_measures()[0]), "suspect: see the warnings");
 }
 
-TEST(TradeFronts, SuspectCells_AreLeftOut) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "mine"})};
-  cells[1].status = records::CellStatus::kSuspect;
-  const TradeScope scope = make_trade_scopes(cells)[0];
-  const TradeFront front = make_trade_front(scope, 0, 0);
-  EXPECT_THAT(front.configurations, ElementsAre(0));
-  EXPECT_THAT(front.left_out, ElementsAre(::testing::Pair("suspect: see the warnings", 1)));
+TEST(TradeFronts, HoldWhatIsLessWrongThanAllThatCostsNoMore_AndNameTheCheapestThatBeatsTheRest) {
+  EXPECT_THAT(find_front({make_point(0.1, 3.0), make_point(0.3, 1.0), make_point(0.2, 2.0), make_point(0.25, 2.5),
+                          make_point(0.3, 4.0)}),
+              ElementsAre(0, 1, 2, 2, 1));
+  EXPECT_THAT(find_front({make_point(0.2, 1.0), make_point(0.1, 1.0)}), ElementsAre(1, 1)) << "as dear";
+  EXPECT_THAT(find_front({make_point(0.2, 2.0), make_point(0.2, 1.0)}), ElementsAre(1, 1)) << "as wrong";
+  EXPECT_THAT(find_front({}), ::testing::IsEmpty());
 }
 
-TEST(TradeFronts, CompareKernelsOfOneClass) {
-  std::vector<records::CellRecord> cells = {
-      make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}), make_sweep_cell({"cubes", "slow", 0.0, 2.0, 0.0, 0.2}),
-      make_sweep_cell({"cubes", "narrow", 0.0, 3.0, 0.0, 0.3}), make_sweep_cell({"cubes", "mine", 0.0, 4.0, 0.0, 0.4})};
-  cells[2].kernel = {0.41, "sharp"};
-  cells[3].kernel = {};
-  const TradeScope scope = make_trade_scopes(cells)[0];
-  const TradeFront front = make_trade_front(scope, 0, 0);
-  EXPECT_THAT(front.members, ElementsAre(2, 0)) << "narrow kernels first";
-  EXPECT_EQ(front.placements[1].by, 0u);
-  EXPECT_EQ(front.placements[1].standing, Standing::kDominated);
-  EXPECT_EQ(front.placements[3].standing, Standing::kApart);
+TEST(TradeFronts, AreOfOneClass_AndWhatHasNoneIsComparedWithNothing) {
+  EXPECT_THAT(find_front({make_point(0.3, 1.0), make_point(0.2, 0.5, 1), make_point(0.4, 2.0),
+                          make_point(0.1, 0.1, std::nullopt), make_point(0.2, 0.2, std::nullopt)}),
+              ElementsAre(0, 1, 0, 3, 4));
+  EXPECT_FALSE(is_tied(make_point(0.1, 0.1, std::nullopt), make_point(0.1, 0.1, std::nullopt)));
+  EXPECT_FALSE(is_tied(make_point(0.1, 0.1, 0), make_point(0.1, 0.1, 1)));
 }
 
-TEST(TradeFronts, ValuesThatAreNotFinite_AreLeftOut) {
-  records::CellRecord cell = make_sweep_cell({});
-  cell.error.rmse = std::nan("");
-  EXPECT_THAT(make_trade_front(make_trade_scopes({cell})[0], 0, 0).configurations, SizeIs(0));
+TEST(TradeFronts, WhatNeitherErrorNorCostTellsApart_IsTied) {
+  FrontPoint a = make_point(0.2, 1.0), b = make_point(0.2005, 1.3);
+  EXPECT_FALSE(is_tied(a, b));
+  a.error = {0.2, 0.199, 0.201};
+  EXPECT_FALSE(is_tied(a, b)) << "costs differ";
+  a.cost = {1.0, 0.8, 1.35};
+  EXPECT_TRUE(is_tied(a, b) && is_tied(b, a));
+  b.error = {0.21, 0.2095, 0.2105};
+  EXPECT_FALSE(is_tied(a, b) || is_tied(b, a));
 }
 
 TEST(TradeFronts, OfFewerThanThreeCells_AreNotShown) {
   std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})};
-  EXPECT_FALSE(has_trade(make_trade_scopes(cells)));
+  const auto has_any = [&] { return has_trade(make_trade_scopes(cells), list_cost_measures(cells)); };
+  EXPECT_FALSE(has_any());
   cells.push_back(make_sweep_cell({"cubes", "esm"}));
-  EXPECT_TRUE(has_trade(make_trade_scopes(cells)));
+  EXPECT_TRUE(has_any());
   cells[2].error = {};
-  EXPECT_FALSE(has_trade(make_trade_scopes(cells)));
-}
-
-TEST(TradeFronts, HoldMembersTiesAndWhatTheyBeat) {
-  const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.1}),
-                                                  make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.1, 0.05}),
-                                                  make_sweep_cell({"cubes", "esm", 4.0, 2.1, 0.1, 0.0505}),
-                                                  make_sweep_cell({"cubes", "poisson", 4.0, 4.0, 0.1, 0.08})};
-  const TradeFront front = make_trade_front(make_trade_scopes(cells)[0], 0, 0);
-  EXPECT_THAT(front.members, ElementsAre(0, 1));
-  EXPECT_EQ(front.placements[2].standing, Standing::kTied);
-  EXPECT_EQ(front.placements[2].by, 1u);
-  EXPECT_EQ(front.placements[3].standing, Standing::kDominated);
-  EXPECT_EQ(front.placements[3].by, 1u);
+  EXPECT_FALSE(has_any());
 }
 
 }  // namespace
@@ -218,7 +220,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 std::vector<CostChart> make_width_charts_of(const std::vector<CellRecord>& cells) {
-  return make_width_charts(make_trade_scopes(cells));
+  return make_width_charts(make_trade_scopes(cells), list_cost_measures(cells));
 }
 
 TEST(WidthCharts, HaveACurveForEachFilter_NarrowBeforeWide) {
@@ -251,7 +253,7 @@ TEST(WidthCharts, MapsAreChartsOfTheirOwn_AndUnknownWidthsAreLeftOut) {
   }
   const auto charts = make_width_charts_of(cells);
   ASSERT_THAT(charts, SizeIs(1));
-  EXPECT_EQ(charts[0].map_size, 1024);
+  EXPECT_EQ(charts[0].id, "cubes.main.960x540.map1024");
 }
 
 TEST(WidthCharts, OtherParameters_MakeOtherCurves) {

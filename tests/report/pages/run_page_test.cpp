@@ -75,11 +75,11 @@ nlohmann::json read_data(const std::string& page) {
 }
 
 std::string make_html(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
-  return document::write_html(make_run_page(run, cells, make_trade(cells)));
+  return document::write_html(make_run_page(run, cells));
 }
 
 std::string make_summary(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
-  return document::write_markdown(make_run_page(run, cells, make_trade(cells)));
+  return document::write_markdown(make_run_page(run, cells));
 }
 
 records::CellRecord make_illustrated_cell(const std::string& scene, const std::string& filter) {
@@ -94,7 +94,7 @@ TEST(RunPage, TheBiasToShip_HasARow_WhereItWasSwept) {
   const std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 1.0)};
   records::BiasToShip ship{"cubes", "a sun",         cells[0].map_size, cells[0].fit, "none",
                            "none",  cells[0].params, "plane:texels=1",  0.01};
-  const auto write = [&] { return document::write_html(make_run_page(make_run(), cells, make_trade(cells), {ship})); };
+  const auto write = [&] { return document::write_html(make_run_page(make_run(), cells, {ship})); };
   EXPECT_THAT(write(), HasSubstr("bias to ship</td><td>cubes: plane:texels=1, contact gap 1 %"));
   EXPECT_EQ(read_data(write())["configurations"][0]["bias"], "cubes: plane:texels=1, contact gap 1 %");
   ship.map_size *= 2;

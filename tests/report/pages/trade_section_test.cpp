@@ -25,7 +25,7 @@ using ::testing::SizeIs;
 constexpr const char* kHostile = "</script><script>alert('1', \"2\")</script><!--";
 
 std::string write_trade(const std::vector<records::CellRecord>& cells) {
-  return document::write_html({"", {make_trade_section(make_run(), cells, *make_trade(cells))}, {}});
+  return document::write_html({"", {*make_trade_section(make_run(), cells)}, {}});
 }
 
 nlohmann::json read_charts(const std::string& page) {
@@ -67,7 +67,7 @@ std::vector<std::string> list_titles(const document::Chart& chart) {
 
 TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
   const auto cells = make_crossing_cells("cubes");
-  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::Section section = *make_trade_section(make_run(), cells);
   const document::ChartChoice& choice = find_choice(section, "front");
   ASSERT_THAT(choice.charts, SizeIs(16));
   EXPECT_THAT(choice.selectors[1].options, SizeIs(4));
@@ -104,7 +104,7 @@ TEST(TradeSection, Fronts_OfALargeRun_LeaveOutWhatIsBeaten) {
       cells.push_back(cell);
     }
   }
-  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::Section section = *make_trade_section(make_run(), cells);
   const document::Chart& chart = find_choice(section, "front").charts[0];
   ASSERT_THAT(chart.series, SizeIs(3));
   EXPECT_THAT(chart.series[1].points, SizeIs(2)) << "tied";
@@ -117,7 +117,7 @@ TEST(TradeSection, Fronts_OfALargeRun_LeaveOutWhatIsBeaten) {
 TEST(TradeSection, FrontOfOnePoint_HasNoLine_AndNamesHaveSixDigits) {
   auto cells = make_crossing_cells("cubes");
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i].params["radius"] = 0.1f * static_cast<float>(i);
-  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::Section section = *make_trade_section(make_run(), cells);
   for (const document::Chart& chart : find_choice(section, "front").charts)
     for (const document::ChartSeries& series : chart.series) {
       if (series.line == document::LineStyle::kSteps) EXPECT_GT(series.points.size(), 1u) << chart.id;
@@ -127,7 +127,7 @@ TEST(TradeSection, FrontOfOnePoint_HasNoLine_AndNamesHaveSixDigits) {
 
 TEST(TradeSection, CostOverWidth_IsAChartOfEachStateOfTheLight) {
   const auto cells = make_crossing_cells("cubes");
-  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::Section section = *make_trade_section(make_run(), cells);
   const document::ChartChoice& choice = find_choice(section, "width");
   ASSERT_THAT(choice.charts, SizeIs(2));
   EXPECT_EQ(choice.charts[0].id, "cubes.main.960x540.map1024.width.static");
@@ -139,7 +139,7 @@ TEST(TradeSection, CostOverWidth_IsAChartOfEachStateOfTheLight) {
 TEST(TradeSection, MapsOfSeveralFits_AreACurveEach) {
   std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({.map_size = 2048}), make_sweep_cell({})};
   cells[2].fit = "view";
-  const document::Section section = make_trade_section(make_run(), cells, *make_trade(cells));
+  const document::Section section = *make_trade_section(make_run(), cells);
   const document::Chart& chart = find_choice(section, "maps").charts.at(0);
   EXPECT_THAT(list_titles(chart), ElementsAre("tight fit", "view fit"));
   EXPECT_THAT(chart.series[0].points, SizeIs(2));
