@@ -34,7 +34,7 @@ struct Comparison {
   std::vector<std::string> warnings;
   images::Image difference;  ///< 1 channel: the means over the channels, first less second; NaN where one is not
                              ///< finite, infinite where a pixel does not count
-  images::Image flip;  ///< 1 channel; empty where there is none
+  images::Image flip;        ///< 1 channel; empty where there is none
 };
 
 /// Compares two pictures as a run compares its own: measure_error() over all channels of the values as stored, and
