@@ -8,8 +8,8 @@
 #include "harness/cli/commands.h"
 #include "harness/cli/terminal.h"
 #include "harness/scene/load.h"
+#include "harness/stress/axis.h"
 #include "harness/stress/bias_sweep.h"
-#include "harness/stress/run_stress.h"
 #include "harness/tune/tune_filters.h"
 #include "harness/tune/tune_scene.h"
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "harness/measure/map_coverage.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/scene_truth.h"
+#include "harness/measure/view_receivers.h"
 #include "harness/options/options.h"
 #include "report/analysis/measures.h"
 #include "report/images/image.h"

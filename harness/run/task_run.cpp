@@ -12,7 +12,6 @@
 
 #include "harness/measure/accumulation.h"
 #include "harness/measure/cell_analysis.h"
-#include "harness/measure/map_coverage.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/stability_meter.h"

@@ -10,7 +10,6 @@
 #include "harness/render/picture_passes.h"
 #include "harness/view/inspection.h"
 #include "harness/view/layers.h"
-#include "harness/view/meters.h"
 #include "harness/view/picture_input.h"
 #include "harness/view/settings_panel.h"
 #include "harness/view/view_state.h"

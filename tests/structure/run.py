@@ -3,8 +3,8 @@
 
 A source is listed in its room's CMakeLists.txt. An include runs from a room to one that stands before it in ROOMS, never back
 up. A room is one CMake target and one namespace, with the folders inside it that are no rooms. Every folder of sources has a
-README and holds at most 40 files (the filters' own do not count). No source has more than 700 lines, none outside of
-REPLAYS names a filter, and none includes a library that belongs to another folder. No two sources of one namespace, product or
+README and holds at most 40 files (the filters' own do not count). No source has more than 700 lines, none names a
+filter, and none includes a library that belongs to another folder. No two sources of one namespace, product or
 tests, define the same name for themselves: CMake joins sources into one (CMAKE_UNITY_BUILD), and a further file decides anew which.
 """
 import argparse
@@ -27,7 +27,6 @@ FORBIDDEN = {
 NAMESPACES = {"base": "shadowbench"}
 # Libraries (as includes have them) and the folder that alone knows them.
 KNOWN_IN = {r"OpenImageIO/": "report/images/", r"ft2build": "report/images/", r"glslang/": "harness/spirv/", r"spirv_cross": "harness/spirv/"}
-REPLAYS = "harness/stress/axes/"  # mistakes that were made with certain filters
 REFERENCE = "none"  # what every filter is compared with
 MOST_FILES = 40
 MOST_LINES = 700
@@ -45,7 +44,7 @@ def room_of(path):
 def check_names(root, name, text, faults):
     filters = "|".join(path.stem for path in root.glob("filters/*.glsl") if path.stem != REFERENCE)
     code = re.sub("//.*", "", text)
-    for found in re.findall(rf'"({filters})[":]', code) if not name.startswith(REPLAYS) else []:
+    for found in re.findall(rf'"({filters})[":]', code):
         faults.append(f"{name}: names the filter {found}")
     for library, folder in KNOWN_IN.items():
         if re.search(rf"#include <{library}", text) and not name.startswith(folder):

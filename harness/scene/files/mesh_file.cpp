@@ -3,14 +3,24 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 #include <tiny_gltf.h>
+#include <tiny_obj_loader.h>
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <sstream>
 #include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
+#include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -122,6 +132,437 @@ std::optional<fs::path> resolve_inside(const fs::path& folder, std::string_view 
   const fs::path target = failure ? fs::path() : fs::weakly_canonical(here / relative, failure);
   if (failure || !is_below(top, target)) return std::nullopt;
   return folder / relative;
+}
+
+namespace {
+
+constexpr double kCreaseDeg = 45.0;
+constexpr std::size_t kMostCornersOfAFace = 2048;
+
+/// The bytes of a text file, without a byte order mark. Throws kInput for UTF-16, of which the parser would read
+/// nothing.
+std::string read_text(const std::filesystem::path& file) {
+  const std::vector<unsigned char> bytes = read_file_bytes(file);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.substr(0, 4).find('\0') != text.npos)  // with its mark or without
+    fail_input("this text is UTF-16: save it as UTF-8", file.string());
+  return std::string(text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0));
+}
+
+/// A reference as written on any system: Windows' programs write \ for /.
+std::string with_slashes(std::string reference) {
+  std::ranges::replace(reference, '\\', '/');
+  return reference;
+}
+
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+/// The opacity that each texel of a map_d has: its alpha, or, where that is the same everywhere, its brightness.
+std::vector<std::uint8_t> list_opacities(const Texture& picture) {
+  std::vector<std::uint8_t> alpha, brightness;
+  for (std::size_t i = 0; i + 3 < picture.rgba.size(); i += 4) {
+    const std::uint8_t* texel = &picture.rgba[i];
+    alpha.push_back(texel[3]);
+    brightness.push_back(static_cast<std::uint8_t>((texel[0] + texel[1] + texel[2]) / 3));
+  }
+  const bool has_alpha = std::ranges::any_of(alpha, [](std::uint8_t each) { return each < 255; });
+  return has_alpha ? alpha : brightness;
+}
+
+/// Whether opacities are those of holes, whose edges alone are neither clear nor solid.
+bool are_holes(const std::vector<std::uint8_t>& opacities) {
+  constexpr int kClear = 26, kSolid = 229;  // a tenth from either end
+  const auto between = std::ranges::count_if(opacities, [](int each) { return each > kClear && each < kSolid; });
+  return between <= static_cast<std::ptrdiff_t>(opacities.size() / 4);
+}
+
+/// A texture with this colour, or white, and these opacities; it has the size of the opacities' picture.
+Texture with_opacities(Texture picture, const std::vector<std::uint8_t>& opacities, const Texture* colour) {
+  const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
+  for (std::size_t i = 0; i < opacities.size(); ++i) {
+    std::uint8_t* texel = &picture.rgba[4 * i];
+    std::fill_n(texel, 3, std::uint8_t{255});
+    if (colour) {
+      const std::size_t x = i % width * static_cast<std::size_t>(colour->width) / width;
+      const std::size_t y = i / width * static_cast<std::size_t>(colour->height) / height;
+      std::copy_n(&colour->rgba[4 * (y * static_cast<std::size_t>(colour->width) + x)], 3, texel);
+    }
+    texel[3] = opacities[i];
+  }
+  return picture;
+}
+
+/// Reads material libraries from the model's own folder only.
+class LibraryReader : public tinyobj::MaterialReader {
+ public:
+  LibraryReader(std::filesystem::path folder, std::string where)
+      : folder_(std::move(folder)), where_(std::move(where)) {}
+
+  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                  std::map<std::string, int>* index_of, std::string* warning, std::string* failure) override {
+    const std::optional<std::filesystem::path> file = resolve_inside(folder_, name);
+    if (!file) fail_input(fmt::format("mtllib '{}' lies outside its folder; such files are not read", name), where_);
+    if (!is_file(*file)) {
+      *warning += fmt::format("the material library '{}' is missing\n", name);
+      return true;
+    }
+    std::istringstream text(read_text(*file));
+    tinyobj::LoadMtl(index_of, materials, &text, warning, failure);
+    return true;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string where_;
+};
+
+/// A number that the whole word is; nothing where it is none, or out of range.
+template <class T>
+std::optional<T> parse(const std::string& word) {
+  T value{};
+  const char* start = word.data() + (word.starts_with('+') ? 1 : 0);
+  const char* end = word.data() + word.size();
+  const auto [stop, problem] = std::from_chars(start, end, value);
+  return problem == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
+/// The polygon along the axis in which it is largest, counter-clockwise.
+std::vector<glm::dvec2> flatten(const std::vector<glm::dvec3>& corners) {
+  glm::dvec3 normal(0.0);  // Newell's: twice the area, seen along each axis
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    normal += glm::cross(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
+  const glm::dvec3 size = glm::abs(normal);
+  const int z = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  std::vector<glm::dvec2> flat;
+  for (const glm::dvec3& corner : corners)
+    flat.emplace_back(normal[z] < 0.0 ? -corner[(z + 1) % 3] : corner[(z + 1) % 3], corner[(z + 2) % 3]);
+  return flat;
+}
+
+double cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// What is left of a polygon while ears are cut off it. A convex one becomes a fan.
+/// Source: Eberly 2002, Triangulation by Ear Clipping.
+class EarClipper {
+ public:
+  explicit EarClipper(const std::vector<glm::dvec3>& corners) : places_(flatten(corners)), left_(corners.size()) {
+    std::iota(left_.begin(), left_.end(), std::size_t{0});
+  }
+
+  /// What the parser cuts as well: along the shorter diagonal of four corners, which a dent may leave outside.
+  bool is_convex() const {
+    for (std::size_t i = 0; i < left_.size(); ++i)
+      if (cross(place(i), place(i + 1), place(i + 2)) < 0.0) return false;
+    return true;
+  }
+
+  /// Corners 3i to 3i+2 are those of triangle i. A polygon that touches or crosses itself gives some that overlap.
+  std::vector<std::size_t> clip() {
+    std::vector<std::size_t> triangles;
+    std::size_t first = 0, misses = 0;
+    while (left_.size() > 2) {
+      if (misses < left_.size() && !is_ear(first)) {
+        first = (first + 1) % left_.size();
+        ++misses;
+        continue;
+      }
+      triangles.insert(triangles.end(), {corner(first), corner(first + 1), corner(first + 2)});
+      const std::size_t tip = (first + 1) % left_.size();
+      left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(tip));
+      if (tip < first) --first;
+      misses = 0;
+    }
+    return triangles;
+  }
+
+ private:
+  std::vector<glm::dvec2> places_;
+  std::vector<std::size_t> left_;
+
+  /// Counts from the first again behind the last.
+  std::size_t corner(std::size_t i) const { return left_[i < left_.size() ? i : i - left_.size()]; }
+  const glm::dvec2& place(std::size_t i) const { return places_[corner(i)]; }
+
+  /// Whether no other corner lies in the triangle that begins at one; only those can that turn clockwise.
+  bool is_ear(std::size_t first) const {
+    const glm::dvec2 &a = place(first), &b = place(first + 1), &c = place(first + 2);
+    if (cross(a, b, c) < 0.0) return false;
+    for (std::size_t other = 3; other < left_.size(); ++other) {
+      const std::size_t i = (first + other) % left_.size();
+      const glm::dvec2& p = place(i);
+      const bool is_in = cross(a, b, p) >= 0.0 && cross(b, c, p) >= 0.0 && cross(c, a, p) >= 0.0;
+      const bool is_blunt = is_in && cross(place(i + left_.size() - 1), p, place(i + 1)) < 0.0;
+      if (is_blunt && p != a && p != b && p != c) return false;
+    }
+    return true;
+  }
+};
+
+/// The text of a file as the parser is to see it: its numbers are checked, and of its polygons, of which the parser
+/// loses parts, triangles are made.
+class ObjText {
+ public:
+  ObjText(std::string text, std::string where) : text_(std::move(text)), where_(std::move(where)) {
+    for (Line line; line.begin < text_.size(); ++line.number) {
+      line.end = std::min(text_.find_first_of("\r\n", line.begin), text_.size());
+      line.known = vertices_.size();
+      read(line);
+      line.begin = line.end + (text_.compare(line.end, 2, "\r\n") == 0 ? 2 : 1);  // whatever system wrote the file
+    }
+  }
+
+  /// The vertices as they are written, before the parser rounds them.
+  const std::vector<glm::dvec3>& vertices() const { return vertices_; }
+
+  std::string with_triangles() const {
+    std::string text;
+    std::size_t done = 0;
+    for (const Line& polygon : polygons_) {
+      text.append(text_, done, polygon.begin - done).append(write_triangles(polygon));
+      done = polygon.end;
+    }
+    return text.append(text_, done);
+  }
+
+ private:
+  struct Line {
+    std::size_t begin = 0, end = 0;  ///< in the text
+    std::size_t number = 1;
+    std::size_t known = 0;  ///< vertices before it, from which an index below 0 counts back
+  };
+
+  std::string text_, where_;
+  std::vector<glm::dvec3> vertices_;
+  std::vector<Line> polygons_;  ///< faces of more than three corners
+
+  [[noreturn]] void fail(const Line& line, const std::string& message) const {
+    fail_input(message, fmt::format("{}:{}", where_, line.number));
+  }
+
+  std::vector<std::string> list_words(const Line& line) const {
+    const std::string text = text_.substr(line.begin, line.end - line.begin);
+    std::istringstream words(text.substr(0, text.find('#')));
+    return {std::istream_iterator<std::string>(words), {}};
+  }
+
+  void read(const Line& line) {
+    const std::vector<std::string> words = list_words(line);
+    const std::string kind = words.empty() ? "" : words.front();
+    if (kind == "f" || kind == "l" || kind == "p")
+      for (std::size_t i = 1; i < words.size(); ++i) require_indices(line, words[i]);
+    if (kind == "f") note_polygon(line, words.size() - 1);
+    if (kind == "mtllib") replace_backslashes(line);
+    if (kind == "v" || kind == "vn" || kind == "vt") read_numbers(line, words);
+  }
+
+  /// Throws unless each part of a corner, as in 1/2/3 or 1//3, is empty or an index; the parser would read it as
+  /// another.
+  void require_indices(const Line& line, const std::string& corner) const {
+    for (const std::string& part : split_list(corner, "/"))
+      if (!part.empty() && !parse<int>(part))
+        fail(line,
+             fmt::format("'{}' is not an index: whole numbers are, up to {}", part, std::numeric_limits<int>::max()));
+  }
+
+  /// The parser takes a backslash for an escape, which only one before a space is meant to be.
+  void replace_backslashes(const Line& line) {
+    for (std::size_t i = line.begin; i + 1 < line.end; ++i)
+      if (text_[i] == '\\' && text_[i + 1] != ' ') text_[i] = '/';
+  }
+
+  void note_polygon(const Line& line, std::size_t corners) {
+    if (corners > kMostCornersOfAFace)
+      fail(line, fmt::format("this face has {} corners; at most {} are read: triangulate it in the modelling program",
+                             corners, kMostCornersOfAFace));
+    if (corners > 3) polygons_.push_back(line);
+  }
+
+  /// Throws unless all are finite numbers; the parser would read anything else as 0.
+  void read_numbers(const Line& line, const std::vector<std::string>& words) {
+    std::vector<double> numbers;
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const std::optional<double> number = parse<double>(words[i]);
+      if (!number || !std::isfinite(*number)) fail(line, fmt::format("'{}' is not a finite number", words[i]));
+      numbers.push_back(*number);
+    }
+    const std::size_t least = words.front() == "vt" ? 1 : 3;
+    if (numbers.size() < least)
+      fail(line, fmt::format("expected at least {} numbers, found {}", least, numbers.size()));
+    if (words.front() == "v") vertices_.emplace_back(numbers[0], numbers[1], numbers[2]);
+  }
+
+  std::string write_triangles(const Line& polygon) const {
+    const std::vector<std::string> words = list_words(polygon);
+    std::vector<glm::dvec3> corners;
+    for (std::size_t i = 1; i < words.size(); ++i) corners.push_back(find_vertex(polygon, words[i]));
+    EarClipper clipper(corners);
+    if (corners.size() == 4 && clipper.is_convex()) return text_.substr(polygon.begin, polygon.end - polygon.begin);
+    std::string lines;
+    const std::vector<std::size_t> triangles = clipper.clip();
+    for (std::size_t i = 0; i < triangles.size(); i += 3)
+      lines += fmt::format("{}f {} {} {}", i > 0 ? "\n" : "", words[triangles[i] + 1], words[triangles[i + 1] + 1],
+                           words[triangles[i + 2] + 1]);
+    return lines;
+  }
+
+  const glm::dvec3& find_vertex(const Line& line, const std::string& corner) const {
+    const long index = std::strtol(corner.c_str(), nullptr, 10);
+    const long at = index < 0 ? static_cast<long>(line.known) + index : index - 1;
+    if (at >= 0 && static_cast<std::size_t>(at) < vertices_.size()) return vertices_[static_cast<std::size_t>(at)];
+    fail(line, fmt::format("a face uses vertex {}, but there are {}", index, vertices_.size()));
+  }
+};
+
+/// Builds a model from a file, part by part.
+class ObjImporter {
+ public:
+  ObjImporter(std::filesystem::path file, const glm::dvec3& origin)
+      : file_(std::move(file)), where_(file_.string()), origin_(origin) {
+    const ObjText source(read_text(file_), where_);
+    vertices_ = source.vertices();
+    std::istringstream text(source.with_triangles());
+    LibraryReader libraries(file_.parent_path(), where_);
+    std::string failure;
+    const bool parsed =
+        tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning_, &failure, &text, &libraries, true);
+    if (!parsed || !failure.empty()) fail("not a valid .obj file: " + failure.substr(0, failure.find('\n')));
+    if (vertices_.size() != attributes_.vertices.size() / 3)
+      fail("a line has something before its 'v': its vertices cannot be counted");
+  }
+
+  MeshFile import() {
+    for (const tinyobj::material_t& material : materials_) add_material(material);
+    result_.materials.push_back({.name = "default"});
+    for (const tinyobj::shape_t& shape : shapes_) add_shape(shape);
+    std::istringstream warnings(warning_);
+    for (std::string line; std::getline(warnings, line);)
+      if (!line.empty()) result_.warnings.push_back(line);
+    return std::move(result_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { fail_input(message, where_); }
+
+  void add_material(const tinyobj::material_t& source) {
+    Material material;
+    material.name = source.name;
+    material.base_color = {source.diffuse[0], source.diffuse[1], source.diffuse[2], source.dissolve};
+    const Picture picture = add_texture(source.diffuse_texname, source.alpha_texname);
+    material.base_color_texture = picture.texture;
+    material.alpha_mode = source.dissolve < 1.0f ? AlphaMode::kBlend : picture.alpha_mode;
+    if (material.alpha_mode == AlphaMode::kBlend)
+      result_.warnings.push_back(fmt::format("material '{}' blends; cameras see it opaque", material.name));
+    result_.materials.push_back(material);
+  }
+
+  /// A texture's index, -1 for none, and what its alpha means.
+  struct Picture {
+    int texture = -1;
+    AlphaMode alpha_mode = AlphaMode::kOpaque;
+  };
+
+  /// The texture of two pictures, by their names, which may be empty: map_Kd, whose own alpha does not count, and
+  /// map_d. One that several materials show is there once.
+  Picture add_texture(const std::string& colour_name, const std::string& opacity_name) {
+    const auto [known, is_new] = pictures_.try_emplace({colour_name, opacity_name});
+    if (!is_new) return known->second;
+    std::optional<Texture> texture = read_colour(colour_name);
+    if (!opacity_name.empty()) {
+      Texture opacity = read_picture(find_picture("map_d", opacity_name), opacity_name);
+      const std::vector<std::uint8_t> opacities = list_opacities(opacity);
+      known->second.alpha_mode = are_holes(opacities) ? AlphaMode::kMask : AlphaMode::kBlend;
+      texture = with_opacities(std::move(opacity), opacities, texture ? &*texture : nullptr);
+    }
+    if (!texture) return known->second;
+    result_.textures.push_back(std::move(*texture));
+    known->second.texture = static_cast<int>(result_.textures.size()) - 1;
+    return known->second;
+  }
+
+  std::optional<Texture> read_colour(const std::string& name) {
+    if (name.empty()) return std::nullopt;
+    const std::filesystem::path file = find_picture("map_Kd", name);
+    if (!is_file(file)) {
+      result_.warnings.push_back(
+          fmt::format("the picture '{}' is missing; its materials have their plain colour", name));
+      return std::nullopt;
+    }
+    Texture colour = read_picture(file, name);
+    for (std::size_t i = 3; i < colour.rgba.size(); i += 4) colour.rgba[i] = 255;
+    return colour;
+  }
+
+  std::filesystem::path find_picture(const char* key, const std::string& name) const {
+    const auto file = resolve_inside(file_.parent_path(), with_slashes(name));
+    if (!file) fail(fmt::format("{} '{}' lies outside its folder; such files are not read", key, name));
+    return *file;
+  }
+
+  Texture read_picture(const std::filesystem::path& file, const std::string& name) const {
+    return decode_texture(read_file_bytes(file), name, where_, result_.textures);
+  }
+
+  /// Adds one mesh per material of the shape.
+  void add_shape(const tinyobj::shape_t& shape) {
+    std::map<int, Mesh> mesh_of;
+    bool has_normals = true;
+    for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
+      const std::size_t face = i / 3;
+      const int wanted = face < shape.mesh.material_ids.size() ? shape.mesh.material_ids[face] : -1;
+      const bool known = wanted >= 0 && static_cast<std::size_t>(wanted) < materials_.size();
+      const int material = known ? wanted : static_cast<int>(materials_.size());
+      Mesh& mesh = mesh_of[material];
+      mesh.material = material;
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+      mesh.vertices.push_back(read_corner(shape.mesh.indices[i], shape.name));
+      has_normals = has_normals && shape.mesh.indices[i].normal_index >= 0;
+    }
+    for (auto& [material, mesh] : mesh_of) {
+      mesh.name = shape.name.empty() ? file_.stem().string() : shape.name;
+      result_.meshes.push_back(has_normals ? std::move(mesh) : with_smooth_normals(mesh, kCreaseDeg));
+    }
+  }
+
+  Vertex read_corner(const tinyobj::index_t& corner, const std::string& name) const {
+    const tinyobj::attrib_t& all = attributes_;
+    const auto check = [&](int index, std::size_t count, const char* what) {
+      if (index >= 0 && static_cast<std::size_t>(index) < count) return static_cast<std::size_t>(index);
+      fail(fmt::format("a face of '{}' uses {} {}, but there are {}", name, what, index + 1, count));
+    };
+    Vertex vertex;
+    vertex.position_ws = glm::vec3(vertices_[check(corner.vertex_index, vertices_.size(), "vertex")] - origin_);
+    if (corner.normal_index >= 0) {
+      const std::size_t n = 3 * check(corner.normal_index, all.normals.size() / 3, "normal");
+      vertex.normal_ws = {all.normals[n], all.normals[n + 1], all.normals[n + 2]};
+    }
+    if (corner.texcoord_index >= 0) {
+      const std::size_t t = 2 * check(corner.texcoord_index, all.texcoords.size() / 2, "texture coordinate");
+      vertex.uv = {all.texcoords[t], 1.0f - all.texcoords[t + 1]};
+    }
+    return vertex;
+  }
+
+  std::filesystem::path file_;
+  std::string where_;
+  glm::dvec3 origin_;
+  std::vector<glm::dvec3> vertices_;  ///< as written; the parser's are rounded
+  tinyobj::attrib_t attributes_;
+  std::vector<tinyobj::shape_t> shapes_;
+  std::vector<tinyobj::material_t> materials_;
+  std::string warning_;
+  MeshFile result_;
+  std::map<std::pair<std::string, std::string>, Picture> pictures_;
+};
+
+}  // namespace
+
+MeshFile import_obj(const std::filesystem::path& file, const glm::dvec3& origin) {
+  return ObjImporter(file, origin).import();
 }
 
 }  // namespace shadowbench::scene

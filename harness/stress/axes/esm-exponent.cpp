@@ -5,7 +5,6 @@
 
 #include "filters/store_format.h"
 #include "harness/stress/axis.h"
-#include "harness/stress/run_stress.h"
 #include "harness/stress/synthetic_scene.h"
 
 namespace shadowbench::stress {

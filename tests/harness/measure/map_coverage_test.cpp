@@ -1,10 +1,9 @@
-#include "harness/measure/map_coverage.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "harness/measure/view_receivers.h"
 #include "harness/scene/mesh_tools.h"
 
 namespace shadowbench::measure {

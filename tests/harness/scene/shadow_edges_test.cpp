@@ -1,5 +1,3 @@
-#include "harness/scene/shadow_edges.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "harness/scene/complete.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "test_files.h"

@@ -12,7 +12,6 @@
 #include "base/error.h"
 #include "filters/model.h"
 #include "harness/options/options.h"
-#include "harness/stress/run_stress.h"
 #include "harness/stress/synthetic_scene.h"
 #include "tests/harness/stress/stress_fixture.h"
 

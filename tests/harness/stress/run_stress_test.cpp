@@ -1,11 +1,10 @@
-#include "harness/stress/run_stress.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "harness/stress/axis.h"
 
 namespace shadowbench::stress {
 namespace {

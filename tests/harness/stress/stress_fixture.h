@@ -5,7 +5,7 @@
 #include <string>
 
 #include "harness/options/options.h"
-#include "harness/stress/run_stress.h"
+#include "harness/stress/axis.h"
 
 namespace shadowbench::stress {
 

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "harness/view/side_measurement.h"
-#include "harness/view/stage.h"
+#include "harness/view/workbench.h"
 #include "report/records/format.h"
 #include "tests/harness/view/view_fixture.h"
 

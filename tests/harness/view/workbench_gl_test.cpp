@@ -1,6 +1,6 @@
 // What a stage draws again, and what it compiles for that, when light or camera change.
 
-#include "harness/view/stage.h"
+#include "harness/view/workbench.h"
 #include "tests/harness/view/view_fixture.h"
 
 namespace shadowbench::test {
