@@ -45,24 +45,19 @@ seed = 2
 #include "lib/early_bail.glsl"
 #include "lib/penumbra.glsl"
 
-const float no_blocker = 2.0;
-
-// The depth that a tap of the search reads, if it blocks.
-float find_blocker(Receiver r, vec2 offset) {
-  float z = biased_depth(r, offset), depth, plane;
-  if (read == READ_INTERPOLATED) {
-    Corner corner = find_corner(r, offset);
-    depth = dot(gather_depth(r, corner.offset), corner.weights);
-    plane = corner_depth(r, corner.offset, z);
-  } else {
-    depth = fetch_depth(r, offset);
-    plane = nearest_depth(r, offset, z);
-  }
-  return depth < plane ? depth : no_blocker;
+// The depth that a tap of the search reads, and the one that it blocks if it is nearer.
+vec2 read_tap(Receiver r, vec2 offset) {
+  float z = biased_depth(r, offset);
+  if (read != READ_INTERPOLATED) return vec2(fetch_depth(r, offset), nearest_depth(r, offset, z));
+  Corner corner = find_corner(r, offset);
+  return vec2(dot(gather_depth(r, corner.offset), corner.weights), corner_depth(r, corner.offset, z));
 }
 
 float compare_tap(Receiver r, vec2 offset) {
-  if (read == READ_INTERPOLATED) return find_blocker(r, offset) == no_blocker ? 1.0 : 0.0;
+  if (read == READ_INTERPOLATED) {
+    vec2 tap = read_tap(r, offset);
+    return step(tap.y, tap.x);
+  }
   float z = biased_depth(r, offset);
   return read == READ_NEAREST ? compare_nearest(r, offset, z) : compare_2x2(r, offset, z);
 }
@@ -75,9 +70,9 @@ float visibility(Receiver r) {
   float blockers = 0.0;
   for (int i = 0; i < search_taps; ++i) {
     vec2 offset = search * rotate(search_points[order_tap(i, search_taps)], turn);
-    float depth = find_blocker(r, offset);
-    if (depth != no_blocker) {
-      depths += depth;
+    vec2 tap = read_tap(r, offset);
+    if (tap.x < tap.y) {
+      depths += tap.x;
       blockers += 1.0;
     }
     if (blockers == 0.0 && agrees(i, blockers)) return 1.0;
