@@ -35,6 +35,8 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/filters/ DESTINATION ${_share}/filters C
         PATTERN presets.toml)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/ DESTINATION ${_share}/shaders COMPONENT program PATTERN "*.md" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/ DESTINATION ${_share}/data COMPONENT program PATTERN "*.md" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/harness/engines/ DESTINATION ${_share}/engines COMPONENT program FILES_MATCHING PATTERN "*.mjs"
+        PATTERN "*.js" PATTERN "*.json" PATTERN "*.toml" PATTERN node_modules EXCLUDE)
 install(DIRECTORY ${_manual}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program FILES_MATCHING PATTERN "*.1.gz")
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/harness/slurm.sh DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/harness/cli/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME shadowbench

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <set>
+#include <tuple>
 
 #include "base/error.h"
 #include "report/images/picture_io.h"
@@ -148,8 +148,9 @@ Image blur(const Mask& mask, int width, int height) {
 /// Which pixels theirs covers, and which ours: receivers by unlit, or else surfaces by depth; empty without either.
 std::array<Mask, 2> find_coverage(const ExternalImages& images, const OwnView& own) {
   Mask theirs;
+  const float least = images.unlit ? least_light(*images.unlit) : 0.0f;
   if (images.unlit)
-    for (const float value : images.unlit->texels) theirs.push_back(value > 0.0f ? 1 : 0);
+    for (const float value : images.unlit->texels) theirs.push_back(value > least ? 1 : 0);
   else if (images.depth)
     for (const float value : images.depth->texels) theirs.push_back(std::isfinite(value) && value > 0.0f ? 1 : 0);
   else
@@ -273,170 +274,71 @@ Image make_visibility(const ExternalImages& images, const OwnView& own, std::vec
   return visibility;
 }
 
-using images::Image;
-
-/// Pairs of our light and theirs, where both are above nothing.
-struct LightPairs {
-  std::vector<std::size_t> pixels;
-  std::vector<double> ours, theirs;
-};
-
-LightPairs pair_lights(const Image& unlit, const OwnView& own) {
-  LightPairs pairs;
-  for (std::size_t i = 0; i < unlit.texels.size(); ++i) {
-    const float a = own.direct.texels[i], b = unlit.texels[i];
-    if (!own.counts[i] || !(a > 0.01f) || !(b > 0.0f) || !std::isfinite(b)) continue;
-    pairs.pixels.push_back(i);
-    pairs.ours.push_back(static_cast<double>(a));
-    pairs.theirs.push_back(static_cast<double>(b));
-  }
-  return pairs;
-}
-
-/// The exponent p of theirs = k ours^p, by least squares on logarithms; nothing where ours hardly varies.
-std::optional<double> fit_exponent(const LightPairs& pairs) {
-  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
-  for (std::size_t i = 0; i < pairs.ours.size(); ++i) {
-    const double a = std::log(pairs.ours[i]), b = std::log(pairs.theirs[i]);
-    n += 1.0, x += a, y += b, xx += a * a, xy += a * b;
-  }
-  constexpr double kLeastVariance = 0.01;  // of the logarithm: a tenth up and down
-  const double variance = n > 0.0 ? xx / n - x * x / (n * n) : 0.0;
-  if (variance < kLeastVariance) return std::nullopt;
-  return (xy / n - x * y / (n * n)) / variance;
-}
-
-void check_encoding(const LightPairs& pairs, std::vector<Finding>& findings) {
-  const auto exponent = fit_exponent(pairs);
-  constexpr double kOfDisplay = 0.45, kNear = 0.1;
-  if (!exponent || std::abs(*exponent - kOfDisplay) > kNear) return;
-  findings.push_back({true, fmt::format("unlit goes as the {:.2f}th power of the light that falls on our surfaces: "
-                                        "these are values for a display (sRGB), not linear light; write the linear "
-                                        "ones, before they are encoded",
-                                        *exponent)});
-}
-
-/// Says where their light falls on our surfaces in other proportions than ours.
-void check_proportions(const LightPairs& pairs, std::vector<Finding>& findings) {
-  double products = 0.0, squares = 0.0, all = 0.0, rest = 0.0;
-  for (std::size_t i = 0; i < pairs.ours.size(); ++i) {
-    products += pairs.ours[i] * pairs.theirs[i];
-    squares += pairs.ours[i] * pairs.ours[i];
-  }
-  for (std::size_t i = 0; i < pairs.ours.size(); ++i) {
-    const double gap = pairs.theirs[i] - products / squares * pairs.ours[i];
-    rest += gap * gap;
-    all += pairs.theirs[i] * pairs.theirs[i];
-  }
-  constexpr double kMostResidual = 0.05;
-  if (!(rest > kMostResidual * kMostResidual * all)) return;
-  findings.push_back({false, fmt::format("its light falls on our surfaces in other proportions, by {}: the light's "
-                                         "direction is another one (mirrored, or as the way to the light), or the "
-                                         "materials are not matt in the colours of the model",
-                                         records::format_rate(std::sqrt(rest / all)))});
-}
-
-/// Says where the light reaches other surfaces than ours.
-void check_faces(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings) {
-  double surfaces = 0.0, apart = 0.0;
-  const std::vector<std::uint8_t> inside = find_inside(own, own.is_surface);
-  for (std::size_t i = 0; i < own.counts.size(); ++i) {
+/// Surfaces that are seen from behind and are not in their picture, where hardly anything else is missing; said. Empty:
+/// there are none.
+Mask find_culled(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings) {
+  const std::array<Mask, 2> coverage = find_coverage(images, own);
+  if (own.is_back.empty() || coverage[0].empty()) return {};
+  const Mask inside = find_inside(own, own.is_surface);
+  double surfaces = 0.0, backs = 0.0, missing = 0.0, missing_backs = 0.0;
+  for (std::size_t i = 0; i < inside.size(); ++i) {
     if (!inside[i]) continue;
+    constexpr float kAlike = 0.01f;
+    const bool is_missing = images.depth ? !(std::abs(images.depth->texels[i] / own.depth.texels[i] - 1.0f) <= kAlike)
+                                         : coverage[0][i] != coverage[1][i];
     surfaces += 1.0;
-    apart += (images.unlit->texels[i] > 0.0f) != (own.counts[i] != 0);
+    backs += own.is_back[i];
+    missing += is_missing;
+    missing_backs += is_missing && own.is_back[i];
   }
-  constexpr double kMost = 0.005;
-  if (!(apart > kMost * surfaces)) return;
-  findings.push_back({false, fmt::format("{} of the surfaces are lit in one of the two pictures alone: the light's "
-                                         "direction is another one (mirrored, or as the way to the light)",
-                                         records::format_rate(apart / surfaces))});
-}
-
-/// Finds the direction from which a matt surface of our colours would have their light.
-void check_direction(const LightPairs& pairs, const OwnView& own, std::vector<Finding>& findings) {
-  if (!own.to_light_ws) return;
-  const glm::dvec3 to_light(*own.to_light_ws);
-  glm::dmat3 products(0.0);
-  glm::dvec3 right(0.0);
-  const auto color = [&](std::size_t i, const glm::dvec3& normal) {
-    return pairs.ours[i] / glm::dot(normal, to_light);
-  };
-  for (std::size_t i = 0; i < pairs.pixels.size(); ++i) {
-    const glm::dvec3 normal(own.normals_ws[pairs.pixels[i]]), scaled = color(i, normal) * normal;
-    products += glm::outerProduct(scaled, scaled);
-    right += pairs.theirs[i] * scaled;
-  }
-  const double size = products[0][0] + products[1][1] + products[2][2];
-  if (!(glm::determinant(products) > 1e-6 * size * size * size)) {  // normals of few directions
-    check_proportions(pairs, findings);
-    return;
-  }
-  const glm::dvec3 fitted = glm::inverse(products) * right;
-  double squares = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < pairs.pixels.size(); ++i) {
-    const glm::dvec3 normal(own.normals_ws[pairs.pixels[i]]);
-    const double gap = pairs.theirs[i] - color(i, normal) * glm::dot(normal, fitted);
-    squares += gap * gap;
-    all += pairs.theirs[i] * pairs.theirs[i];
-  }
-  constexpr double kMostResidual = 0.03, kMostDegrees = 0.25;
-  const double cosine = glm::dot(glm::normalize(fitted), to_light);
-  const double degrees = glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
-  if (std::sqrt(squares / all) > kMostResidual) return check_proportions(pairs, findings);
-  if (degrees < kMostDegrees) return;
-  findings.push_back({false, fmt::format("its surfaces are lit from {:.2g} degrees beside our light: the light's "
-                                         "direction is another one, or its target is not where it shines",
-                                         degrees)});
-}
-
-/// Whether all values are codes of eight bits; also says so, or that they are half floats.
-bool check_steps(const ExternalImages& images, std::vector<Finding>& findings) {
-  // Few values may be on a grid by chance, or by the number of a filter's taps.
-  const std::size_t fewest = images.unlit ? 3 : 64;
-  constexpr std::size_t kFewestOfHalf = 16;
-  bool is_coded = true, is_half = true;
-  std::set<float> values;
-  for (const std::optional<Image>* image : {&images.unlit, &images.lit, &images.visibility}) {
-    if (!*image) continue;
-    const Image half = images::round_to_half(**image);
-    for (std::size_t i = 0; i < half.texels.size(); ++i) {
-      const float value = (*image)->texels[i], code = 255.0f * value;
-      if (!std::isfinite(value) || value == 0.0f || value == 1.0f) continue;
-      is_coded = is_coded && std::abs(code - std::round(code)) < 1e-3f;
-      is_half = is_half && value == half.texels[i];
-      if (values.size() < fewest + kFewestOfHalf) values.insert(value);
-    }
-  }
-  is_coded = is_coded && values.size() >= fewest;
-  if (is_coded)
-    findings.push_back({false,
-                        "its values are steps of 1/255: eight bits leave visibility uncertain by some hundredths "
-                        "in dark places; write floats"});
-  else if (is_half && values.size() >= fewest + kFewestOfHalf)
-    findings.push_back({false, "its values are half floats: visibility is uncertain by up to 0.0005"});
-  return is_coded;
-}
-
-void check_samples(const LightPairs& pairs, const OwnView& own, std::vector<Finding>& findings) {
-  if (pairs.pixels.empty()) return;
-  const std::vector<std::uint8_t> inside = find_inside(own, own.counts);
-  std::vector<double> ratios;
-  for (std::size_t i = 0; i < pairs.pixels.size(); ++i) ratios.push_back(pairs.theirs[i] / pairs.ours[i]);
-  std::vector<double> sorted = ratios;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double usual = sorted[sorted.size() / 2];
-  std::array<double, 2> odd{}, all{};
-  for (std::size_t i = 0; i < ratios.size(); ++i) {
-    const std::size_t where = inside[pairs.pixels[i]];
-    all[where] += 1.0;
-    odd[where] += std::abs(ratios[i] / usual - 1.0) > 0.1;
-  }
-  if (all[0] == 0.0 || all[1] == 0.0 || odd[1] > 0.005 * all[1] || odd[0] < 0.05 * all[0]) return;
+  // Without depth a surface is not missed before another that is lit.
+  constexpr double kFewest = 0.001, kMost = 0.8, kMostWithoutDepth = 0.3;
+  if (!(missing_backs > kFewest * surfaces && missing_backs > kMost * missing &&
+        missing_backs > (images.depth ? kMost : kMostWithoutDepth) * backs))
+    return {};
   findings.push_back(
-      {false, fmt::format("{} of the pixels at silhouettes have other light than our surfaces there, and "
-                          "hardly any inside: it is antialiased; switch multisampling off, or look at "
-                          "the error without silhouettes",
-                          records::format_rate(odd[0] / all[0]))});
+      {false, fmt::format("{} of our surfaces are seen from behind, and are not in its picture: it culls "
+                          "back faces. They are left out; draw both sides of every material",
+                          records::format_rate(backs / surfaces))});
+  return own.is_back;
+}
+
+/// What is seen without the surfaces that were culled: there theirs decides what is covered.
+OwnView leave_out(OwnView own, const Mask& culled, const ExternalImages& images) {
+  const Mask theirs = find_coverage(images, own)[1];
+  for (std::size_t i = 0; i < culled.size(); ++i) {
+    if (!culled[i]) continue;
+    own.counts[i] = own.is_surface[i] = theirs[i];
+    own.depth.texels[i] = own.direct.texels[i] = 0.0f;
+    own.normals_ws[i] = glm::vec3(0.0f);
+  }
+  return own;
+}
+
+/// Says where shadows of open casters are missing, because faces of one side alone are in the map.
+void check_casters(const Image& visibility, const OwnView& own, std::vector<Finding>& findings) {
+  double shaded = 0.0, lit = 0.0;
+  std::array<double, 4> shaded_by{}, lit_by{};  // by faces that block the light
+  for (std::size_t i = 0; i < own.casters.size(); ++i) {
+    if (own.casters[i] == 0 || !std::isfinite(visibility.texels[i])) continue;
+    constexpr float kLit = 0.9f;
+    const double is_lit = visibility.texels[i] > kLit;
+    shaded += 1.0, shaded_by[own.casters[i]] += 1.0;
+    lit += is_lit, lit_by[own.casters[i]] += is_lit;
+  }
+  constexpr double kFewest = 0.01, kMost = 0.8;
+  const auto explains = [&](std::uint8_t faces) {
+    return lit > kFewest * shaded && lit_by[faces] > kMost * shaded_by[faces] && lit_by[faces] > kMost * lit;
+  };
+  for (const auto& [faces, missing, kept] :
+       {std::tuple(kFrontsCast, "front", "back"), std::tuple(kBacksCast, "back", "front")}) {
+    if (!explains(faces)) continue;
+    findings.push_back(
+        {false, fmt::format("{} of what is wholly in shadow is lit, nearly all of it where only {} faces "
+                            "block the light: its shadow map holds {} faces alone. Let both sides of "
+                            "every material cast",
+                            records::format_rate(lit / shaded), missing, kept)});
+  }
 }
 
 }  // namespace
@@ -452,7 +354,11 @@ CheckedImages check_images(const ExternalImages& images, const OwnView& own) {
                images.names);
   }
   CheckedImages checked;
+  const Mask culled = find_culled(images, own, checked.findings);
   checked.visibility = make_visibility(images, own, checked.findings);
+  for (std::size_t i = 0; i < culled.size(); ++i)
+    if (culled[i]) checked.visibility.texels[i] = kNaN;
+  check_casters(checked.visibility, own, checked.findings);
   std::int64_t receivers = 0;
   for (std::size_t i = 0; i < own.counts.size(); ++i) {
     if (!own.counts[i]) continue;
@@ -468,17 +374,18 @@ CheckedImages check_images(const ExternalImages& images, const OwnView& own) {
     checked.findings.push_back({false, fmt::format("{} of the receivers have no visibility (NaN, or unlit is 0): they "
                                                    "are left out",
                                                    records::format_rate(share))});
-  const std::array<Mask, 2> coverage = find_coverage(images, own);
+  const OwnView seen = leave_out(own, culled, images);
+  const std::array<Mask, 2> coverage = find_coverage(images, seen);
   if (!coverage[0].empty()) {
     check_orientation(coverage, any.width, any.height, checked.findings);
     const Image ours = blur(coverage[0], any.width, any.height), theirs = blur(coverage[1], any.width, any.height);
-    if (images.depth) checked.alignment = align_by_depth(*images.depth, own, checked.findings);
+    if (images.depth) checked.alignment = align_by_depth(*images.depth, seen, checked.findings);
     if (!checked.alignment.shift)
       checked.alignment = {
           "coverage", find_shift({ours, theirs, [](auto, const auto&) { return true; }, kLeastShareOfEdges}).shift, {}};
   }
   check_shift(checked.alignment, checked.findings);
-  check_light(images, own, checked.findings);
+  check_light(images, seen, checked.findings);
   return checked;
 }
 
@@ -503,16 +410,6 @@ std::vector<std::uint8_t> find_inside(const OwnView& own, const std::vector<std:
     }
   }
   return inside;
-}
-
-void check_light(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings) {
-  const bool is_coded = check_steps(images, findings);
-  if (!images.unlit) return;
-  const LightPairs pairs = pair_lights(*images.unlit, own);
-  check_encoding(pairs, findings);
-  check_faces(images, own, findings);
-  if (!is_coded) check_direction(pairs, own, findings);  // steps look like another direction
-  check_samples(pairs, own, findings);
 }
 
 }  // namespace shadowbench::engines

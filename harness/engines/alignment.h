@@ -11,14 +11,21 @@
 
 namespace shadowbench::engines {
 
+/// Faces that block the light's centre from a receiver that is wholly in shadow: those of them that face the light, and
+/// those that face away from it, by the order of their corners.
+inline constexpr std::uint8_t kFrontsCast = 1, kBacksCast = 2;
+
 /// What we know of a view that another renderer drew; rows top to bottom.
 struct OwnView {
   std::vector<std::uint8_t> counts;      ///< 1: a receiver, a surface that faces the light
   std::vector<std::uint8_t> is_surface;  ///< 0: background
   images::Image depth;                   ///< metres along the camera's axis; 0: background
   images::Image direct;  ///< what the light adds to matt surfaces where nothing is in its way: grey, in any unit
-  std::vector<glm::vec3> normals_ws;     ///< of surfaces
-  std::optional<glm::vec3> to_light_ws;  ///< of a light at infinity, unit length
+  std::vector<glm::vec3> normals_ws;      ///< of surfaces, as they are shaded
+  std::optional<glm::vec3> to_light_ws;   ///< of a light at infinity, unit length
+  std::vector<glm::vec3> to_viewer_ws{};  ///< of surfaces, unit length; empty: not known
+  std::vector<std::uint8_t> is_back{};    ///< 1: a surface that is seen from behind; empty: not known
+  std::vector<std::uint8_t> casters{};    ///< kFrontsCast + kBacksCast, 0 but in full shadow; empty: not known
 };
 
 /// What is wrong with another renderer's pictures, or may be.
@@ -57,6 +64,9 @@ std::vector<std::uint8_t> find_inside(const OwnView& own, const std::vector<std:
 /// Compares the light that another renderer's surfaces have without shadows with that of ours: values for a display in
 /// place of linear light, a light from elsewhere, antialiasing, few bits.
 void check_light(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings);
+
+/// Where unlit has no more than this, an engine's rounding is all that it has.
+float least_light(const images::Image& unlit);
 
 /// The neighbour of a pixel; nothing beyond the picture's edge.
 std::optional<std::size_t> step(std::size_t pixel, int dx, int dy, int width, int height);

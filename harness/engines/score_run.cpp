@@ -83,6 +83,66 @@ void copy_shared_paths(records::ImagesRecord& to, const records::ImagesRecord& f
   to.truth_values = from.truth_values;
 }
 
+using Way = std::function<glm::vec3(const glm::vec3& position_ws)>;
+
+glm::vec3 to_viewer(const scene::Camera& camera, const glm::vec3& position_ws) {
+  return camera.orthographic_height_m > 0.0f ? -camera.forward_ws : glm::normalize(camera.position_ws - position_ws);
+}
+
+/// The triangles whose front looks that way, or else those whose back does.
+truth::Occluders keep_faces(std::vector<truth::OccluderMesh> meshes, const Way& way, bool are_fronts) {
+  for (truth::OccluderMesh& mesh : meshes) {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      const auto corner = [&](std::size_t k) { return mesh.positions[mesh.indices[i + k]]; };
+      const glm::vec3 front = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+      if ((glm::dot(front, way(corner(0))) > 0.0f) == are_fronts)
+        kept.insert(kept.end(), mesh.indices.begin() + static_cast<std::ptrdiff_t>(i),
+                    mesh.indices.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+    }
+    mesh.indices = std::move(kept);
+  }
+  std::erase_if(meshes, [](const truth::OccluderMesh& mesh) { return mesh.indices.empty(); });
+  return truth::Occluders(meshes);
+}
+
+/// Which faces cast full shadows: see OwnView.
+std::vector<std::uint8_t> list_casters(const scene::Scene& scene, const measure::SceneTruth& truth) {
+  std::vector<std::uint8_t> casters(truth.mask.size(), 0);
+  const Way to_light = [&](const glm::vec3& position) { return scene::to_light(scene.light, position); };
+  for (const bool are_fronts : {true, false}) {
+    const truth::Occluders faces = keep_faces(scene::list_occluders(scene), to_light, are_fronts);
+    const std::vector<float> seen =
+        truth::trace_hard(faces, truth.receivers.image, scene::make_area_light(scene.light));
+    for (std::size_t i = 0; i < casters.size(); ++i)
+      if (truth.mask[i] && truth.area.texels[i] == 0.0f && seen[i] == 0.0f)
+        casters[i] |= are_fronts ? kFrontsCast : kBacksCast;
+  }
+  return casters;
+}
+
+/// Which surfaces a view shows from behind: those on which lies a face whose back looks at it, and none whose front
+/// does.
+std::vector<std::uint8_t> list_backs(const scene::Scene& scene, const scene::Camera& camera,
+                                     const measure::ViewReceivers& receivers) {
+  std::vector<truth::OccluderMesh> meshes = scene::list_occluders(scene);
+  std::ranges::move(scene::list_occluders(scene, false), std::back_inserter(meshes));
+  const Way way = [&](const glm::vec3& position) { return to_viewer(camera, position); };
+  std::vector<std::uint8_t> is_back(receivers.is_surface.size(), 0);
+  for (const bool are_fronts : {false, true}) {
+    const truth::Occluders faces = keep_faces(meshes, way, are_fronts);
+    for (std::size_t i = 0; i < is_back.size(); ++i) {
+      if (!receivers.is_surface[i] || (are_fronts && !is_back[i])) continue;
+      const truth::ReceiverPoint& point = receivers.image.points[i];
+      const glm::vec3 origin = faces.offset_origin(point.position_ws, point.normal_ws);
+      truth::RayPacket ray;
+      ray.set(0, origin, -point.normal_ws, 4.0f * glm::length(origin - point.position_ws));
+      is_back[i] = std::isfinite(faces.find_nearest(ray).distances[0]) != are_fronts;
+    }
+  }
+  return is_back;
+}
+
 /// The last line that is not empty: what a program says before it ends.
 std::string last_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
@@ -184,7 +244,10 @@ images::Image RunScorer::shade(const run::PlannedTask& task, const images::Image
 }
 
 OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
-  const measure::ViewSurfaces surfaces = measure::read_view_surfaces(assets_of(task).gbuffer(*task.task.camera));
+  const scene::Camera& camera = *task.task.camera;
+  const render::GBuffer& gbuffer = assets_of(task).gbuffer(camera);
+  const measure::ViewSurfaces surfaces = measure::read_view_surfaces(gbuffer);
+  const images::Image shading = render::read_image(gbuffer.shading_normal(), 4);
   const measure::ViewReceivers receivers = measure::make_view_receivers(surfaces, task.task.scene->light);
   const int width = receivers.image.width, height = receivers.image.height;
   OwnView own{
@@ -195,7 +258,9 @@ OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
   const images::Image lit = shade(task, one);
   if (!scene::find_beam(task.task.scene->light)) own.to_light_ws = scene::to_light(task.task.scene->light, {});
   for (std::size_t i = 0; i < own.counts.size(); ++i) {
-    const glm::vec3& normal = own.normals_ws.emplace_back(receivers.image.points[i].normal_ws);
+    const glm::vec3 normal(shading.texels[4 * i], shading.texels[4 * i + 1], shading.texels[4 * i + 2]);
+    own.normals_ws.push_back(normal);
+    own.to_viewer_ws.push_back(to_viewer(camera, receivers.image.points[i].position_ws));
     own.depth.texels[i] = surfaces.positions.texels[4 * i + 3];
     float ambient = 0.0f, direct = 0.0f;
     for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
@@ -209,6 +274,8 @@ OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
                std::max(glm::dot(normal, *own.to_light_ws), 0.0f);
     own.direct.texels[i] = direct;
   }
+  own.is_back = list_backs(*task.task.scene, camera, receivers);
+  own.casters = list_casters(*task.task.scene, assets_of(task).truth(camera));
   return own;
 }
 

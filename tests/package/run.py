@@ -38,9 +38,9 @@ def install(build, folder):
 def check_files(prefix):
     expect([file.name for file in (prefix / "bin").iterdir()] == ["shadowbench"], "bin/ holds more than the program")
     folders = sorted(folder.name for folder in (prefix / "share/shadowbench").iterdir())
-    expect(folders == ["data", "filters", "shaders"], f"share/shadowbench/ holds {folders}")
+    expect(folders == ["data", "engines", "filters", "shaders"], f"share/shadowbench/ holds {folders}")
     suffixes = {file.suffix for file in (prefix / "share/shadowbench").rglob("*") if file.is_file()}
-    expect(suffixes == {".frag", ".geom", ".glsl", ".toml", ".vert"}, f"share/shadowbench/ holds files {suffixes}")
+    expect(suffixes == {".frag", ".geom", ".glsl", ".js", ".json", ".mjs", ".toml", ".vert"}, f"share/shadowbench/ holds files {suffixes}")
     help_text = call(prefix / "bin/shadowbench", "--help")
     commands = re.findall(r"^  ([a-z]+) {2,}\S", help_text, re.MULTILINE)
     expect("run" in commands, f"no commands in {help_text}")

@@ -168,6 +168,46 @@ TEST_F(Score, WithItsOwnMap_ItsErrorIsTakenApart) {
   EXPECT_THAT(nowhere.err, HasSubstr("map_from_world"));
 }
 
+TEST_F(Score, AnOpenCasterWithoutItsShadow_IsNamed) {
+  write("roof.toml", R"(
+title = "A roof without an underside"
+[camera]
+position = [0, 3, 8]
+target = [0, 0.5, 0]
+vertical_fov_deg = 40
+[light]
+azimuth_deg = 0
+elevation_deg = 80
+angular_diameter_deg = 0.53
+[[material]]
+name = "matt"
+color = [0.5, 0.5, 0.5]
+[[object]]
+shape = "plane"
+name = "floor"
+material = "matt"
+size = [8, 8]
+[[object]]
+shape = "plane"
+name = "roof"
+material = "matt"
+size = [2, 2]
+center = [0, 1, 0]
+[[object]]
+shape = "box"
+name = "box"
+material = "matt"
+size = [1, 1, 1]
+center = [3, 0.5, 0]
+)");
+  const std::string run = "run --grids --size 96x54 --map-size 256 --rounds 1 --scene roof.toml --filters none --out ";
+  succeed(run + "out");
+  succeed(run + "culled --bias front-cull:depth=0");
+  const std::string score = "score out --name its --visibility ";
+  EXPECT_EQ(succeed(score + "'out/roof.exr#none.visibility'").err.find("shadow map holds"), std::string::npos);
+  EXPECT_THAT(succeed(score + "'culled/roof.exr#none.visibility'").err, HasSubstr("shadow map holds back faces alone"));
+}
+
 TEST_F(Score, BadInput_IsOneSentence_AndLosesNothing) {
   make_run();
   const std::string before = read("out/results.json");

@@ -27,9 +27,9 @@ struct Surface {
   glm::dvec3 normal{0.0};
 };
 
-Surface look(double x, double y) {
+Surface look(double x, double y, bool has_chimney = true) {
   const double u = (x - 40.0) / kWidth, v = (y - 20.0) / kHeight;  // nothing is symmetrical
-  if (std::abs(u - 0.05 + 0.3 * v) < 0.05 && v > -0.6 && v < 0.0) return {3.0, {0.0, 0.6, 0.8}};
+  if (has_chimney && std::abs(u - 0.05 + 0.3 * v) < 0.05 && v > -0.6 && v < 0.0) return {3.0, {0.0, 0.6, 0.8}};
   if (v < -0.15 - 0.2 * u) return {};
   if (u > 0.25 && v < 0.3) return {1.0 / (0.3 - 0.1 * u), {-0.6, 0.0, 0.8}};
   if (u < -0.2 && v < 0.45) return {1.0 / (0.25 + 0.15 * u + 0.1 * v), {0.8, 0.6, 0.0}};
@@ -59,6 +59,7 @@ struct Drawing {
   std::function<double(double)> encode = [](double value) { return value; };
   glm::dvec3 to_light = kToLight;
   bool has_depth = true;
+  bool has_chimney = true;
 };
 
 ExternalImages draw(const Drawing& drawing = {}) {
@@ -67,7 +68,7 @@ ExternalImages draw(const Drawing& drawing = {}) {
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const glm::dvec2 p = drawing.place({x + 0.5, y + 0.5});
-      const Surface seen = look(p.x, p.y);
+      const Surface seen = look(p.x, p.y, drawing.has_chimney);
       const double light = seen.depth > 0.0 ? 0.35 * std::max(glm::dot(seen.normal, drawing.to_light), 0.0) : 0.0;
       *made.unlit->at(x, y) = static_cast<float>(drawing.encode(light));
       *made.lit->at(x, y) = static_cast<float>(drawing.encode(light * shadow(p.x, p.y)));
@@ -192,6 +193,107 @@ TEST(Alignment, MaterialsThatAreNotMatt_AreNamed) {
   for (int y = 20; y < 40; ++y)
     for (int x = 0; x < kWidth; ++x) *shiny.unlit->at(x, y) *= 2.0f;
   EXPECT_THAT(all_texts(check_images(shiny, make_own())), HasSubstr("in other proportions"));
+}
+
+/// A ball on a floor, before a camera that stands upright, under the same light.
+struct Ball {
+  OwnView own{{}, {}, Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1), {}, glm::vec3(kToLight)};
+  ExternalImages images{
+      Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1), {}, Image(kWidth, kHeight, 1), "test", {}, {}};
+};
+
+/// What its surfaces add to matt light, by their normal and the direction to the viewer.
+using Gloss = std::function<double(const glm::dvec3& normal, const glm::dvec3& to_viewer)>;
+
+Ball draw_ball(const Gloss& gloss) {
+  Ball ball;
+  const glm::dvec3 eye(0.0, 1.5, 5.0), center(0.0, 1.0, 0.0);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const glm::dvec3 way = glm::normalize(glm::dvec3((x + 0.5 - 45.0) / 60.0, (22.0 - y - 0.5) / 60.0, -1.0));
+      const double along = glm::dot(center - eye, way);
+      const double under_root = 1.0 - glm::dot(center - eye, center - eye) + along * along;
+      const bool on_ball = under_root > 0.0, is_surface = on_ball || way.y < 0.0;
+      const glm::dvec3 point = eye + (on_ball ? along - std::sqrt(under_root) : -eye.y / way.y) * way;
+      const glm::dvec3 normal = on_ball ? point - center : glm::dvec3(0.0, 1.0, 0.0);
+      const double cosine = is_surface ? std::max(glm::dot(normal, kToLight), 0.0) : 0.0;
+      const double light = cosine > 0.0 ? (on_ball ? 0.2 : 0.5) * cosine + gloss(normal, -way) : 0.0;
+      ball.own.is_surface.push_back(is_surface);
+      ball.own.counts.push_back(cosine > 0.0);
+      ball.own.normals_ws.emplace_back(normal);
+      ball.own.to_viewer_ws.emplace_back(-way);
+      *ball.own.depth.at(x, y) = *ball.images.depth->at(x, y) = is_surface ? static_cast<float>(eye.z - point.z) : 0.0f;
+      *ball.own.direct.at(x, y) = static_cast<float>((on_ball ? 0.4 : 1.0) * cosine);
+      *ball.images.unlit->at(x, y) = static_cast<float>(light);
+      *ball.images.lit->at(x, y) = static_cast<float>(light * shadow(x, y));
+    }
+  }
+  return ball;
+}
+
+TEST(Alignment, MaterialsThatShine_AreNamed_AndNoOtherCause) {
+  const Ball matt = draw_ball([](auto...) { return 0.0; });
+  EXPECT_EQ(all_texts(check_images(matt.images, matt.own)), "");
+  // As glTF materials do that are rough, at grazing angles, and ones that are polished.
+  const Gloss rough = [](const glm::dvec3& normal, const glm::dvec3& to_viewer) {
+    const double toward = glm::dot(to_viewer, glm::normalize(to_viewer + kToLight));
+    return glm::dot(normal, kToLight) * (0.04 + 0.96 * std::pow(1.0 - toward, 5)) /
+           (glm::dot(normal, kToLight) + glm::dot(normal, to_viewer));
+  };
+  const Gloss polished = [](const glm::dvec3& normal, const glm::dvec3& to_viewer) {
+    return 0.3 * std::pow(std::max(glm::dot(normal, glm::normalize(to_viewer + kToLight)), 0.0), 60.0);
+  };
+  for (const Gloss& gloss : {rough, polished}) {
+    const Ball ball = draw_ball(gloss);
+    const std::vector<Finding> findings = check_images(ball.images, ball.own).findings;
+    ASSERT_EQ(findings.size(), 1u) << all_texts(check_images(ball.images, ball.own));
+    EXPECT_THAT(findings.front().text, HasSubstr("its materials shine"));
+  }
+}
+
+TEST(Alignment, ARoundingOfNoLight_IsNoLight) {
+  ExternalImages noisy = draw();
+  OwnView own = make_own();
+  for (std::size_t i = 0; i < own.counts.size(); ++i) {
+    if (own.normals_ws[i].y != 1.0f) continue;
+    own.counts[i] = 0;
+    own.direct.texels[i] = 0.0f;
+    noisy.unlit->texels[i] = noisy.lit->texels[i] = 1e-8f;
+  }
+  EXPECT_EQ(all_texts(check_images(noisy, own)), "");
+}
+
+TEST(Alignment, BackFacesThatAreNotDrawn_AreNamed_AndLeftOut) {
+  OwnView own = make_own();
+  for (const glm::vec3& normal : own.normals_ws) own.is_back.push_back(normal == glm::vec3(0.0f, 0.6f, 0.8f));
+  EXPECT_EQ(all_texts(check_images(draw(), own)), "");
+  for (const bool has_depth : {true, false}) {
+    const CheckedImages checked = check_images(draw({.has_depth = has_depth, .has_chimney = false}), own);
+    EXPECT_THAT(all_texts(checked), HasSubstr("culls back faces"));
+    for (const char* wrong : {"another one", "antialiased", "REFUSED"})
+      EXPECT_THAT(all_texts(checked), testing::Not(HasSubstr(wrong))) << has_depth;
+    EXPECT_TRUE(std::isnan(*checked.visibility.at(45, 10)));
+  }
+}
+
+TEST(Alignment, CastersThatCastOnOneSide_AreNamed) {
+  OwnView own = make_own();
+  ExternalImages drawn = draw();
+  for (std::size_t i = 0; i < own.counts.size(); ++i) {
+    own.casters.push_back(i % 3 == 0 && own.counts[i] ? static_cast<std::uint8_t>(i % 4) : 0);
+    if (own.casters[i] != 0) drawn.lit->texels[i] = 0.0f;
+  }
+  EXPECT_EQ(all_texts(check_images(drawn, own)), "");
+  for (const auto& [faces, text] :
+       {std::pair(kFrontsCast, "only front faces"), std::pair(kBacksCast, "only back faces")}) {
+    ExternalImages lit = drawn;
+    for (std::size_t i = 0; i < own.casters.size(); ++i)
+      if (own.casters[i] == faces) lit.lit->texels[i] = lit.unlit->texels[i];
+    EXPECT_THAT(all_texts(check_images(lit, own)), HasSubstr(text));
+  }
+  drawn.lit = drawn.unlit;  // where all shadows are missing, that explains nothing
+  drawn.lit->texels[drawn.lit->texels.size() - 1] = 0.0f;
+  EXPECT_THAT(all_texts(check_images(drawn, own)), testing::Not(HasSubstr("alone")));
 }
 
 TEST(Alignment, ADepthThatIsNone_IsNamed) {
