@@ -284,18 +284,17 @@ Mask find_culled(const ExternalImages& images, const OwnView& own, std::vector<F
   for (std::size_t i = 0; i < inside.size(); ++i) {
     if (!inside[i]) continue;
     constexpr float kAlike = 0.01f;
-    const bool is_missing = images.depth ? !(std::abs(images.depth->texels[i] / own.depth.texels[i] - 1.0f) <= kAlike)
-                                         : coverage[0][i] != coverage[1][i];
+    const bool is_missing =
+        coverage[0][i] != coverage[1][i] ||
+        (images.depth && !(std::abs(images.depth->texels[i] / own.depth.texels[i] - 1.0f) <= kAlike));
     surfaces += 1.0;
     backs += own.is_back[i];
     missing += is_missing;
     missing_backs += is_missing && own.is_back[i];
   }
-  // Without depth a surface is not missed before another that is lit.
-  constexpr double kFewest = 0.001, kMost = 0.8, kMostWithoutDepth = 0.3;
-  if (!(missing_backs > kFewest * surfaces && missing_backs > kMost * missing &&
-        missing_backs > (images.depth ? kMost : kMostWithoutDepth) * backs))
-    return {};
+  // Without their depth, a surface before another that is as lit is not missed.
+  constexpr double kFewest = 0.001, kOfMissing = 0.8, kOfBacks = 0.3;
+  if (!(missing_backs > std::max({kFewest * surfaces, kOfMissing * missing, kOfBacks * backs}))) return {};
   findings.push_back(
       {false, fmt::format("{} of our surfaces are seen from behind, and are not in its picture: it culls "
                           "back faces. They are left out; draw both sides of every material",

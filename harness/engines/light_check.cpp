@@ -122,6 +122,7 @@ struct ShineFit {
   double matt = 0.0, shine = 0.0;
   double residual = 1.0;  ///< root mean square, as a share of theirs
   double share = 0.0;     ///< the lobe's, of all their light
+  bool is_best = false;   ///< whether it is much nearer to theirs than matt surfaces under a light from elsewhere
 };
 
 /// What each pair's lobe is; metals reflect in the colour that ours has.
@@ -193,7 +194,7 @@ std::optional<DirectionFit> fit_direction(const LightPairs& pairs, const OwnView
   return fit;
 }
 
-/// Finds highlights, where they explain what neither our light nor one from elsewhere does to matt surfaces.
+/// Finds highlights, where with them surfaces under our light are much nearer to theirs.
 std::optional<ShineFit> find_shine(const LightPairs& pairs, const OwnView& own) {
   if (!own.to_light_ws || own.to_viewer_ws.empty()) return std::nullopt;
   const std::vector<std::uint8_t> is_inside = find_inside(own, own.counts);
@@ -205,10 +206,9 @@ std::optional<ShineFit> find_shine(const LightPairs& pairs, const OwnView& own) 
     inside.theirs.push_back(pairs.theirs[i]);
   }
   if (inside.pixels.empty()) return std::nullopt;
-  double without = fit_shine(inside, std::vector<double>(inside.pixels.size(), 0.0)).residual;
+  const double matt = fit_shine(inside, std::vector<double>(inside.pixels.size(), 0.0)).residual;
   constexpr double kLeastResidual = 0.002, kMuchLess = 0.7;
-  if (without < kLeastResidual) return std::nullopt;
-  if (const auto elsewhere = fit_direction(inside, own)) without = std::min(without, elsewhere->residual);
+  if (matt < kLeastResidual) return std::nullopt;
   ShineFit best;
   for (const bool is_metal : {false, true}) {
     for (int tenths = 1; tenths <= 10; ++tenths) {
@@ -218,12 +218,14 @@ std::optional<ShineFit> find_shine(const LightPairs& pairs, const OwnView& own) 
       if (fit.residual < best.residual) best = fit;
     }
   }
-  if (best.residual > kMuchLess * without) return std::nullopt;
+  if (best.residual > kMuchLess * matt) return std::nullopt;
+  const std::optional<DirectionFit> elsewhere = fit_direction(inside, own);
+  best.is_best = !elsewhere || best.residual <= kMuchLess * elsewhere->residual;
   return best;
 }
 
 /// Finds the direction from which a matt surface of our colours would have their light.
-void check_direction(const LightPairs& pairs, const OwnView& own, std::vector<Finding>& findings) {
+void check_direction(const LightPairs& pairs, const OwnView& own, bool may_shine, std::vector<Finding>& findings) {
   if (!own.to_light_ws) return;
   const std::optional<DirectionFit> fit = fit_direction(pairs, own);
   constexpr double kMostResidual = 0.03, kMostDegrees = 0.25;
@@ -231,9 +233,9 @@ void check_direction(const LightPairs& pairs, const OwnView& own, std::vector<Fi
   const double cosine = glm::dot(glm::normalize(fit->light), glm::dvec3(*own.to_light_ws));
   const double degrees = glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
   if (degrees < kMostDegrees) return;
-  findings.push_back({false, fmt::format("its surfaces are lit from {:.2g} degrees beside our light: the light's "
+  findings.push_back({false, fmt::format("its surfaces are lit from {:.2g} degrees beside our light: {}the light's "
                                          "direction is another one, or its target is not where it shines",
-                                         degrees)});
+                                         degrees, may_shine ? "its materials shine, or " : "")});
 }
 
 /// Whether all values are codes of eight bits; also says so, or that they are half floats.
@@ -301,17 +303,19 @@ void check_light(const ExternalImages& images, const OwnView& own, std::vector<F
   if (!images.unlit) return;
   LightPairs pairs = pair_lights(*images.unlit, own);
   const bool is_linear = check_encoding(pairs, findings) && !is_coded;  // steps look like another direction
-  if (const std::optional<ShineFit> shine = is_linear ? find_shine(pairs, own) : std::nullopt) {
+  const std::optional<ShineFit> shine = is_linear ? find_shine(pairs, own) : std::nullopt;
+  if (shine && shine->is_best) {
     findings.push_back(
-        {false, fmt::format("its materials shine: {} of unlit are highlights. Visibility is a ratio, and "
-                            "stays; whether the light's direction is ours cannot be seen. Make all "
-                            "materials matt (no specular light, metalness 0) to check it",
-                            records::format_rate(shine->share))});
+        {false,
+         fmt::format("its materials shine: highlights are {} of unlit. They hardly change visibility, which is a "
+                     "ratio, but hide whether the light's direction is ours: make all materials matt "
+                     "(no specular light, metalness 0)",
+                     records::format_rate(shine->share))});
     const std::vector<double> highlights = list_highlights(pairs, own, shine->lobe);
     for (std::size_t i = 0; i < pairs.ours.size(); ++i)
       pairs.ours[i] = shine->matt * pairs.ours[i] + shine->shine * highlights[i];
   } else if (!is_coded) {
-    check_direction(pairs, own, findings);
+    check_direction(pairs, own, shine.has_value(), findings);
   }
   check_faces(images, own, findings);
   check_samples(pairs, own, findings);

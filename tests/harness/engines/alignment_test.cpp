@@ -205,7 +205,7 @@ struct Ball {
 /// What its surfaces add to matt light, by their normal and the direction to the viewer.
 using Gloss = std::function<double(const glm::dvec3& normal, const glm::dvec3& to_viewer)>;
 
-Ball draw_ball(const Gloss& gloss) {
+Ball draw_ball(const Gloss& gloss, const glm::dvec3& to_light = kToLight) {
   Ball ball;
   const glm::dvec3 eye(0.0, 1.5, 5.0), center(0.0, 1.0, 0.0);
   for (int y = 0; y < kHeight; ++y) {
@@ -217,7 +217,8 @@ Ball draw_ball(const Gloss& gloss) {
       const glm::dvec3 point = eye + (on_ball ? along - std::sqrt(under_root) : -eye.y / way.y) * way;
       const glm::dvec3 normal = on_ball ? point - center : glm::dvec3(0.0, 1.0, 0.0);
       const double cosine = is_surface ? std::max(glm::dot(normal, kToLight), 0.0) : 0.0;
-      const double light = cosine > 0.0 ? (on_ball ? 0.2 : 0.5) * cosine + gloss(normal, -way) : 0.0;
+      const double matt = (on_ball ? 0.2 : 0.5) * std::max(glm::dot(normal, to_light), 0.0);
+      const double light = cosine > 0.0 ? matt + gloss(normal, -way) : 0.0;
       ball.own.is_surface.push_back(is_surface);
       ball.own.counts.push_back(cosine > 0.0);
       ball.own.normals_ws.emplace_back(normal);
@@ -234,6 +235,8 @@ Ball draw_ball(const Gloss& gloss) {
 TEST(Alignment, MaterialsThatShine_AreNamed_AndNoOtherCause) {
   const Ball matt = draw_ball([](auto...) { return 0.0; });
   EXPECT_EQ(all_texts(check_images(matt.images, matt.own)), "");
+  const Ball turned = draw_ball([](auto...) { return 0.0; }, glm::normalize(kToLight + glm::dvec3(0.02, 0.0, 0.0)));
+  EXPECT_THAT(all_texts(check_images(turned.images, turned.own)), HasSubstr("degrees beside our light"));
   // As glTF materials do that are rough, at grazing angles, and ones that are polished.
   const Gloss rough = [](const glm::dvec3& normal, const glm::dvec3& to_viewer) {
     const double toward = glm::dot(to_viewer, glm::normalize(to_viewer + kToLight));
