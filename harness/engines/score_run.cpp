@@ -391,7 +391,7 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   if (drawn.unbiased) cell.unbiased = truth.receivers.to_image(drawn.unbiased->texels);
   options::RunOptions traced = planned.options;
   traced.attribution = false;
-  measure::CellAnalyser(renderer_, traced, task.task, assets_of(task), truth).analyse(cell);
+  measure::CellAnalyser({renderer_, traced, task.task, assets_of(task)}, truth).analyse(cell);
   for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
     cell.record.absent[field] = kAnother;
   if (!drawn.unbiased)

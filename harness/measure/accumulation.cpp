@@ -28,9 +28,9 @@ constexpr int kMovingFrames = 8;     // that a shadow moves for
 constexpr int kMostAtRest = 64;      // frames that it is followed for then
 
 /// How far the shadow at a receiver moves in the trial, in texels; nothing where there is no shadow.
-std::optional<double> find_move(const FrameBench& bench, const LightMap& map, const images::Image& depths,
+std::optional<double> find_move(const TaskRig& rig, const LightMap& map, const images::Image& depths,
                                 const glm::dvec3& receiver) {
-  const scene::Light& light = bench.task.scene->light;
+  const scene::Light& light = rig.task.scene->light;
   const scene::LightFrustum& frustum = map.frustum();
   const glm::dvec3 place = frustum.place(receiver, depths.width);
   const int x = static_cast<int>(place.x), y = depths.height - 1 - static_cast<int>(place.y);
@@ -44,16 +44,15 @@ std::optional<double> find_move(const FrameBench& bench, const LightMap& map, co
   return glm::length(move) * above_m / texel_m;
 }
 
-GhostMotion make_motion(const FrameBench& bench, double texels, double turn_per_texel) {
-  const SceneTruth& start = bench.assets.truth(*bench.task.camera);
+GhostMotion make_motion(const TaskRig& rig, double texels, double turn_per_texel) {
+  const SceneTruth& start = rig.truth();
   GhostMotion motion;
   motion.texels = texels;
   for (int i = 0; i <= kMovingFrames; ++i)
-    motion.lights.push_back(scene::turn_about_vertical(bench.task.scene->light, i * texels * turn_per_texel));
+    motion.lights.push_back(scene::turn_about_vertical(rig.task.scene->light, i * texels * turn_per_texel));
   const scene::Light& last = motion.lights.back();
   motion.end =
-      trace_scene(bench.assets.tracer(), last, read_view_receivers(bench.assets.gbuffer(*bench.task.camera), last),
-                  bench.options.truth_weight);
+      trace_scene(rig.assets.tracer(), last, read_view_receivers(rig.gbuffer(), last), rig.options.truth_weight);
   motion.revealed.resize(start.mask.size());
   if (!motion.end.absent.empty()) return motion;
   const auto limit = static_cast<float>(records::kGhostLimit);
@@ -82,11 +81,11 @@ double find_mean_error(const images::Image& image, const images::Image& truth, c
 /// Follows one motion of one filter.
 class GhostHunt {
  public:
-  GhostHunt(const FrameBench& bench, const GhostMotion& motion, FrameDrawing& drawing)
-      : bench_(bench),
+  GhostHunt(const TaskRig& rig, const GhostMotion& motion, FrameDrawing& drawing)
+      : rig_(rig),
         motion_(motion),
         drawing_(drawing),
-        resolves_(make_resolves(bench, kFirstExponential)),
+        resolves_(make_resolves(rig, kFirstExponential)),
         pixels_(list_pixels(motion, drawing.average(show(kMovingFrames), kAtRest))) {
     for (std::size_t i = kFirstExponential; i < list_resolve_rules().size(); ++i)
       ghosts_.push_back(
@@ -105,7 +104,7 @@ class GhostHunt {
   std::vector<images::Image> at_stop() { return std::move(at_stop_); }
 
  private:
-  const FrameBench& bench_;
+  const TaskRig& rig_;
   const GhostMotion& motion_;
   FrameDrawing& drawing_;
   std::uint32_t number_ = 0;
@@ -118,11 +117,11 @@ class GhostHunt {
 
   /// The next frame, lit by one of the motion's lights.
   ShownFrame show(int light) {
-    const scene::Camera& camera = *bench_.task.camera;
+    const scene::Camera& camera = *rig_.task.camera;
     const scene::Light& shown = motion_.lights[static_cast<std::size_t>(light)];
-    if (light != light_) map_.emplace(bench_.assets.make_light_map(shown, camera, bench_.task.map_size));
+    if (light != light_) map_.emplace(rig_.assets.make_light_map(shown, camera, rig_.task.map_size));
     light_ = light;
-    return {number_++, shown, *map_, bench_.assets.gbuffer(camera)};
+    return {number_++, shown, *map_, rig_.assets.gbuffer(camera)};
   }
 
   void draw(int light) { drawing_.draw(show(light), resolves_); }
@@ -140,14 +139,14 @@ class GhostHunt {
 
 /// The angle in radians by which the light turns about the vertical while shadows move by a texel: at the median of the
 /// pixels that lie in shadow, whose casters' distances the map holds. Nothing where there is no shadow, or none moves.
-std::optional<double> find_turn_per_texel(const FrameBench& bench) {
-  const SceneTruth& truth = bench.assets.truth(*bench.task.camera);
-  const LightMap& map = bench.assets.light_map(*bench.task.camera, bench.task.map_size);
+std::optional<double> find_turn_per_texel(const TaskRig& rig) {
+  const SceneTruth& truth = rig.truth();
+  const LightMap& map = rig.light();
   const images::Image depths = read_linear_depth(map.map);
   std::vector<double> moves;
   for (std::size_t i = 0; i < truth.mask.size(); ++i) {
     if (!truth.mask[i] || truth.hard.texels[i] > 0.0f) continue;
-    if (const auto move = find_move(bench, map, depths, glm::dvec3(truth.receivers.image.points[i].position_ws)))
+    if (const auto move = find_move(rig, map, depths, glm::dvec3(truth.receivers.image.points[i].position_ws)))
       moves.push_back(*move);
   }
   if (moves.empty()) return std::nullopt;
@@ -181,56 +180,55 @@ const std::vector<NamedRule>& list_resolve_rules() {
   return rules;
 }
 
-std::vector<render::ResolvePass> make_resolves(const FrameBench& bench, std::size_t first) {
+std::vector<render::ResolvePass> make_resolves(const TaskRig& rig, std::size_t first) {
   std::vector<render::ResolvePass> resolves;
   for (std::size_t i = first; i < list_resolve_rules().size(); ++i)
-    resolves.emplace_back(list_resolve_rules()[i].rule, bench.options.width, bench.options.height);
+    resolves.emplace_back(list_resolve_rules()[i].rule, rig.options.width, rig.options.height);
   return resolves;
 }
 
-FrameDrawing::FrameDrawing(const FrameBench& bench, const filters::FilterRequest& request)
-    : bench_(bench),
-      filter_(make_filter_passes(bench.renderer, bench.options, *bench.task.scene,
-                                 bench.assets.light_map(*bench.task.camera, bench.task.map_size), request)),
-      target_("visibility", GL_R32F, bench.options.width, bench.options.height) {}
+FrameDrawing::FrameDrawing(const TaskRig& rig, const filters::FilterRequest& request)
+    : rig_(rig),
+      filter_(rig.make_passes(request)),
+      target_("visibility", GL_R32F, rig.options.width, rig.options.height) {}
 
 void FrameDrawing::draw(const ShownFrame& frame, std::vector<render::ResolvePass>& resolves) {
-  render::LightLayers light = make_filter_light(bench_.options, frame.light, frame.map.layers, filter_->request());
+  render::LightLayers light = make_filter_light(rig_.options, frame.light, frame.map.layers, filter_->request());
   for (render::LightSetup& layer : light) layer.frame = frame.number;
-  render::ShaderLibrary& shaders = bench_.renderer.shaders;
+  render::ShaderLibrary& shaders = rig_.renderer.shaders;
   filter_->retune(shaders, filter_->request().values, light);
   filter_->prefilter(frame.map.map);
   filter_->lookup(frame.gbuffer, frame.map.map, target_);
   for (render::ResolvePass& resolve : resolves)
-    resolve.add(shaders, *bench_.task.scene, {frame.gbuffer, target_.texture(), *bench_.task.camera});
+    resolve.add(shaders, *rig_.task.scene, {frame.gbuffer, target_.texture(), *rig_.task.camera});
 }
 
 images::Image FrameDrawing::average(ShownFrame frame, int count) {
   std::vector<render::ResolvePass> mean;
-  mean.emplace_back(render::ResolveRule{.least_weight = 0.0f, .clamps = false}, bench_.options.width,
-                    bench_.options.height);
+  mean.emplace_back(render::ResolveRule{.least_weight = 0.0f, .clamps = false}, rig_.options.width,
+                    rig_.options.height);
   for (int i = 0; i < count; ++i, ++frame.number) draw(frame, mean);
   return render::read_image(mean.front().texture(), 1);
 }
 
-GhostBench make_ghost_bench(const FrameBench& bench) {
+GhostBench make_ghost_bench(const TaskRig& rig) {
   GhostBench ghosts;
-  if (bench.assets.light_map(*bench.task.camera, bench.task.map_size).layers.size() > 1) {
+  if (rig.light().layers.size() > 1) {
     ghosts.absent = "the light's map has several layers, and one is followed";
     return ghosts;
   }
-  const std::optional<double> turn_per_texel = find_turn_per_texel(bench);
+  const std::optional<double> turn_per_texel = find_turn_per_texel(rig);
   if (!turn_per_texel) ghosts.absent = "no shadow in view moves when the light turns about the vertical";
   for (const double texels : {1.0, kShownTexels, 16.0})
-    if (turn_per_texel) ghosts.motions.push_back(make_motion(bench, texels, *turn_per_texel));
+    if (turn_per_texel) ghosts.motions.push_back(make_motion(rig, texels, *turn_per_texel));
   return ghosts;
 }
 
-std::vector<records::GhostRecord> measure_ghosts(const FrameBench& bench, const GhostBench& ghosts,
-                                                 FrameDrawing& drawing, std::vector<images::Image>& images) {
+std::vector<records::GhostRecord> measure_ghosts(const TaskRig& rig, const GhostBench& ghosts, FrameDrawing& drawing,
+                                                 std::vector<images::Image>& images) {
   std::vector<records::GhostRecord> records;
   for (const GhostMotion& motion : ghosts.motions) {
-    GhostHunt hunt(bench, motion, drawing);
+    GhostHunt hunt(rig, motion, drawing);
     std::ranges::copy(hunt.run(), std::back_inserter(records));
     if (motion.texels == kShownTexels) images = hunt.at_stop();
   }
@@ -244,23 +242,23 @@ struct AccumulationMeter::Sequence {
   const images::Image& converged;  ///< empty: noise is not asked for
 };
 
-AccumulationMeter::AccumulationMeter(const FrameBench& bench)
-    : bench_(bench),
-      jittered_(bench.options.width, bench.options.height),
-      truth_(bench.assets.truth(*bench.task.camera)),
-      jittered_truth_(bench.options.width, bench.options.height, 1),
-      ghosts_(make_ghost_bench(bench)) {
+AccumulationMeter::AccumulationMeter(const TaskRig& rig)
+    : rig_(rig),
+      jittered_(rig.options.width, rig.options.height),
+      truth_(rig.truth()),
+      jittered_truth_(rig.options.width, rig.options.height, 1),
+      ghosts_(make_ghost_bench(rig)) {
   trace_jittered();
   time_resolves();
 }
 
 void AccumulationMeter::trace_jittered() {
-  const scene::Light& light = bench_.task.scene->light;
+  const scene::Light& light = rig_.task.scene->light;
   for (int i = 0; i < kJitters; ++i) {
     show_frame(i, true);
     const ViewReceivers receivers = read_view_receivers(jittered_, light);
     images::Image area = receivers.to_image(std::vector<float>(receivers.is_surface.size()));
-    if (const SceneTruth traced = trace_scene(bench_.assets.tracer(), light, receivers, bench_.options.truth_weight);
+    if (const SceneTruth traced = trace_scene(rig_.assets.tracer(), light, receivers, rig_.options.truth_weight);
         traced.absent.empty())
       area = traced.area;
     for (std::size_t p = 0; p < area.texels.size(); ++p) jittered_truth_.texels[p] += area.texels[p] / kJitters;
@@ -268,32 +266,32 @@ void AccumulationMeter::trace_jittered() {
 }
 
 void AccumulationMeter::time_resolves() {
-  const render::GBuffer& gbuffer = bench_.assets.gbuffer(*bench_.task.camera);
+  const render::GBuffer& gbuffer = rig_.gbuffer();
   const gl::Texture visibility = render::upload_image(truth_.area);
-  for (render::ResolvePass& resolve : make_resolves(bench_, kFirstExponential)) {
+  for (render::ResolvePass& resolve : make_resolves(rig_, kFirstExponential)) {
     std::vector<double> times(kTimed);
     for (double& ms : times)
-      ms = gl::time_ms(bench_.renderer.timer, [&] {
-        resolve.add(bench_.renderer.shaders, *bench_.task.scene, {gbuffer, visibility, *bench_.task.camera});
+      ms = gl::time_ms(rig_.renderer.timer, [&] {
+        resolve.add(rig_.renderer.shaders, *rig_.task.scene, {gbuffer, visibility, *rig_.task.camera});
       });
     resolve_ms_.push_back(summarise(times).median);
   }
 }
 
 ShownFrame AccumulationMeter::show_frame(int number, bool jitter) {
-  const scene::Camera& camera = *bench_.task.camera;
-  if (jitter) bench_.assets.draw_view(jittered_, camera, find_jitter(number));
-  return {static_cast<std::uint32_t>(number), bench_.task.scene->light,
-          bench_.assets.light_map(camera, bench_.task.map_size), jitter ? jittered_ : bench_.assets.gbuffer(camera)};
+  const scene::Camera& camera = *rig_.task.camera;
+  if (jitter) rig_.assets.draw_view(jittered_, camera, find_jitter(number));
+  return {static_cast<std::uint32_t>(number), rig_.task.scene->light, rig_.assets.light_map(camera, rig_.task.map_size),
+          jitter ? jittered_ : rig_.assets.gbuffer(camera)};
 }
 
 std::vector<records::ResolveRecord> AccumulationMeter::follow(FrameDrawing& drawing, const Sequence& sequence,
                                                               std::vector<images::Image>& last) {
-  std::vector<render::ResolvePass> resolves = make_resolves(bench_);
+  std::vector<render::ResolvePass> resolves = make_resolves(rig_);
   std::vector<records::ResolveRecord> records(resolves.size());
   std::vector<std::vector<double>> changes(resolves.size());  // squared, of each step
   last.resize(resolves.size());
-  const int frames = bench_.options.frames;
+  const int frames = rig_.options.frames;
   for (int frame = 0; frame < frames; ++frame) {
     drawing.draw(show_frame(frame, sequence.jitter), resolves);
     for (std::size_t i = 0; i < resolves.size(); ++i) {
@@ -321,7 +319,7 @@ std::vector<records::ResolveRecord> AccumulationMeter::follow(FrameDrawing& draw
 
 std::optional<records::AccumulationRecord> AccumulationMeter::measure(const filters::FilterRequest& request,
                                                                       AccumulatedImages& images) {
-  FrameDrawing drawing(bench_, request);
+  FrameDrawing drawing(rig_, request);
   images::Image converged;
   if (request.spec.kind == filters::FilterKind::kStochastic) {
     ShownFrame other = show_frame(0, false);
@@ -333,7 +331,7 @@ std::optional<records::AccumulationRecord> AccumulationMeter::measure(const filt
   std::ranges::move(follow(drawing, {true, jittered_truth_, {}}, images.resolved), std::back_inserter(record.resolves));
   for (const records::ResolveRecord& resolve : record.resolves)
     if (std::ranges::any_of(resolve.rmse, [](double rmse) { return std::isnan(rmse); })) return std::nullopt;
-  record.ghosts = measure_ghosts(bench_, ghosts_, drawing, images.stopped);
+  record.ghosts = measure_ghosts(rig_, ghosts_, drawing, images.stopped);
   record.no_ghosts = ghosts_.absent;
   record.exponential_ms = resolve_ms_.front();
   record.clamped_ms = resolve_ms_.back();
@@ -346,7 +344,7 @@ std::vector<images::GridTile> AccumulationMeter::show(const std::string& label, 
     tiles.push_back({label, caption, {}, visibility, make_error_image(visibility, truth, truth_.mask), ""});
   };
   for (std::size_t i = 0; i < images.resolved.size(); ++i)
-    add(fmt::format("{}, after {} frames with jitter", list_resolve_rules()[i].name, bench_.options.frames),
+    add(fmt::format("{}, after {} frames with jitter", list_resolve_rules()[i].name, rig_.options.frames),
         images.resolved[i], jittered_truth_);
   for (std::size_t i = 0; i < images.stopped.size(); ++i)
     add(list_resolve_rules()[kFirstExponential + i].name + ", as shadows stop that moved by 4 texels a frame",

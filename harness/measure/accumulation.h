@@ -30,14 +30,6 @@ struct NamedRule {
 const std::vector<NamedRule>& list_resolve_rules();
 inline constexpr std::size_t kFirstExponential = 2;  ///< the others come before
 
-/// What one task is drawn with, frame by frame.
-struct FrameBench {
-  Renderer& renderer;
-  const options::RunOptions& options;
-  const SceneTask& task;
-  SceneAssets& assets;
-};
-
 /// What a frame shows.
 struct ShownFrame {
   std::uint32_t number = 0;  ///< turns the taps
@@ -49,8 +41,7 @@ struct ShownFrame {
 /// One filter that is drawn frame by frame.
 class FrameDrawing {
  public:
-  /// Everything must outlive this object.
-  FrameDrawing(const FrameBench& bench, const filters::FilterRequest& request);
+  FrameDrawing(const TaskRig& rig, const filters::FilterRequest& request);
 
   /// Draws a frame, and adds it to what is accumulated. Cost: prefilter and lookup, and a pass for each of `resolves`.
   void draw(const ShownFrame& frame, std::vector<render::ResolvePass>& resolves);
@@ -59,13 +50,13 @@ class FrameDrawing {
   images::Image average(ShownFrame frame, int count);
 
  private:
-  FrameBench bench_;
+  TaskRig rig_;
   std::unique_ptr<render::FilterPasses> filter_;
   render::ImageTarget target_;
 };
 
 /// Passes that begin to accumulate by each of the rules from `first` on.
-std::vector<render::ResolvePass> make_resolves(const FrameBench& bench, std::size_t first = 0);
+std::vector<render::ResolvePass> make_resolves(const TaskRig& rig, std::size_t first = 0);
 
 /// Texels a frame of the motion whose pictures are kept.
 inline constexpr double kShownTexels = 4.0;
@@ -86,14 +77,14 @@ struct GhostBench {
 
 /// Makes it. Nothing moves where the light stands overhead, where the map has several layers, or in a view without
 /// shadows. Cost: three truths.
-GhostBench make_ghost_bench(const FrameBench& bench);
+GhostBench make_ghost_bench(const TaskRig& rig);
 
 /// Measures how long a filter's accumulated visibility lags behind, by the exponential rules. The pixels that count are
 /// those behind shadows' edges: revealed ones which the filter itself, accumulated at rest, sees within kGhostLimit of
 /// the truth. `images` gets the resolved visibility when the motion of 4 texels stops, by rule.
 /// Cost: a lookup for each of 40 to 104 frames of each motion, and ten maps.
-std::vector<records::GhostRecord> measure_ghosts(const FrameBench& bench, const GhostBench& ghosts,
-                                                 FrameDrawing& drawing, std::vector<images::Image>& images);
+std::vector<records::GhostRecord> measure_ghosts(const TaskRig& rig, const GhostBench& ghosts, FrameDrawing& drawing,
+                                                 std::vector<images::Image>& images);
 
 /// What a filter drew while it was accumulated, by rule.
 struct AccumulatedImages {
@@ -104,8 +95,8 @@ struct AccumulatedImages {
 /// Measures what accumulation over `options.frames` frames makes of the filters of a task.
 class AccumulationMeter {
  public:
-  /// Everything must outlive this object. Requires a truth.
-  explicit AccumulationMeter(const FrameBench& bench);
+  /// Requires a truth.
+  explicit AccumulationMeter(const TaskRig& rig);
 
   /// Gives nothing where the filter is finite at no receiver.
   /// Cost: prefilter and lookup twice a frame; 256 more where the filter is stochastic; and those of measure_ghosts().
@@ -115,7 +106,7 @@ class AccumulationMeter {
   std::vector<images::GridTile> show(const std::string& label, const AccumulatedImages& images) const;
 
  private:
-  FrameBench bench_;
+  TaskRig rig_;
   render::GBuffer jittered_;
   const SceneTruth& truth_;
   images::Image jittered_truth_;  ///< the mean over all places of the camera

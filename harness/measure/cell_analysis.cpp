@@ -98,19 +98,15 @@ metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const st
   return make_masks(trace_surroundings(tracer, layers, truth, widest_kernel_texels), layers, truth);
 }
 
-CellAnalyser::CellAnalyser(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
-                           SceneAssets& assets, const SceneTruth& truth)
-    : renderer_(renderer),
-      options_(options),
-      task_(task),
-      assets_(assets),
+CellAnalyser::CellAnalyser(const TaskRig& rig, const SceneTruth& truth)
+    : rig_(rig),
       truth_(truth),
-      light_(assets.light_map(*task.camera, task.map_size)),
-      view_{options.width, options.height, options.seed, options.bias.plane_max_tangent()} {
+      light_(rig.light()),
+      view_{rig.options.width, rig.options.height, rig.options.seed, rig.options.bias.plane_max_tangent()} {
   if (!truth_.absent.empty()) return;
-  layers_ = list_traced_layers(renderer.shaders, assets.gbuffer(*task.camera),
-                               make_unbiased_light(options, task.scene->light, light_.layers));
-  around_ = trace_surroundings(assets_.tracer(), layers_, truth_, widest_kernel_texels(options_));
+  layers_ = list_traced_layers(rig.renderer.shaders, rig.gbuffer(),
+                               make_unbiased_light(rig.options, rig.task.scene->light, light_.layers));
+  around_ = trace_surroundings(rig_.assets.tracer(), layers_, truth_, widest_kernel_texels(rig_.options));
   masks_ = make_masks(around_, layers_, truth_);
   for (std::size_t i = 0; has_cascades() && i < layers_.size(); ++i) cascades_.push_back(mask_cascade(i));
 }
@@ -136,7 +132,7 @@ const KernelTruth& CellAnalyser::kernel_truth(const filters::Kernel& kernel) {
     place->second.visibility = truth_.rays.hard;
   else if (is_new)
     place->second = trace_unsettled(kernel.half_width(), [&](const auto& receivers, const auto& grid, std::size_t) {
-      return assets_.tracer().trace_kernel(receivers, kernel, grid);
+      return rig_.assets.tracer().trace_kernel(receivers, kernel, grid);
     });
   return place->second;
 }
@@ -147,7 +143,7 @@ KernelTruth CellAnalyser::disks_truth(const std::vector<std::vector<float>>& rad
     widest = std::max(widest, static_cast<double>(*std::ranges::max_element(layer)));
   return trace_unsettled(filters::Kernel::make_disk(widest).half_width(),
                          [&](const auto& receivers, const auto& grid, std::size_t layer) {
-                           return assets_.tracer().trace_disks(receivers, radii_texels[layer], grid);
+                           return rig_.assets.tracer().trace_disks(receivers, radii_texels[layer], grid);
                          });
 }
 
@@ -241,7 +237,7 @@ std::optional<double> CellAnalyser::measure_seam(MeasuredCell& cell) const {
         texels[pixel] = std::numeric_limits<float>::quiet_NaN();
     layers.push_back({texels, layers_[i].shares});
   }
-  return metrics::measure_seam(layers, options_.width,
+  return metrics::measure_seam(layers, rig_.options.width,
                                [&](std::size_t a, std::size_t b) { return lie_on_one_surface(points[a], points[b]); });
 }
 
@@ -250,9 +246,9 @@ std::vector<ModelLayer> CellAnalyser::read_layers(const std::vector<render::Bias
   for (std::size_t i = 0; i < biases.size(); ++i) {
     const scene::LightFrustum& layer = light_.layers[i];
     layers.push_back({light_.map.read(layer.layer),
-                      render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera),
-                                             render::make_light_setup(layer, task_.scene->light, biases[i],
-                                                                      options_.seed, options_.range))});
+                      render::read_receivers(rig_.renderer.shaders, rig_.gbuffer(),
+                                             render::make_light_setup(layer, rig_.task.scene->light, biases[i],
+                                                                      rig_.options.seed, rig_.options.range))});
   }
   return layers;
 }
@@ -276,8 +272,8 @@ ModelImages CellAnalyser::evaluate(const MeasuredCell& cell) {
   const auto kernel = filters::find_kernel(spec, values);
   std::vector<render::Bias> own, of_comparison;
   for (const scene::LightFrustum& layer : light_.layers) {
-    own.push_back(render::resolve_bias(options_.bias, layer, spec, values));
-    if (kernel) of_comparison.push_back(render::resolve_comparison_bias(options_.bias, layer, spec, values));
+    own.push_back(render::resolve_bias(rig_.options.bias, layer, spec, values));
+    if (kernel) of_comparison.push_back(render::resolve_comparison_bias(rig_.options.bias, layer, spec, values));
   }
   const std::vector<ModelLayer> layers = read_layers(own);
   ModelImages images = evaluate_model(cell.request, layers, view_);
@@ -289,9 +285,9 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   const filters::FilterRequest& request = cell.request;
   const auto shape = filters::find_kernel(request.spec, request.values);
-  if (!options_.attribution || (!shape && !filters::make_model(request.spec))) {
+  if (!rig_.options.attribution || (!shape && !filters::make_model(request.spec))) {
     const char* reason =
-        options_.attribution ? filters::explain_no_kernel(request.spec) : "the run was made with --no-attribution";
+        rig_.options.attribution ? filters::explain_no_kernel(request.spec) : "the run was made with --no-attribution";
     for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})
       record.absent[field] = reason;
     return;
@@ -317,10 +313,10 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   note(record, "error.kernel_rmse", record.error.kernel_rmse, to_kernel ? std::optional(to_kernel->rmse) : std::nullopt,
        {"no pixel of the image is finite"});
   const bool random = request.spec.kind == filters::FilterKind::kStochastic;
-  note(
-      record, "artefact.noise", record.artefact.noise,
-      random ? metrics::rate_noise(image, images.closer, kernel.visibility, truth_.mask, options_.width) : std::nullopt,
-      random ? too_few("lie in the kernel's penumbra") : records::Absence{"the filter takes no random taps"});
+  note(record, "artefact.noise", record.artefact.noise,
+       random ? metrics::rate_noise(image, images.closer, kernel.visibility, truth_.mask, rig_.options.width)
+              : std::nullopt,
+       random ? too_few("lie in the kernel's penumbra") : records::Absence{"the filter takes no random taps"});
   note_attribution(cell, std::move(attribution));
 }
 

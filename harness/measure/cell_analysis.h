@@ -43,9 +43,8 @@ metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const st
 /// Says why the cells of one task are wrong: takes their errors apart, and counts the artefacts a person sees.
 class CellAnalyser {
  public:
-  /// Everything but the task must outlive this object. Reads the depth map back and traces the receivers' surroundings.
-  CellAnalyser(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets,
-               const SceneTruth& truth);
+  /// The truth must outlive this object, too. Reads the depth map back and traces the receivers' surroundings.
+  CellAnalyser(const TaskRig& rig, const SceneTruth& truth);
 
   /// Notes attribution and artefacts in the cell's record, or why there are none, and leaves the parts as images.
   /// Cost: the filter's scalar model, where it has one, and its brute-force percentage-closer filter for every
@@ -60,10 +59,7 @@ class CellAnalyser {
   const std::optional<metrics::ArtefactMasks>& masks() const { return masks_; }
 
  private:
-  Renderer& renderer_;
-  const options::RunOptions& options_;
-  SceneTask task_;
-  SceneAssets& assets_;
+  TaskRig rig_;
   const SceneTruth& truth_;
   LightMap& light_;
   ModelView view_;

@@ -56,21 +56,17 @@ double count_triangles(const scene::Scene& scene, const std::vector<scene::Light
 /// Everything that one task draws with.
 class SceneBench {
  public:
-  SceneBench(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets,
-             const options::StepListener& listener)
-      : renderer_(renderer),
-        options_(options),
-        task_(task),
-        assets_(assets),
+  SceneBench(const TaskRig& rig, const options::StepListener& listener)
+      : rig_(rig),
         listener_(listener),
-        light_(assets.light_map(*task.camera, task.map_size)),
-        gbuffer_(assets.gbuffer(*task.camera)),
-        target_("visibility", GL_R32F, options.width, options.height) {}
+        light_(rig.light()),
+        gbuffer_(rig.gbuffer()),
+        target_("visibility", GL_R32F, rig.options.width, rig.options.height) {}
 
   SceneMeasurement run() {
     SceneMeasurement result;
     const std::vector<std::unique_ptr<render::FilterPasses>> filters = compile();
-    StabilityMeter stability(renderer_, options_, task_, assets_);
+    StabilityMeter stability(rig_);
     for (const auto& filter : filters) {
       listener_(filter->request().label());
       result.cells.push_back(draw(*filter));
@@ -78,32 +74,29 @@ class SceneBench {
       result.passes_run += 1 + prefilter;
       result.passes_skipped += std::max(0, 3 - prefilter);
       stability.warn(result.cells.back(), *filter);
-      if (options_.stability) stability.measure(result.cells.back(), *filter);
-      if (options_.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filter);
-      if (!options_.truth && !options_.part.is_worker()) continue;
+      if (rig_.options.stability) stability.measure(result.cells.back(), *filter);
+      if (rig_.options.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filter);
+      if (!rig_.options.truth && !rig_.options.part.is_worker()) continue;
       result.cells.back().cascades = draw_cascades(*filter);
-      draw_without_bias(renderer_, options_, assets_, light_, *filter, [&] {
+      draw_without_bias(rig_.renderer, rig_.options, rig_.assets, light_, *filter, [&] {
         result.cells.back().unbiased = draw_visibility(*filter, light_.map, gbuffer_, target_);
       });
     }
-    const double triangles = count_triangles(*task_.scene, light_.layers);
+    const double triangles = count_triangles(*rig_.task.scene, light_.layers);
     for (MeasuredCell& cell : result.cells) cell.map_triangles = triangles;
     time(result, filters);
     draw_phases(result, filters);
     warn_of_coarse_depth(result);
-    if (const std::string wide = describe_wide_scene(*task_.scene, light_.frustum().texel_size_ws);
-        options_.truth && !wide.empty())
+    if (const std::string wide = describe_wide_scene(*rig_.task.scene, light_.frustum().texel_size_ws);
+        rig_.options.truth && !wide.empty())
       for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(wide);
     warn_of_small_map(result);
-    renderer_.context->require_no_gl_errors();
+    rig_.renderer.context->require_no_gl_errors();
     return result;
   }
 
  private:
-  Renderer& renderer_;
-  const options::RunOptions& options_;
-  const SceneTask& task_;
-  SceneAssets& assets_;
+  const TaskRig& rig_;
   const options::StepListener& listener_;
   LightMap& light_;
   render::GBuffer& gbuffer_;
@@ -115,9 +108,9 @@ class SceneBench {
   std::vector<std::unique_ptr<render::FilterPasses>> compile() {
     std::vector<std::unique_ptr<render::FilterPasses>> compiled;
     std::vector<filters::FilterMistake> mistakes;
-    for (const filters::FilterRequest& request : task_.filters) {
+    for (const filters::FilterRequest& request : rig_.task.filters) {
       try {
-        compiled.push_back(make_passes(request));
+        compiled.push_back(rig_.make_passes(request));
       } catch (const Error& error) {
         if (error.kind() != ErrorKind::kFilter) throw;
         mistakes.push_back({request.spec.id, request.spec.path, error.what()});
@@ -127,34 +120,30 @@ class SceneBench {
     return compiled;
   }
 
-  std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) {
-    return make_filter_passes(renderer_, options_, *task_.scene, light_, request);
-  }
-
   MeasuredCell draw(render::FilterPasses& filter) {
     MeasuredCell cell;
-    cell.record = make_record(options_, task_, filter.request());
+    cell.record = make_record(rig_.options, rig_.task, filter.request());
     cell.record.map_scale = {light_.frustum().texel_size_ws, light_.frustum().depth_range_ws};
     cell.request = filter.request();
     cell.label = filter.request().label();
     cell.light = filter.light();
-    drawn_ms_ += time_once(filter, light_.map, gbuffer_, target_, renderer_.timer);
+    drawn_ms_ += time_once(filter, light_.map, gbuffer_, target_, rig_.renderer.timer);
     cell.visibility = render::read_image(target_.texture(), 1);
-    cell.picture =
-        render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, options_.range);
-    if (renderer_.recorder) cell.frame = renderer_.recorder->newest_draw();
+    cell.picture = render::shade(rig_.renderer.shaders, gbuffer_, target_.texture(), *rig_.task.scene,
+                                 *rig_.task.camera, rig_.options.range);
+    if (rig_.renderer.recorder) cell.frame = rig_.renderer.recorder->newest_draw();
     cell.record.nan = std::ranges::count_if(cell.visibility.texels, [](float v) { return !std::isfinite(v); });
-    if (receivers_ < 0) receivers_ = render::count_receivers(renderer_.shaders, gbuffer_, filter.light());
+    if (receivers_ < 0) receivers_ = render::count_receivers(rig_.renderer.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;
-    cell.cost = filter.measure_cost(renderer_.shaders, gbuffer_, light_.map);
-    cell.passes = filter.list_passes(gl::pixel_format(options_.map.format).bytes_per_texel);
+    cell.cost = filter.measure_cost(rig_.renderer.shaders, gbuffer_, light_.map);
+    cell.passes = filter.list_passes(gl::pixel_format(rig_.options.map.format).bytes_per_texel);
     cell.record.cost = {.fetches = cell.cost.fetches,
                         .bytes_per_texel = cell.cost.bytes_per_texel,
                         .passes = cell.cost.passes,
                         .map_bytes = cell.cost.map_bytes,
                         .prefilter_texels = cell.cost.prefilter_texels};
     if (!cell.cost.fetches) cell.record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
-    check_drawing(cell, *renderer_.context);
+    check_drawing(cell, *rig_.renderer.context);
     return cell;
   }
 
@@ -163,17 +152,17 @@ class SceneBench {
     if (!std::holds_alternative<scene::ViewSlice>(light_.frustum().share)) return {};
     constexpr double kNever = 1e30;  // metres from the camera
     constexpr scene::ViewSlice kAll{-1.0, -1.0, kNever, kNever}, kNone{kNever, kNever, kNever, kNever};
-    const gl::Recorder::Pause pause(renderer_.recorder.get());
+    const gl::Recorder::Pause pause(rig_.renderer.recorder.get());
     const render::LightLayers own = filter.light();
     std::vector<images::Image> drawn;
     for (std::size_t i = 0; i < own.size(); ++i) {
       render::LightLayers alone = own;
       for (std::size_t other = 0; other < alone.size(); ++other) alone[other].frustum.share = other == i ? kAll : kNone;
-      filter.retune(renderer_.shaders, filter.request().values, alone);
+      filter.retune(rig_.renderer.shaders, filter.request().values, alone);
       filter.lookup(gbuffer_, light_.map, target_);
       drawn.push_back(render::read_image(target_.texture(), 1));
     }
-    filter.retune(renderer_.shaders, filter.request().values, own);
+    filter.retune(rig_.renderer.shaders, filter.request().values, own);
     return drawn;
   }
 
@@ -190,22 +179,22 @@ class SceneBench {
 
   /// Bounds what the same computation in single precision may make of each pixel.
   images::Image bound_rounding(const filters::ScalarModel& model, const render::FilterPasses& filter) {
-    images::Image image(options_.width, options_.height, 1);
+    images::Image image(rig_.options.width, rig_.options.height, 1);
     for (const render::LightSetup& layer : filter.light()) {
       const filters::DepthMap map = light_.map.read(layer.frustum.layer);
       const auto tracked = model.prepare({.spec = filter.request().spec,
                                           .values = filter.request().values,
                                           .map = map,
-                                          .accuracy = measure_accuracy(renderer_),
-                                          .seed = options_.seed,
-                                          .plane_max_tangent = options_.bias.plane_max_tangent()},
+                                          .accuracy = measure_accuracy(rig_.renderer),
+                                          .seed = rig_.options.seed,
+                                          .plane_max_tangent = rig_.options.bias.plane_max_tangent()},
                                          filters::Precision::kTracked);
-      const auto receivers = render::read_receivers(renderer_.shaders, gbuffer_, layer);
+      const auto receivers = render::read_receivers(rig_.renderer.shaders, gbuffer_, layer);
       visit_in_parallel(receivers.size(), [&](std::size_t i) {
         const filters::ModelResult result = tracked->at(receivers[i]);
         const float of_share = receivers[i].layer_share < 1.0f ? 0x1p-23f : 0.0f;
         const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) + of_share : 1.0f;
-        float& pixel = image.texels[find_pixel(receivers[i], options_.width, options_.height)];
+        float& pixel = image.texels[find_pixel(receivers[i], rig_.options.width, rig_.options.height)];
         pixel = result.excused ? images::kMayFlip : pixel + receivers[i].layer_share * bound;
       });
     }
@@ -216,12 +205,12 @@ class SceneBench {
   images::UncertaintyImages spread_seeds(render::FilterPasses& filter) {
     const render::LightLayers own = filter.light();
     images::UncertaintyImages spread;
-    spread.seed_mean = spread.seed_deviation = images::Image(options_.width, options_.height, 1);
+    spread.seed_mean = spread.seed_deviation = images::Image(rig_.options.width, rig_.options.height, 1);
     std::vector<double> sum(spread.seed_mean.texels.size()), squares(sum.size());
     for (std::uint32_t i = 1; i <= static_cast<std::uint32_t>(images::kSpreadSeeds); ++i) {
       render::LightLayers other = own;
       for (render::LightSetup& layer : other) layer.seed = filters::hash_bits(own.front().seed + i);
-      filter.retune(renderer_.shaders, filter.request().values, other);
+      filter.retune(rig_.renderer.shaders, filter.request().values, other);
       const images::Image image = draw_visibility(filter, light_.map, gbuffer_, target_);
       for (std::size_t p = 0; p < sum.size(); ++p) {
         const double value = static_cast<double>(image.texels[p]);
@@ -229,7 +218,7 @@ class SceneBench {
         squares[p] += value * value;
       }
     }
-    filter.retune(renderer_.shaders, filter.request().values, own);
+    filter.retune(rig_.renderer.shaders, filter.request().values, own);
     for (std::size_t p = 0; p < sum.size(); ++p) {
       const double n = images::kSpreadSeeds, mean = sum[p] / n;
       spread.seed_mean.texels[p] = static_cast<float>(mean);
@@ -246,25 +235,25 @@ class SceneBench {
       farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
     const double step_m = render::find_coarsest_step(light_.map.settings(), static_cast<double>(farthest)) *
                           light_.frustum().depth_range_ws;
-    const double bias_m = options_.bias.constant.in_world(light_.frustum());
+    const double bias_m = rig_.options.bias.constant.in_world(light_.frustum());
     if (bias_m == 0.0 || bias_m >= 0.5 * step_m) return;
     const std::string warning(fmt::format(
         "{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
         "acne on what faces the light; choose --bias with a constant of {} m or more, --reversed-depth with d32f, or a "
         "smaller --perspective-depth",
-        task_.scene->name, render::describe_map(light_.map.settings()), records::format_number(step_m),
+        rig_.task.scene->name, render::describe_map(light_.map.settings()), records::format_number(step_m),
         records::format_number(bias_m), records::format_number(0.5 * step_m)));
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }
 
   /// Half of a map at most is padding, and kernels wider than that read beyond it.
   void warn_of_small_map(SceneMeasurement& result) const {
-    const double pad_texels = padding_texels(options_);
-    if (limit_padding(pad_texels, task_.map_size) >= pad_texels) return;
-    const std::string warning(
-        fmt::format("{}: a map of {} texels a side has no room for the {} texels that kernels need on each: "
-                    "choose --map-size {:.0f} or more",
-                    task_.scene->name, task_.map_size, records::format_number(pad_texels), 4.0 * pad_texels + 1.0));
+    const double pad_texels = padding_texels(rig_.options);
+    if (limit_padding(pad_texels, rig_.task.map_size) >= pad_texels) return;
+    const std::string warning(fmt::format(
+        "{}: a map of {} texels a side has no room for the {} texels that kernels need on each: "
+        "choose --map-size {:.0f} or more",
+        rig_.task.scene->name, rig_.task.map_size, records::format_number(pad_texels), 4.0 * pad_texels + 1.0));
     for (MeasuredCell& cell : result.cells) cell.record.warnings.push_back(warning);
   }
 
@@ -272,25 +261,25 @@ class SceneBench {
     std::vector<render::FilterPasses*> pointers;
     for (const auto& filter : filters) pointers.push_back(filter.get());
     const auto asked = std::ranges::find_if(
-        task_.filters, [&](const auto& request) { return filters::is_same(request, options_.reference); });
-    const auto reference = static_cast<std::size_t>(asked - task_.filters.begin());
+        rig_.task.filters, [&](const auto& request) { return filters::is_same(request, rig_.options.reference); });
+    const auto reference = static_cast<std::size_t>(asked - rig_.task.filters.begin());
     std::unique_ptr<render::FilterPasses> added;
-    if (asked == task_.filters.end()) {
-      pointers.push_back((added = make_passes(options_.reference)).get());
-      drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, renderer_.timer);
+    if (asked == rig_.task.filters.end()) {
+      pointers.push_back((added = rig_.make_passes(rig_.options.reference)).get());
+      drawn_ms_ += time_once(*added, light_.map, gbuffer_, target_, rig_.renderer.timer);
     }
     listener_("times");
-    const EmptyLookups empty = make_empty_lookups(renderer_, options_, *task_.scene, light_, pointers);
+    const EmptyLookups empty = make_empty_lookups(rig_.renderer, rig_.options, *rig_.task.scene, light_, pointers);
     record_empties(result, empty);
-    const gl::Recorder::Pause pause(renderer_.recorder.get());
-    const RoundTimes times =
-        time_rounds({.filters = pointers,
-                     .empties = empty.passes,
-                     .draw_map = [&] { assets_.redraw(light_); },
-                     .map = light_.map,
-                     .gbuffer = gbuffer_,
-                     .timer = renderer_.timer},
-                    {.reference = reference, .limits = options_.rounds, .seed = options_.seed, .drawn_ms = drawn_ms_});
+    const gl::Recorder::Pause pause(rig_.renderer.recorder.get());
+    const RoundTimes times = time_rounds(
+        {.filters = pointers,
+         .empties = empty.passes,
+         .draw_map = [&] { rig_.assets.redraw(light_); },
+         .map = light_.map,
+         .gbuffer = gbuffer_,
+         .timer = rig_.renderer.timer},
+        {.reference = reference, .limits = rig_.options.rounds, .seed = rig_.options.seed, .drawn_ms = drawn_ms_});
     result.timed_ms = times.spent_ms;
     for (std::size_t i = 0; i < filters.size(); ++i) {
       note_times(result.cells[i].record, times, {i, reference, empty.of_filter[i]});
@@ -301,11 +290,11 @@ class SceneBench {
 
   /// Has the empty lookups written down, each drawn once.
   void record_empties(SceneMeasurement& result, const EmptyLookups& empty) {
-    if (!renderer_.recorder) return;
+    if (!rig_.renderer.recorder) return;
     std::vector<gl::StepPointer> drawn;
     for (const auto& passes : empty.passes) {
       passes->lookup(gbuffer_, light_.map, target_);
-      drawn.push_back(renderer_.recorder->newest_draw());
+      drawn.push_back(rig_.renderer.recorder->newest_draw());
     }
     for (std::size_t i = 0; i < result.cells.size(); ++i) result.cells[i].empty_frame = drawn[empty.of_filter[i]];
   }
@@ -313,18 +302,19 @@ class SceneBench {
   /// Draws every filter again with the map's grid moved by parts of a texel, and after a step of the camera. The passes
   /// stay turned to the last of these maps.
   void draw_phases(SceneMeasurement& result, const std::vector<std::unique_ptr<render::FilterPasses>>& filters) {
-    const gl::Recorder::Pause pause(renderer_.recorder.get());
-    const std::vector<glm::dvec2> shifts = list_phase_shifts(options_.phases, options_.seed);
+    const gl::Recorder::Pause pause(rig_.renderer.recorder.get());
+    const std::vector<glm::dvec2> shifts = list_phase_shifts(rig_.options.phases, rig_.options.seed);
     if (shifts.size() > 1) listener_("phases");
     for (std::size_t phase = 1; phase < shifts.size(); ++phase) {
       gbuffer_.forget_receivers();  // no phase asks for those of another
-      const LightMap moved = assets_.make_light_map(task_.scene->light, *task_.camera, task_.map_size, shifts[phase]);
+      const LightMap moved =
+          rig_.assets.make_light_map(rig_.task.scene->light, *rig_.task.camera, rig_.task.map_size, shifts[phase]);
       for (std::size_t i = 0; i < filters.size(); ++i)
         result.cells[i].phases.push_back(draw_turned(*filters[i], moved));
     }
     gbuffer_.forget_receivers();
-    if (!options_.truth && !options_.part.is_worker()) return;
-    if (const auto moved = assets_.make_stepped_map(*task_.camera, task_.map_size)) {
+    if (!rig_.options.truth && !rig_.options.part.is_worker()) return;
+    if (const auto moved = rig_.assets.make_stepped_map(*rig_.task.camera, rig_.task.map_size)) {
       for (std::size_t i = 0; i < filters.size(); ++i) result.cells[i].stepped = draw_turned(*filters[i], *moved);
       gbuffer_.forget_receivers();
     }
@@ -332,8 +322,8 @@ class SceneBench {
 
   images::Image draw_turned(render::FilterPasses& filter, const LightMap& light) {
     const auto encoded = filter.make_encoded_targets();
-    filter.turn_to(
-        filter.prepare(make_filter_light(options_, task_.scene->light, light.layers, filter.request()), encoded));
+    filter.turn_to(filter.prepare(
+        make_filter_light(rig_.options, rig_.task.scene->light, light.layers, filter.request()), encoded));
     return draw_visibility(filter, light.map, gbuffer_, target_);
   }
 };
@@ -402,9 +392,8 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
   return record;
 }
 
-SceneMeasurement measure_scene(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
-                               SceneAssets& assets, const options::StepListener& listener) {
-  return SceneBench(renderer, options, task, assets, listener).run();
+SceneMeasurement measure_scene(const TaskRig& rig, const options::StepListener& listener) {
+  return SceneBench(rig, listener).run();
 }
 
 namespace {

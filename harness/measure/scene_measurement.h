@@ -69,11 +69,27 @@ struct SceneTask {
   std::vector<filters::FilterRequest> filters;
 };
 
+/// What a task is drawn with. Everything must outlive whatever keeps it.
+struct TaskRig {
+  Renderer& renderer;
+  const options::RunOptions& options;
+  const SceneTask& task;
+  SceneAssets& assets;
+
+  LightMap& light() const { return assets.light_map(*task.camera, task.map_size); }
+  render::GBuffer& gbuffer() const { return assets.gbuffer(*task.camera); }
+  const SceneTruth& truth() const { return assets.truth(*task.camera); }
+
+  /// Compiles a filter over the light's map. Throws as render::FilterPasses.
+  std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) const {
+    return make_filter_passes(renderer, options, *task.scene, light(), request);
+  }
+};
+
 /// Draws and times every filter of a task.
 /// Throws Error(kFilter) for a filter's GLSL, Error(kUsage) for a map size that the GL cannot give.
 SceneMeasurement measure_scene(
-    Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets,
-    const options::StepListener& listener = [](const std::string&) {});
+    const TaskRig& rig, const options::StepListener& listener = [](const std::string&) {});
 
 /// Writes a light's place as the command line reads it.
 std::string describe_light(const scene::SkyAngles& light);

@@ -246,33 +246,25 @@ std::optional<std::string> find_other_store(const filters::FilterRequest& reques
   return std::nullopt;
 }
 
-StabilityMeter::StabilityMeter(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
-                               SceneAssets& assets)
-    : renderer_(renderer),
-      options_(options),
-      task_(task),
-      assets_(assets),
-      light_(assets.light_map(*task.camera, task.map_size)) {}
-
 MapTrial StabilityMeter::make_trial(const filters::FilterRequest& request) const {
   return [this, request](const filters::ParamValues& values) {
     filters::FilterRequest tried = request;
     tried.values = values;
-    const auto passes = make_filter_passes(renderer_, options_, *task_.scene, light_, tried);
+    const auto passes = rig_.make_passes(tried);
     passes->prefilter(light_.map);
     return check_map(*passes, light_.map);
   };
 }
 
 const std::vector<std::uint8_t>& StabilityMeter::mask() {
-  if (!mask_) mask_ = read_view_receivers(assets_.gbuffer(*task_.camera), task_.scene->light).mask();
+  if (!mask_) mask_ = read_view_receivers(rig_.gbuffer(), rig_.task.scene->light).mask();
   return *mask_;
 }
 
 void StabilityMeter::warn(MeasuredCell& cell, render::FilterPasses& filter) const {
   if (!filter.encoded_map()) return;
   const metrics::TexelHealth health = check_map(filter, light_.map);
-  const std::string name = fmt::format("{}: {}", task_.scene->name, cell.label);
+  const std::string name = fmt::format("{}: {}", rig_.task.scene->name, cell.label);
   for (std::string& warning : list_exceeded_limits(name, cell.request, health, make_trial(cell.request)))
     cell.record.warnings.push_back(std::move(warning));
 }
@@ -333,9 +325,9 @@ void StabilityMeter::compare_stores(MeasuredCell& cell) {
   }
   filters::FilterRequest request = cell.request;
   request.values["store"] = *other_store;
-  const auto passes = make_filter_passes(renderer_, options_, *task_.scene, light_, request);
-  render::ImageTarget target("visibility with the other store", GL_R32F, options_.width, options_.height);
-  const images::Image other = draw_visibility(*passes, light_.map, assets_.gbuffer(*task_.camera), target);
+  const auto passes = rig_.make_passes(request);
+  render::ImageTarget target("visibility with the other store", GL_R32F, rig_.options.width, rig_.options.height);
+  const images::Image other = draw_visibility(*passes, light_.map, rig_.gbuffer(), target);
   const bool other_is_half = filters::store_precision(*other_store) == filters::StorePrecision::kHalf;
   const images::Image& half = other_is_half ? other : cell.visibility;
   const images::Image& single = other_is_half ? cell.visibility : other;
@@ -363,27 +355,27 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
   cell.record.stability.bound_shortfall_max = check.shortfall_max;
   cell.record.stability.bound_violations = check.violations;
   cell.record.stability.bound_exact_violations = check.exact_violations;
-  cell.stability.shortfall = images::make_image(options_.width, options_.height, check.shortfall);
-  cell.stability.violation = images::make_image(options_.width, options_.height, check.violation);
+  cell.stability.shortfall = images::make_image(rig_.options.width, rig_.options.height, check.shortfall);
+  cell.stability.violation = images::make_image(rig_.options.width, rig_.options.height, check.violation);
 }
 
 /// Compares both at the depth that the filter itself compares with: another bias would be another bound.
 metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::ScalarModel& model,
                                                         const render::LightLayers& light) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const double plane_max_tangent = options_.bias.plane_max_tangent();
+  const double plane_max_tangent = rig_.options.bias.plane_max_tangent();
   const std::size_t pixels = cell.visibility.texels.size();
   const bool overflowed = cell.record.stability.overflow_texels.value_or(0) > 0;
   std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0), tolerance(pixels, kNone);
   std::vector<std::uint8_t> excused(pixels);
   for (const render::LightSetup& layer : light) {
-    const auto receivers = render::read_receivers(renderer_.shaders, assets_.gbuffer(*task_.camera), layer);
+    const auto receivers = render::read_receivers(rig_.renderer.shaders, rig_.gbuffer(), layer);
     const filters::DepthMap map = light_.map.read(layer.frustum.layer);
     const filters::ModelInput input{.spec = cell.request.spec,
                                     .values = cell.request.values,
                                     .map = map,
-                                    .accuracy = measure_accuracy(renderer_),
-                                    .seed = options_.seed,
+                                    .accuracy = measure_accuracy(rig_.renderer),
+                                    .seed = rig_.options.seed,
                                     .plane_max_tangent = plane_max_tangent};
     const auto exact = model.prepare(input, filters::Precision::kDouble);
     const auto tracked = model.prepare(input, filters::Precision::kTracked);
@@ -391,7 +383,7 @@ metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell
     visit_in_parallel(receivers.size(), [&](std::size_t i) {
       const filters::Receiver& r = receivers[i];
       const filters::ModelResult bounded = tracked->at(r);
-      const std::size_t pixel = find_pixel(r, options_.width, options_.height);
+      const std::size_t pixel = find_pixel(r, rig_.options.width, rig_.options.height);
       put_share(of_model[pixel], r, exact->at(r).visibility);
       put_share(of_closer[pixel], r, closer.at(r));
       // In a map that overflowed an infinite bound on rounding explains nothing: the overflow is no rounding.

@@ -60,8 +60,7 @@ std::vector<std::string> list_exceeded_limits(const std::string& name, const fil
 /// 16-bit store against the 32-bit one, and where a bound is darker than what it bounds.
 class StabilityMeter {
  public:
-  /// Everything but the task must outlive this object.
-  StabilityMeter(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets);
+  explicit StabilityMeter(const TaskRig& rig) : rig_(rig), light_(rig.light()) {}
 
   /// Notes in the cell's warnings which limits its map exceeds, and what keeps them. Requires that the map was made.
   /// Cost: reads the map back; where a limit is exceeded also a map for each remedy that is tried.
@@ -74,10 +73,7 @@ class StabilityMeter {
   void measure(MeasuredCell& cell, render::FilterPasses& filter);
 
  private:
-  Renderer& renderer_;
-  const options::RunOptions& options_;
-  SceneTask task_;
-  SceneAssets& assets_;
+  TaskRig rig_;
   LightMap& light_;
   std::optional<std::vector<std::uint8_t>> mask_;
 

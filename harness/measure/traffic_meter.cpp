@@ -293,16 +293,13 @@ std::optional<std::vector<double>> count_map_traffic(const std::vector<CountedLa
   return count_traffic(tiled, receivers, caches);
 }
 
-TrafficMeter::TrafficMeter(Renderer& renderer, const options::RunOptions& options, const SceneTask& task,
-                           SceneAssets& assets, std::optional<double> texels_per_pixel)
-    : renderer_(renderer),
-      options_(options),
-      task_(task),
-      light_(assets.light_map(*task.camera, task.map_size)),
-      step_(choose_step(options, texels_per_pixel)),
-      gbuffer_(count_columns(options, kFrameRows / step_), kFrameRows / step_) {
-  assets.draw_view(gbuffer_, *task.camera);
-  for (const gpu::Gpu& gpu : options_.gpus)
+TrafficMeter::TrafficMeter(const TaskRig& rig, std::optional<double> texels_per_pixel)
+    : rig_(rig),
+      light_(rig.light()),
+      step_(choose_step(rig.options, texels_per_pixel)),
+      gbuffer_(count_columns(rig.options, kFrameRows / step_), kFrameRows / step_) {
+  rig.assets.draw_view(gbuffer_, *rig.task.camera);
+  for (const gpu::Gpu& gpu : rig_.options.gpus)
     caches_.push_back({.bytes = static_cast<std::int64_t>(gpu.cache_mib.value * 1024.0 * 1024.0),
                        .line_bytes = static_cast<int>(gpu.line_bytes.value)});
   for (const scene::LightFrustum& layer : light_.layers) layers_.push_back({light_.map.read(layer.layer), {}});
@@ -312,12 +309,12 @@ void TrafficMeter::measure(MeasuredCell& cell) {
   if (cell.passes.empty()) return;
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const scene::LightFrustum& layer = light_.layers[i];
-    const render::Bias bias = render::resolve_bias(options_.bias, layer, cell.request.spec, cell.request.values);
+    const render::Bias bias = render::resolve_bias(rig_.options.bias, layer, cell.request.spec, cell.request.values);
     layers_[i].receivers = render::read_receivers(
-        renderer_.shaders, gbuffer_,
-        render::make_light_setup(layer, task_.scene->light, bias, options_.seed, options_.range));
+        rig_.renderer.shaders, gbuffer_,
+        render::make_light_setup(layer, rig_.task.scene->light, bias, rig_.options.seed, rig_.options.range));
   }
-  const ModelView view{gbuffer_.width(), gbuffer_.height(), options_.seed, options_.bias.plane_max_tangent()};
+  const ModelView view{gbuffer_.width(), gbuffer_.height(), rig_.options.seed, rig_.options.bias.plane_max_tangent()};
   auto bytes = filters::make_model(cell.request.spec) ? count_map_traffic(cell.request, layers_, view, caches_)
                : cell.cost.fetches                    ? count_map_traffic(count_reads(cell), view, caches_)
                                                       : std::nullopt;
@@ -327,11 +324,11 @@ void TrafficMeter::measure(MeasuredCell& cell) {
 }
 
 std::vector<CountedLayer> TrafficMeter::count_reads(const MeasuredCell& cell) {
-  const gl::Recorder::Pause pause(renderer_.recorder.get());
-  const auto passes = make_filter_passes(renderer_, options_, *task_.scene, light_, cell.request);
+  const gl::Recorder::Pause pause(rig_.renderer.recorder.get());
+  const auto passes = rig_.make_passes(cell.request);
   passes->prefilter(light_.map);
   std::vector<CountedLayer> layers;
-  for (const render::CountedReads& counted : passes->count_reads(renderer_.shaders, gbuffer_, light_.map)) {
+  for (const render::CountedReads& counted : passes->count_reads(rig_.renderer.shaders, gbuffer_, light_.map)) {
     const ModelLayer& own = layers_[layers.size()];
     CountedLayer& layer = layers.emplace_back(CountedLayer{own.map, own.receivers, {}});
     if (passes->encoded_format()) layer.map.texel_bytes = gl::pixel_format(*passes->encoded_format()).bytes_per_texel;

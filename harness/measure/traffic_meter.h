@@ -57,10 +57,8 @@ std::optional<std::vector<double>> count_map_traffic(const std::vector<CountedLa
 /// still lies about a texel from the next, only these are asked.
 class TrafficMeter {
  public:
-  /// Everything but the task must outlive this object. `texels_per_pixel` is that of the run's pictures. Draws the
-  /// view, and reads the map back.
-  TrafficMeter(Renderer& renderer, const options::RunOptions& options, const SceneTask& task, SceneAssets& assets,
-               std::optional<double> texels_per_pixel);
+  /// `texels_per_pixel` is that of the run's pictures. Draws the view, and reads the map back.
+  TrafficMeter(const TaskRig& rig, std::optional<double> texels_per_pixel);
 
   /// Notes the bytes of one receiver's lookup, one number for each GPU; leaves the cell as it is where another process
   /// drew it, where the filter reads the map's samplers itself, or the view has no receiver. What a filter without a
@@ -68,9 +66,7 @@ class TrafficMeter {
   void measure(MeasuredCell& cell);
 
  private:
-  Renderer& renderer_;
-  const options::RunOptions& options_;
-  SceneTask task_;
+  TaskRig rig_;
   const LightMap& light_;
   int step_;  ///< every how many rows and columns of the frame are asked
   render::GBuffer gbuffer_;

@@ -123,7 +123,7 @@ class TaskRun {
     for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
     measure::SceneMeasurement measured;
     if (!built_in.empty())
-      measured = measure::measure_scene(renderer_, options_, task_of(built_in), assets_,
+      measured = measure::measure_scene({renderer_, options_, task_of(built_in), assets_},
                                         [this](const std::string& what) { begin(what); });
     const measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
     measured.stored_map = light.map.read_picture();
@@ -174,7 +174,7 @@ class TaskRun {
     measured.truth_s = watch.read_s();
     if (options_.truth) begin("artefacts");
     watch = {};
-    if (!analyser_) analyser_.emplace(renderer_, options_, task_, assets_, truth);
+    if (!analyser_) analyser_.emplace(measure::TaskRig{renderer_, options_, task_, assets_}, truth);
     measured.truth_s += watch.read_s();
     if (options_.truth) begin("errors");
     tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
@@ -203,7 +203,7 @@ class TaskRun {
     const gl::Recorder::Pause pause(renderer_.recorder.get());
     const std::string& absent = assets_.truth(*task_.camera).absent;
     if (absent.empty() && count > 0 && !accumulation_)
-      accumulation_.emplace(measure::FrameBench{renderer_, options_, task_, assets_});
+      accumulation_.emplace(measure::TaskRig{renderer_, options_, task_, assets_});
     const std::string picture = task_stem(options_, task_) + ".frames.png";
     images::Grid grid;
     grid.title = task_.scene->name + ": visibility accumulated over frames";
@@ -247,7 +247,8 @@ class TaskRun {
 
   /// Counts what estimates of GPUs need of the map's reads.
   void count_traffic(measure::SceneMeasurement& measured) {
-    if (!traffic_) traffic_.emplace(renderer_, options_, task_, assets_, coverage_->record.texels_per_pixel);
+    if (!traffic_)
+      traffic_.emplace(measure::TaskRig{renderer_, options_, task_, assets_}, coverage_->record.texels_per_pixel);
     for (measure::MeasuredCell& cell : measured.cells) traffic_->measure(cell);
     if (options_.grids) traffic_.reset();
   }

@@ -112,7 +112,7 @@ class BiasSweep {
   void make_masks() {
     const measure::SceneTruth& truth = assets_.truth(camera());
     const measure::SceneTask task{&scene_, &camera(), options_.map_sizes.front(), options_.filters};
-    const auto masks = measure::CellAnalyser(renderer_, options_, task, assets_, truth).masks();
+    const auto masks = measure::CellAnalyser({renderer_, options_, task, assets_}, truth).masks();
     if (!masks)
       throw Error(ErrorKind::kInput,
                   fmt::format("{}: no masks of artefacts: {}; choose another scene", scene_.name, truth.absent));

@@ -21,7 +21,7 @@ class AccumulationTest : public ::testing::Test {
         renderer_(make_renderer(gl::Backend::kAuto, options_.resources)),
         cache_({}, [](const std::string&) {}),
         assets_(renderer_, options_, scene_, cache_, 5.0),
-        bench_{renderer_, options_, task_, assets_} {}
+        rig_{renderer_, options_, task_, assets_} {}
 
   static filters::FilterRequest request(const std::string& text) {
     return test::catalogue().parse_requests(text).front();
@@ -50,7 +50,7 @@ class AccumulationTest : public ::testing::Test {
   truth::TruthCache cache_;
   SceneAssets assets_;
   SceneTask task_{&scene_, &scene_.cameras.front(), 256, {}};
-  FrameBench bench_;
+  TaskRig rig_;
 };
 
 TEST(Jitter, TakesEightPlacesInTurn_WithinAPixel) {
@@ -69,8 +69,8 @@ TEST_F(AccumulationTest, FilterWithoutNoise_FramesEqualOne_ToTheBit) {
   const LightMap& map = assets_.light_map(*task_.camera, task_.map_size);
   const render::GBuffer& gbuffer = assets_.gbuffer(*task_.camera);
   for (const char* filter : {"pcf2x2", "vsm", "poisson:rotation=none"}) {
-    FrameDrawing drawing(bench_, request(filter));
-    std::vector<render::ResolvePass> resolves = make_resolves(bench_);
+    FrameDrawing drawing(rig_, request(filter));
+    std::vector<render::ResolvePass> resolves = make_resolves(rig_);
     drawing.draw({0, scene_.light, map, gbuffer}, resolves);
     std::vector<images::Image> first;
     for (const auto& resolve : resolves) first.push_back(render::read_image(resolve.texture(), 1));
@@ -83,7 +83,7 @@ TEST_F(AccumulationTest, FilterWithoutNoise_FramesEqualOne_ToTheBit) {
 
 /// Of the plain mean: an exponential one has a floor.
 TEST_F(AccumulationTest, NoiseOfAMean_FallsWithTheRootOfFrames_AndFasterWithBlueNoise) {
-  AccumulationMeter meter(bench_);
+  AccumulationMeter meter(rig_);
   const records::AccumulationRecord white = measure(meter, "poisson:taps=4,rotation=per-pixel");
   const std::vector<double>& falling = *find(white, "mean").noise;
   for (const std::size_t n : {2, 4, 8, 16, 32}) {
@@ -104,17 +104,17 @@ TEST_F(AccumulationTest, NoiseOfAMean_FallsWithTheRootOfFrames_AndFasterWithBlue
 }
 
 TEST_F(AccumulationTest, Ghosts_FadeByTheWeight_AndSoonerWithClamping) {
-  const GhostBench ghosts = make_ghost_bench(bench_);
+  const GhostBench ghosts = make_ghost_bench(rig_);
   ASSERT_EQ(ghosts.motions.size(), 3u) << ghosts.absent;
-  FrameDrawing drawing(bench_, request("none"));
+  FrameDrawing drawing(rig_, request("none"));
   std::vector<images::Image> images;
-  for (const records::GhostRecord& ghost : measure_ghosts(bench_, ghosts, drawing, images)) {
+  for (const records::GhostRecord& ghost : measure_ghosts(rig_, ghosts, drawing, images)) {
     if (!ghost.at_stop || ghost.rule != "exponential") continue;
     SCOPED_TRACE(ghost.texels);
     EXPECT_GT(*ghost.at_stop, 0.3);
     EXPECT_NEAR(*ghost.frames_until, std::ceil(std::log(records::kGhostLimit / *ghost.at_stop) / std::log(0.9)), 1);
   }
-  const auto records = measure_ghosts(bench_, ghosts, drawing, images);
+  const auto records = measure_ghosts(rig_, ghosts, drawing, images);
   EXPECT_LT(records[5].frames_until.value(), 4) << "16 texels a frame, clamped";
   EXPECT_EQ(images.size(), 2u);
 }
@@ -122,7 +122,7 @@ TEST_F(AccumulationTest, Ghosts_FadeByTheWeight_AndSoonerWithClamping) {
 /// A light that stands overhead moves no shadow when it turns about the vertical.
 TEST_F(AccumulationTest, LightOverhead_HasNoGhosts) {
   scene_.light = scene::place_in_sky(scene_.light, {0.0, 90.0});
-  EXPECT_THAT(make_ghost_bench(bench_).absent, ::testing::HasSubstr("no shadow in view moves"));
+  EXPECT_THAT(make_ghost_bench(rig_).absent, ::testing::HasSubstr("no shadow in view moves"));
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ std::vector<measure::MeasuredCell> measure(const std::string& scene_name, const 
   truth::TruthCache cache({}, [](const std::string&) {});
   measure::SceneAssets assets(renderer, options, scene, cache, measure::largest_padding_texels(options.filters));
   const measure::SceneTask task{&scene, &scene.cameras.front(), map_size, options.filters};
-  return measure::measure_scene(renderer, options, task, assets).cells;
+  return measure::measure_scene({renderer, options, task, assets}).cells;
 }
 
 class Defaults : public ::testing::TestWithParam<std::string> {};
