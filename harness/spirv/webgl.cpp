@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <new>
+#include <spirv-tools/optimizer.hpp>
 
 #include "base/error.h"
 
@@ -38,12 +39,21 @@ gl::ShaderSource define_webgl(gl::ShaderSource source) {
   return source;
 }
 
+/// Drops branches that constants decide: what WebGL 2 lacks does no harm where it is never reached.
+void drop_dead_branches(std::vector<std::uint32_t>& words) {
+  spvtools::Optimizer optimizer(SPV_ENV_OPENGL_4_5);
+  optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass())
+      .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+  optimizer.Run(words.data(), words.size(), &words);
+}
+
 }  // namespace
 
 bool can_translate_to_webgl() { return true; }
 
 std::string translate_to_webgl(const gl::ShaderSource& source, Stage stage) {
-  const Shader shader = compile(define_webgl(source), stage, Rules::kOpenGl);
+  Shader shader = compile(define_webgl(source), stage, Rules::kOpenGl);
+  drop_dead_branches(shader.words);
   const Context context = make_context();
   spvc_parsed_ir parsed = nullptr;
   require(spvc_context_parse_spirv(context.get(), shader.words.data(), shader.words.size(), &parsed), context);

@@ -125,8 +125,8 @@ const makeEngine = (gl) => {
     if (!isTruth) player.draw(visibility);
     const shown = player.textureOf(visibility);
     if (layer === "map") display.showSquares(player.mapsOf(visibility), shown);
-    else if (isTruth) display.show({ ...shown, object: sharp }, white);
-    else display.show(shown, layer === "error" ? kMostError : white, layer === "error" ? sharp : null);
+    else if (isTruth) display.show({ ...shown, object: sharp }, 1);
+    else display.show(shown, layer === "error" ? kMostError : 1, layer === "error" ? sharp : null);
   };
   const copy = ({ width, height }, canvas, [from, to]) => {
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });

@@ -55,6 +55,14 @@ TEST(WebGl, WhatItLacksIsNamed) {
   }
 }
 
+TEST(WebGl, WhatItLacks_DoesNoHarm_WhereAConstantKeepsItFromBeingReached) {
+  const std::string text = translate(
+      "layout(binding = 0) uniform sampler2D map;\nlayout(location = 0) out vec4 o;\nconst int read = 0;\n"
+      "vec4 look() {\n  if (read != 2) return texelFetch(map, ivec2(0), 0);\n"
+      "  return textureGather(map, vec2(0.5));\n}\nvoid main() { o = look(); }\n");
+  EXPECT_THAT(text, HasSubstr("texelFetch"));
+}
+
 TEST(WebGl, AMistakeIsRefused) { EXPECT_THROW(translate("void main() { nothing; }\n"), Error); }
 
 }  // namespace
