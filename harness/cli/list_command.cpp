@@ -11,7 +11,6 @@
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/terminal.h"
-#include "harness/gl/survey.h"
 #include "harness/gpu/gpu.h"
 #include "harness/options/options.h"
 #include "harness/run/gpu_costs.h"
@@ -27,8 +26,8 @@ using filters::ParamSpec;
 
 struct ListArguments {
   bool json = false;
-  bool measure = false;
   bool check = false;
+  bool measure = false;  ///< gone
   std::string backend = "auto";
 };
 
@@ -219,10 +218,6 @@ int list_gl(const ListArguments& arguments) {
   const gl::ContextChoice choice = gl::create_context(gl::parse_backend(arguments.backend));
   for (const std::string& reason : choice.refused) print("not used: {}\n", reason);
   const gl::GlInfo& info = choice.context->info();
-  if (arguments.measure) {
-    print("{}", gl::describe_survey(info, gl::survey_gl(*choice.context)));
-    return 0;
-  }
   print("{}: {}, OpenGL {}, maps up to {} x {}\n", info.backend, info.renderer, info.version, info.max_texture_size,
         info.max_texture_size);
   return 0;
@@ -246,7 +241,7 @@ Command make_list_command() {
   add("gpus", "GPUs whose costs a run can estimate", list_gpus);
   command.commands.back().add("--check", &a->check, "also ask this machine's Vulkan driver which it compiles for");
   add("gl", "The OpenGL context of a run", list_gl);
-  command.commands.back().add("--measure", &a->measure, "measure what this OpenGL really does");
+  command.commands.back().add("--measure", &a->measure, "").gone("a run measures what its rounding bounds need");
   add_backend_option(command.commands.back(), a->backend);
   return command;
 }

@@ -419,8 +419,8 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
     copy_shared_paths(cell.record.images, peers.front()->images);
     cell.record.machine = peers.front()->machine;  // nothing of the row was timed: it is of no kind of its own
   }
+  if (options_.grids && options_.pictures) cell.record.images.grid = run::name_grid(planned.options, task.task);
   keep(cell.record);
-  scored_.insert_or_assign(&task, cell.record);
   return {cell.record, checked.findings};
 }
 
@@ -443,24 +443,6 @@ void RunScorer::insert(const records::CellRecord& cell) {
   cells.insert(last.base(), cell);
 }
 
-/// With the pictures as they were: from the visibility that the run keeps.
-void RunScorer::draw_grid(const run::PlannedTask& task, const records::CellRecord& row) {
-  const run::PlannedScene& planned = plan_.scenes[task.scene];
-  measure::SceneMeasurement measured;
-  for (const records::CellRecord& record : results_.cells) {
-    if (!stand_together(record, row)) continue;
-    measure::MeasuredCell& cell = measured.cells.emplace_back();
-    cell.record = record;
-    cell.label = record.images.parts.value_or(record.filter);
-    cell.visibility = read_visibility(record);
-    if (!cell.visibility.empty()) cell.picture = shade(task, cell.visibility);
-  }
-  if (std::ranges::all_of(measured.cells, [](const auto& cell) { return cell.visibility.empty(); })) return;
-  run::plan_grid(planned.options, task.task, measured, assets_of(task).truth(*task.task.camera), results_.run.gl)();
-  for (const measure::MeasuredCell& cell : measured.cells)
-    if (cell.record.external) keep(cell.record);
-}
-
 void RunScorer::export_place(const analysis::Place& place, const std::filesystem::path& folder) {
   const run::PlannedTask& task = find_task(place.scene, place.view, {}, 0);
   const run::PlannedScene& planned = plan_.scenes[task.scene];
@@ -474,8 +456,6 @@ void RunScorer::finish() {
   const files::FolderLock lock(options_.out);
   results_ = records::read_results(options_.out / "results.json");  // others may have scored meanwhile
   for (const records::CellRecord& row : rows_) insert(row);
-  if (options_.grids && options_.pictures)
-    for (const auto& [task, row] : scored_) draw_grid(*task, row);
   std::vector<std::string> keys;
   for (const records::CellRecord& cell : results_.cells) keys.push_back(cell.key);
   pages::write_report(options_.out, results_.run, keys);

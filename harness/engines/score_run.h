@@ -60,7 +60,7 @@ class RunScorer {
   std::vector<analysis::Place> list_places() const;
   void export_place(const analysis::Place& place, const std::filesystem::path& folder);
 
-  /// Draws the grids again that have new rows, and writes the report.
+  /// Writes the report, with the new rows.
   void finish();
 
  private:
@@ -70,9 +70,8 @@ class RunScorer {
   measure::Renderer renderer_;
   truth::TruthCache cache_;
   run::RunPlan plan_;
-  std::map<std::size_t, measure::SceneAssets> assets_;             ///< by planned scene
-  std::map<const run::PlannedTask*, records::CellRecord> scored_;  ///< tasks with new rows, and one of these
-  std::vector<records::CellRecord> rows_;                          ///< the new rows
+  std::map<std::size_t, measure::SceneAssets> assets_;  ///< by planned scene
+  std::vector<records::CellRecord> rows_;               ///< the new rows
 
   const run::PlannedTask& find_task(const std::string& scene, const std::string& view, const options::PictureSize& size,
                                     int map_size) const;
@@ -88,7 +87,6 @@ class RunScorer {
                           const std::vector<std::uint8_t>& counts, const images::Image& truth) const;
   void keep(const records::CellRecord& cell);
   void insert(const records::CellRecord& cell);
-  void draw_grid(const run::PlannedTask& task, const records::CellRecord& row);
 };
 
 /// Has renderers draw scenes of a run, and scores what they write. Each is a command of the shell that is given two

@@ -60,37 +60,9 @@ void main() {
   o_value = textureLod(u_map, vec2(0.25 + 0.5 * fraction, 0.5), 0.0).r;
 }
 
-//: survey_nearest.frag
-// Says which texel of u_map, whose values are their own indices, nearest sampling takes.
-uniform sampler2D u_map;
-uniform sampler2D u_coordinates;
+//: survey_exp.frag
+// A function at arguments that the CPU knows exactly.
+uniform sampler2D u_arguments;
 out float o_value;
 
-void main() {
-  float u = texelFetch(u_coordinates, ivec2(gl_FragCoord.xy), 0).r;
-  o_value = textureLod(u_map, vec2(u, 0.5), 0.0).r;
-}
-
-//: survey_math.frag
-// Functions at arguments that the CPU knows exactly.
-uniform sampler2D u_arguments;
-out vec4 o_values;
-
-void main() {
-  vec2 argument = texelFetch(u_arguments, ivec2(gl_FragCoord.xy), 0).xy;
-  o_values = vec4(exp(argument.x), sin(argument.y), cos(argument.y), 0.0);
-}
-
-//: survey_plane.vert
-// A plane over the viewport: depth u_depth at the lower left, rising by u_rise across the width and the height.
-uniform float u_depth;
-uniform vec2 u_rise;
-
-void main() {
-  vec2 uv = vec2(float((gl_VertexID & 1) << 1), float(gl_VertexID & 2));
-  gl_Position = vec4(uv * 2.0 - 1.0, u_depth + dot(uv, u_rise), 1.0);
-}
-
-//: survey_plane.frag
-// Depth alone.
-void main() {}
+void main() { o_value = exp(texelFetch(u_arguments, ivec2(gl_FragCoord.xy), 0).x); }

@@ -1,12 +1,9 @@
 #include "harness/gl/survey.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <vector>
 
@@ -191,207 +188,27 @@ WeightPrecision measure_color_weights(GLenum format) {
   return measure_weights(shader, map);
 }
 
-/// Counts the values that linear filtering yields between the texels 0 and 255 of R8.
-int count_r8_levels() {
-  const Texture map = make_step_map(GL_R8);
-  SurveyShader shader("survey_filter.frag", {kSamples, 1});
-  return count_distinct(sample(shader, map, kCoarse));
-}
-
-/// Whether a reference above 1 is compared as 1.
-bool detect_clamped_reference(GLenum depth_format) {
-  Texture map = make_step_map(depth_format);
-  map.upload_floats(std::array{1.0f, 1.0f}, 1);
-  SurveyShader shader("survey_compare.frag", {1, 1});
-  shader.program().set("u_reference", 1.5f);
-  return sample(shader, map, kCoarse).front() > 0.5f;
-}
-
-constexpr int kSide = 64;
-
-struct Plane {
-  float depth = 0.0f;
-  glm::vec2 rise{0.0f};  ///< across the width and the height of the viewport
-};
-
-struct Offset {
-  float factor = 0.0f;
-  float units = 0.0f;
-};
-
-/// Draws planes into a depth texture and says what depth they get.
-class PlaneDrawer {
- public:
-  explicit PlaneDrawer(GLenum depth_format)
-      : program_("survey plane", embedded_source("survey_plane.vert"), embedded_source("survey_plane.frag")),
-        depth_("survey plane", depth_format, kSide, kSide),
-        framebuffer_("survey plane"),
-        empty_("survey plane") {
-    framebuffer_.attach_depth(depth_);
-  }
-
-  /// Returns by how much `offset` moves the middle of the plane.
-  double measure(const Plane& plane, const Offset& offset) { return draw(plane, offset) - draw(plane, {}); }
-
- private:
-  double draw(const Plane& plane, const Offset& offset) {
-    for (const GLenum capability : {GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_RASTERIZER_DISCARD})
-      glDisable(capability);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_ALWAYS);
-    glDepthMask(GL_TRUE);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(offset.factor, offset.units);
-    framebuffer_.bind();
-    program_.set("u_depth", plane.depth);
-    program_.set("u_rise", plane.rise);
-    program_.use();
-    empty_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    return static_cast<double>(depth_.read_floats(1)[kSide * (kSide / 2) + kSide / 2]);
-  }
-
-  Program program_;
-  Texture depth_;
-  Framebuffer framebuffer_;
-  VertexArray empty_;
-};
-
-/// Returns by how much glPolygonOffset(factor 0, units 1) moves a surface of constant depth.
-double measure_offset_unit(GLenum depth_format, float depth) {
-  constexpr float kUnits = 4096.0f;  // many, so that the format's own steps do not show
-  return PlaneDrawer(depth_format).measure({depth, {}}, {0.0f, kUnits}) / static_cast<double>(kUnits);
-}
-
-/// Returns the slope that glPolygonOffset's factor multiplies, as a multiple of the larger of two slopes 3:4.
-double measure_slope_ratio() {
-  constexpr float kFactor = 16.0f;
-  constexpr glm::vec2 kRise = {0.09f, 0.12f};
-  const double moved = PlaneDrawer(GL_DEPTH_COMPONENT32F).measure({0.1f, kRise}, {kFactor, 0.0f});
-  return moved / static_cast<double>(kFactor * kRise.y / static_cast<float>(kSide));
-}
-
 constexpr int kArguments = 256;
-constexpr int kMapSize = 1024;
 
-// Columns are the borders between texels, rows the distances from them.
-constexpr int kDistances = 128;
-
-std::vector<float> list_arguments() {
-  constexpr double kExpLimit = 80.0;
-  std::vector<float> arguments;
-  constexpr int kCount = kArguments * kArguments;
-  for (int i = 0; i < kCount; ++i) {
-    const double t = static_cast<double>(i) / (kCount - 1);
-    arguments.push_back(static_cast<float>(kExpLimit * (2.0 * t - 1.0)));
-    arguments.push_back(static_cast<float>(2.0 * std::numbers::pi * t));
-  }
-  return arguments;
-}
-
-// In texels: plus and minus 2^-14, which is one step of an fp32 coordinate near 1, up to 2^-6 in steps of 2^(1/8).
-double get_distance(int row) {
-  const double size = std::exp2(-14.0 + static_cast<double>(row / 2) / 8.0);
-  return row % 2 == 0 ? size : -size;
-}
-
-std::vector<float> list_coordinates() {
-  std::vector<float> coordinates;
-  for (int row = 0; row < kDistances; ++row)
-    for (int border = 0; border < kMapSize; ++border)
-      coordinates.push_back(static_cast<float>((border + get_distance(row)) / kMapSize));
-  return coordinates;
-}
-
-Texture make_index_map() {
-  std::vector<float> indices(kMapSize);
-  for (int i = 0; i < kMapSize; ++i) indices[static_cast<std::size_t>(i)] = static_cast<float>(i);
-  Texture map("survey index", GL_R32F, kMapSize, 1);
-  map.upload_floats(indices, 1);
-  return map;
-}
-
-/// Fills exp_ulp, sin_error and cos_error.
-void measure_functions(GlSurvey& measured) {
-  const auto arguments = list_arguments();
-  Texture texture("survey arguments", GL_RG32F, kArguments, kArguments);
-  texture.upload_floats(arguments, 2);
-  SurveyShader shader("survey_math.frag", {kArguments, kArguments}, GL_RGBA32F);
+/// The worst relative error of exp() over [-80, 80], in units of 2^-24.
+double measure_exp_ulp() {
+  constexpr double kLimit = 80.0;
+  std::vector<float> arguments(kArguments * kArguments);
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    arguments[i] =
+        static_cast<float>(kLimit * (2.0 * static_cast<double>(i) / static_cast<double>(arguments.size() - 1) - 1.0));
+  Texture texture("survey arguments", GL_R32F, kArguments, kArguments);
+  texture.upload_floats(arguments, 1);
+  SurveyShader shader("survey_exp.frag", {kArguments, kArguments});
   Sampler::unbind(0);
   texture.bind(0);
   shader.program().set("u_arguments", 0);
-  const auto values = shader.run();
-  for (std::size_t i = 0; i < arguments.size() / 2; ++i) {
-    const auto value = [&](std::size_t channel) { return static_cast<double>(values[4 * i + channel]); };
-    const double exact = std::exp(static_cast<double>(arguments[2 * i]));
-    const double angle = static_cast<double>(arguments[2 * i + 1]);
-    measured.exp_ulp = std::max(measured.exp_ulp, std::abs(value(0) / exact - 1.0) * 0x1p24);
-    measured.sin_error = std::max(measured.sin_error, std::abs(value(1) - std::sin(angle)));
-    measured.cos_error = std::max(measured.cos_error, std::abs(value(2) - std::cos(angle)));
-  }
-}
-
-/// Returns the farthest distance from a texel border, in texels of a 1024 map, at which the wrong texel is taken.
-double measure_texel_border_error() {
-  const auto coordinates = list_coordinates();
-  Texture texture("survey coordinates", GL_R32F, kMapSize, kDistances);
-  texture.upload_floats(coordinates, 1);
-  const Texture map = make_index_map();
-  SurveyShader shader("survey_nearest.frag", {kMapSize, kDistances});
-  for (const GLuint unit : {0u, 1u}) Sampler::unbind(unit);
-  map.bind(0);
-  texture.bind(1);
-  shader.program().set("u_map", 0);
-  shader.program().set("u_coordinates", 1);
-  const auto taken = shader.run();
+  const std::vector<float> values = shader.run();
   double worst = 0.0;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    const double position = std::max(0.0, static_cast<double>(coordinates[i]) * kMapSize);
-    if (static_cast<double>(taken[i]) == std::floor(position)) continue;
-    worst = std::max(worst, std::abs(position - std::round(position)));
-  }
-  return worst;
-}
-
-DepthFormatSurvey measure_depth_format(Context& context, GLenum format) {
-  constexpr float kNear = 0.25f;
-  constexpr float kFar = 0.75f;
-  DepthFormatSurvey measured;
-  measured.pcf = measure_pcf_weights(context, format);
-  measured.offset_unit_near = measure_offset_unit(format, kNear);
-  measured.offset_unit_far = measure_offset_unit(format, kFar);
-  measured.clamps_reference = detect_clamped_reference(format);
-  return measured;
-}
-
-std::string format_weights(const WeightPrecision& weights) {
-  const std::string bits = weights.exact() ? "exact fp32" : fmt::format("{} bits", weights.bits);
-  return fmt::format("{} (worst error {:.2g})", bits, weights.max_error);
-}
-
-// Offset units are powers of two by the standard; whatever else comes is shown as it is.
-std::string format_unit(double unit) {
-  const double exponent = std::log2(unit);
-  if (unit > 0.0 && std::abs(exponent - std::round(exponent)) < 0.01) return fmt::format("2^{:.0f}", exponent);
-  return fmt::format("{:.4g}", unit);
-}
-
-std::string format_depth(std::string_view name, const DepthFormatSurvey& measured) {
-  std::string text = fmt::format("  {:<5} PCF weights     {}\n", name, format_weights(measured.pcf));
-  text += fmt::format("        polygon offset  {} at depth 0.25, {} at 0.75\n", format_unit(measured.offset_unit_near),
-                      format_unit(measured.offset_unit_far));
-  text += fmt::format("        reference > 1   {}\n", measured.clamps_reference ? "clamped to 1" : "not clamped");
-  return text;
-}
-
-std::string format_slope(double ratio) {
-  constexpr double kTolerance = 0.02;
-  const auto is = [&](double value) { return std::abs(ratio - value) < kTolerance; };
-  if (is(1.0)) return "max(|dz/dx|, |dz/dy|)";
-  if (is(1.25)) return "length(dz/dx, dz/dy)";
-  if (is(1.75)) return "|dz/dx| + |dz/dy|";
-  return fmt::format("{:.3f} x the larger of two slopes 3:4", ratio);
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    worst =
+        std::max(worst, std::abs(static_cast<double>(values[i]) / std::exp(static_cast<double>(arguments[i])) - 1.0));
+  return worst * 0x1p24;
 }
 
 }  // namespace
@@ -411,43 +228,8 @@ int measure_loop_turns(Context&) {
   return turns < kTurns ? turns : 0;
 }
 
-GlSurvey survey_gl(Context& context) {
-  GlSurvey measured;
-  measured.d16 = measure_depth_format(context, GL_DEPTH_COMPONENT16);
-  measured.d24 = measure_depth_format(context, GL_DEPTH_COMPONENT24);
-  measured.d32f = measure_depth_format(context, GL_DEPTH_COMPONENT32F);
-  measured.r32f = measure_color_weights(GL_R32F);
-  measured.rg32f = measure_color_weights(GL_RG32F);
-  measured.r8_levels = count_r8_levels();
-  measured.slope_ratio = measure_slope_ratio();
-  measured.timer = check_timer(context);
-  measure_functions(measured);
-  measured.texel_border_error = measure_texel_border_error();
-  measured.loop_turns = measure_loop_turns(context);
-  return measured;
-}
-
-std::string describe_survey(const GlInfo& info, const GlSurvey& measured) {
-  std::string text = fmt::format("{}: {}, {}\n", info.backend, info.renderer, info.version);
-  text += format_depth("d16", measured.d16) + format_depth("d24", measured.d24) + format_depth("d32f", measured.d32f);
-  text += fmt::format("  r32f  linear weights  {}\n", format_weights(measured.r32f));
-  text += fmt::format("  rg32f linear weights  {}\n", format_weights(measured.rg32f));
-  text += fmt::format("  r8    linear levels   {}\n", measured.r8_levels);
-  text += fmt::format("  polygon offset slope  {}\n", format_slope(measured.slope_ratio));
-  text += fmt::format(
-      "  timer query           {:.3f} ms where the wall clock has {:.3f} ms; agrees in {:.0f} % of runs: the {} is "
-      "used\n",
-      measured.timer.query_ms, measured.timer.wall_ms, 100.0 * measured.timer.agreement,
-      timer_name(measured.timer.choice()));
-  text += fmt::format("  exp over [-80, 80]    within {:.1f} x 2^-24 of its value\n", measured.exp_ulp);
-  text += fmt::format("  sin, cos, [0, 2 pi]   within {:.2g}, {:.2g}\n", measured.sin_error, measured.cos_error);
-  text += fmt::format("  nearest, 1024 map     wrong texel up to {:.2g} texel from a border\n",
-                      measured.texel_border_error);
-  text += measured.loop_turns == 0
-              ? "  loops                 not ended by the GL in a million turns\n"
-              : fmt::format("  loops                 ended by the GL after {} turns, without a word\n",
-                            measured.loop_turns);
-  return text;
+GlSurvey survey_gl(Context&) {
+  return {measure_color_weights(GL_R32F), measure_color_weights(GL_RG32F), measure_exp_ulp()};
 }
 
 SurveyShader::SurveyShader(const std::string& fragment, glm::ivec2 size, GLenum format)

@@ -53,43 +53,21 @@ struct WeightPrecision {
   bool exact() const { return bits >= 22; }
 };
 
-/// What the GL does with one depth format.
-struct DepthFormatSurvey {
-  WeightPrecision pcf;            ///< weights of depth compare with linear filter (hardware PCF)
-  double offset_unit_near = 0.0;  ///< glPolygonOffset(0, 1) at depth 0.25, in depth
-  double offset_unit_far = 0.0;   ///< the same at depth 0.75; float depth scales with the depth's exponent
-  bool clamps_reference = false;  ///< a reference above 1 is compared as 1
-};
-
-/// What a GL really does, as found by experiment. Every value is a plain number.
+/// What a GL really does, as found by experiment.
 struct GlSurvey {
-  DepthFormatSurvey d16;
-  DepthFormatSurvey d24;
-  DepthFormatSurvey d32f;
   WeightPrecision r32f;  ///< linear filtering of colour
   WeightPrecision rg32f;
-  int r8_levels = 0;         ///< distinct values between 0 and 255 with linear filtering of R8
-  double slope_ratio = 0.0;  ///< slope factor / max(|dz/dx|,|dz/dy|) for slopes 3:4. 1: max, 1.25: length, 1.75: sum
-  TimerCheck timer;          ///< the same work by GL's timer and by the wall clock
-  double exp_ulp = 0.0;      ///< worst relative error of exp() over [-80, 80], in units of 2^-24
-  double sin_error = 0.0;    ///< worst absolute error of sin() over [0, 2 pi]
-  double cos_error = 0.0;    ///< worst absolute error of cos() over [0, 2 pi]
-  double texel_border_error = 0.0;  ///< farthest from a texel border that nearest sampling of a 1024 map takes the
-                                    ///< wrong texel, in texels
-  int loop_turns = 0;  ///< after so many turns this GL ends a loop of a shader; 0: it let the longest one go on
+  double exp_ulp = 0.0;  ///< worst relative error of exp() over [-80, 80], in units of 2^-24
 };
 
-/// Finds out what this GL does. Requires: `context` is current. Cost: under 2 s on a software rasteriser.
+/// Finds out what this GL does. Requires: `context` is current.
 GlSurvey survey_gl(Context& context);
 
-/// Measures the weights of hardware PCF on a map of GL_DEPTH_COMPONENT16, 24 or 32F: the cheap part of `survey_gl`.
+/// Measures the weights of hardware PCF on a map of GL_DEPTH_COMPONENT16, 24 or 32F.
 WeightPrecision measure_pcf_weights(Context& context, GLenum depth_format);
 
-/// Returns GlSurvey::loop_turns. Cost: a few milliseconds.
+/// After how many turns this GL ends a loop of a shader; 0: it let the longest one go on. Cost: a few milliseconds.
 int measure_loop_turns(Context& context);
-
-/// Writes the context and its measurement as lines of text for people; ends with a newline.
-std::string describe_survey(const GlInfo& info, const GlSurvey& measured);
 
 /// Runs one of this folder's own fragment shaders over a grid and hands back what it wrote.
 class SurveyShader {

@@ -12,7 +12,6 @@
 #include "reference/metrics/artefacts.h"
 #include "report/images/heat_figures.h"
 #include "report/images/image.h"
-#include "report/images/uncertainty_images.h"
 #include "report/records/records.h"
 
 namespace shadowbench::measure {

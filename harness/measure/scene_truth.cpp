@@ -14,7 +14,7 @@
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
 #include "reference/truth/occluders.h"
-#include "report/images/hardest_edge.h"
+#include "report/images/grid.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"
 #include "report/records/records.h"

@@ -10,75 +10,17 @@
 
 #include "harness/measure/scene_assets.h"
 #include "harness/render/picture_passes.h"
-#include "report/analysis/advice_words.h"
-#include "report/analysis/findings.h"
-#include "report/analysis/measures.h"
 #include "report/files/file_name.h"
 #include "report/images/color_values.h"
 #include "report/images/grid.h"
-#include "report/images/map_figures.h"
+#include "report/images/heat_figures.h"
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"
-#include "report/pages/grid_sheets.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 
 namespace shadowbench::run {
 namespace {
-
-/// The truth comes first: what every filter would like to look like.
-std::vector<images::GridTile> make_truth_tiles(const measure::SceneTask& task, const measure::SceneTruth& truth) {
-  if (!truth.absent.empty()) return {};
-  const std::string sun = fmt::format("rays to {}, standard error {}", scene::describe_light(task.scene->light),
-                                      records::format_number(truth.standard_error));
-  return {{"truth, hard", "one ray to the light's centre", truth.hard_picture, truth.hard,
-           measure::make_error_image(truth.hard, truth), ""},
-          {"truth, area", sun, truth.area_picture, truth.area, measure::make_error_image(truth.area, truth), ""}};
-}
-
-/// One scale for the pictures of a task, so that they compare; what suspect cells make does not count. The last tiles
-/// are those of the cells. Nothing where there are no errors.
-std::optional<double> choose_error_scale(const std::vector<images::GridTile>& tiles,
-                                         const std::vector<measure::MeasuredCell>& cells) {
-  std::vector<const images::Image*> errors;
-  const std::size_t others = tiles.size() - cells.size();
-  for (std::size_t i = 0; i < tiles.size(); ++i) {
-    const bool is_suspect = i >= others && cells[i - others].record.status == records::CellStatus::kSuspect;
-    if (!is_suspect && !tiles[i].error.empty()) errors.push_back(&tiles[i].error);
-  }
-  if (errors.empty()) return std::nullopt;
-  return images::choose_error_scale(errors);
-}
-
-images::Grid make_grid(const options::RunOptions& options, const measure::SceneTask& task,
-                       const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
-                       const records::GlRecord& gl) {
-  images::Grid grid;
-  grid.title =
-      task.scene->title.empty() ? task.scene->name : fmt::format("{}: {}", task.scene->name, task.scene->title);
-  std::vector<records::CellRecord> cells;
-  for (const measure::MeasuredCell& cell : measured.cells) cells.push_back(cell.record);
-  const analysis::CostKind cost = analysis::choose_cost(cells);
-  grid.subtitle = fmt::format(
-      "{} · cost: {}", records::describe_settings(cells.front()),
-      analysis::make_frame_measure(cost, analysis::LightMotion::kMoving, analysis::point_to(cells)).meaning);
-  const std::string coverage = records::describe_coverage(measured.cells.front().record.coverage);
-  if (!coverage.empty()) grid.subtitle += " · " + coverage;
-  grid.tiles = make_truth_tiles(task, truth);
-  for (const measure::MeasuredCell& cell : measured.cells) {
-    grid.tiles.push_back({cell.label, caption_cell(cell.record, cost, gl), cell.picture, cell.visibility,
-                          measure::make_error_image(cell.visibility, truth), cell.record.message,
-                          images::make_attribution_bar(cell.record)});
-    grid.tiles.back().attribution_words = grid.tiles.back().attribution
-                                              ? records::describe_shares(*records::list_shares(cell.record))
-                                              : "no attribution: " + records::explain_no_attribution(cell.record);
-  }
-  grid.error_scale = choose_error_scale(grid.tiles, measured.cells);
-  if (truth.absent.empty()) grid.mask = images::make_image(truth.area.width, truth.area.height, truth.mask);
-  grid.columns = truth.absent.empty() ? 4 : 3;
-  grid.crop = choose_crop(measured.cells, images::choose_crop_size({options.width, options.height}));
-  return grid;
-}
 
 /// What is only looked at takes less room in steps of so many codes of its file: where low bytes repeat, they pack.
 images::Image round_values(images::Image image, double codes, double range) {
@@ -170,19 +112,6 @@ images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images
   return images::find_hardest_edge(visibility, reference, size);
 }
 
-std::string caption_cell(const records::CellRecord& cell, const analysis::CostKind& cost, const records::GlRecord& gl) {
-  if (cell.external)
-    return fmt::format("another renderer{} · RMSE {}", cell.external->engine ? ": " + *cell.external->engine : "",
-                       records::format_number(cell.error.rmse));
-  std::vector<std::string> parts;
-  if (!cell.params.empty()) parts.push_back(records::describe_params(cell.params));
-  if (!cell.suspect_of.empty()) parts.emplace_back("SUSPECT: see the report");
-  if (const auto value = analysis::cost_spec(cost).read(cell, analysis::LightMotion::kMoving))
-    parts.push_back(analysis::format_cost(*value, cost, gl));
-  if (cell.error.rmse) parts.push_back("RMSE " + records::format_number(*cell.error.rmse));
-  return fmt::format("{}", fmt::join(parts, " · "));
-}
-
 std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task) {
   std::string name = task.scene->name;
   if (task.scene->cameras.size() > 1) name += "." + task.camera->name;
@@ -211,13 +140,8 @@ std::vector<FileJob> plan_pictures(const options::RunOptions& options, const mea
   return jobs;
 }
 
-FileJob plan_grid(const options::RunOptions& options, const measure::SceneTask& task,
-                  measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl) {
-  const std::string grid_name = task_stem(options, task) + (options.grid_width.in_inches ? ".grid.svg" : ".grid.png");
-  for (measure::MeasuredCell& cell : measured.cells) cell.record.images.grid = grid_name;
-  return [file = options.out / pages::name_details(grid_name), grid = make_grid(options, task, measured, truth, gl)] {
-    images::write_grid(file, grid);
-  };
+std::string name_grid(const options::RunOptions& options, const measure::SceneTask& task) {
+  return task_stem(options, task) + (options.grid_width.in_inches ? ".grid.svg" : ".grid.png");
 }
 
 namespace {

@@ -10,7 +10,6 @@
 #include "harness/measure/scene_truth.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/options/options.h"
-#include "report/analysis/measures.h"
 #include "report/images/image.h"
 #include "report/records/records.h"
 
@@ -18,9 +17,6 @@ namespace shadowbench::run {
 
 /// The stem of all files of a task: the scene, with view and map size where the run has several.
 std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task);
-
-/// What a grid says below a cell's name: its parameters, what it costs with a moving light, and its RMSE.
-std::string caption_cell(const records::CellRecord& cell, const analysis::CostKind& cost, const records::GlRecord& gl);
 
 /// The part of the picture, of this size, in which the filters disagree most about a shadow's edge.
 images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images::Size size);
@@ -37,9 +33,8 @@ using FileJob = std::function<void()>;
 std::vector<FileJob> plan_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                                    measure::SceneMeasurement& measured, const measure::SceneTruth& truth);
 
-/// Notes the path of a task's grid, which the report draws, and returns what writes its details, from copies.
-FileJob plan_grid(const options::RunOptions& options, const measure::SceneTask& task,
-                  measure::SceneMeasurement& measured, const measure::SceneTruth& truth, const records::GlRecord& gl);
+/// Names a task's grid, which the report draws.
+std::string name_grid(const options::RunOptions& options, const measure::SceneTask& task);
 
 /// Notes the paths of what shows how a light's map lies on the scene, one file each for all cells of the task, and
 /// returns what writes them: the depth map with its histogram, the texels per pixel, and the texels on the surfaces.

@@ -145,7 +145,7 @@ class TaskRun {
     if (bench_.gpus.compile(measured.cells)) count_traffic(measured);
     bench_.gpus.add_to(measured.cells);
     if (options_.pictures) begin("pictures");
-    write_images(task_of(all), measured, files);
+    write_images(task_of(all), measured);
     files.wait();
     const double shared_s = watch.read_s() - measured.truth_s - measured.attribution_s;
     for (measure::MeasuredCell& cell : measured.cells)
@@ -262,10 +262,10 @@ class TaskRun {
           plan_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size)));
   }
 
-  void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured, FilesBeside& files) {
+  void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {
     const measure::SceneTruth& truth = assets_.truth(*task.camera);
     if (!options_.part.is_worker() && options_.grids && options_.pictures)
-      files.write({plan_grid(options_, task, measured, truth, bench_.run.gl)});
+      for (measure::MeasuredCell& cell : measured.cells) cell.record.images.grid = name_grid(options_, task);
     write_frames(renderer_, options_, task, assets_, measured);
     if (!options_.part.is_worker()) {
       for (measure::MeasuredCell& cell : measured.cells) {

@@ -22,7 +22,6 @@
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/images/grid.h"
-#include "report/images/hardest_edge.h"
 #include "report/pages/bias_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"

@@ -30,11 +30,6 @@ std::string list_some(const std::vector<std::string>& names);
 /// they are. Requires one at least.
 std::string describe_extremes(const std::vector<Rated>& all, const char* link, const char* kind);
 
-/// Says what the lights of a run's scenes asked of the kernels whose width they chose: the width in each map, the
-/// kernels that cannot be nearly so wide, and those that are worse than no filter all the same, each with the largest
-/// part of its error. Empty where no light chose one.
-std::vector<std::string> describe_light_widths(const std::vector<records::CellRecord>& cells);
-
 /// Says in a sentence for each trouble what breaks in a group's cells: broken texels, with the exponent that would be
 /// safe, variances below 0, a bound that does not hold, a 16-bit store that shows. Nothing where nothing breaks, or
 /// where the run was made without stability maps.

@@ -48,12 +48,7 @@ std::vector<GpuCost> list_gpu_costs(const std::vector<Configuration>& configurat
       if (!cost.estimate_ms) break;
       const records::GpuEstimateRecord& estimate = *cell->gpu->at(gpu).estimate;
       const auto count = static_cast<double>(configuration.cells.size());
-      const GpuResources alone = {estimate.arithmetic_us, estimate.sampling_us, estimate.memory_us.value_or(0.0)};
-      const auto slowest = static_cast<std::size_t>(std::ranges::max_element(alone) - alone.begin());
-      const double lookup = records::frame_ms(estimate, false);
-      for (std::size_t i = 0; i < alone.size(); ++i) cost.alone_ms[i] += records::lookups_ms(alone[i]) / count;
-      cost.slowest_ms[slowest] += lookup / count;
-      cost.lookup_ms += lookup / count;
+      cost.lookup_ms += records::frame_ms(estimate, false) / count;
       cost.prefilter_ms += 1e-3 * estimate.prefilter_us / count;
       cost.map_ms += 1e-3 * estimate.map_us / count;
     }

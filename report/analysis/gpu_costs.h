@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -12,10 +11,6 @@
 
 namespace shadowbench::analysis {
 
-/// What the lookup of a filter takes time of, as members of an estimate.
-inline constexpr const char* kGpuResources[] = {"arithmetic", "sampling", "memory"};
-using GpuResources = std::array<double, std::size(kGpuResources)>;
-
 /// What one configuration costs on one GPU: facts and bounds of its first cell, and the means of the estimates over its
 /// cells.
 struct GpuCost {
@@ -23,8 +18,6 @@ struct GpuCost {
   const records::GpuRecord* record = nullptr;
   std::optional<double> estimate_ms;  ///< of a frame, moving light; nothing where a cell has none
   double lookup_ms = 0.0, prefilter_ms = 0.0, map_ms = 0.0;  ///< the parts of it
-  GpuResources slowest_ms{};  ///< the lookups' part, by the resource that is the slowest in a cell: they add up to it
-  GpuResources alone_ms{};    ///< of each resource, were the others for nothing: they do not add up
   /// With a moving light, in the run's clock; nothing where a cell has none, or a software rasteriser drew it: a CPU's
   /// times say nothing of a GPU.
   std::optional<double> measured_ms;

@@ -16,9 +16,6 @@ namespace shadowbench::images {
 namespace {
 
 constexpr double kSmallestLength = 0.001;
-constexpr int kOverhang = 4;
-constexpr int kTickWidth = 3;
-constexpr Rgb kTrack{0.95f, 0.95f, 0.95f}, kZeroLine{0.45f, 0.47f, 0.50f}, kTickInk{0.0f, 0.0f, 0.0f};
 
 double round_up_length(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
@@ -32,27 +29,13 @@ constexpr int kOutlineWidth = 2;
 constexpr Size kPictureBox{kColumnWidth, 560};
 constexpr int kCropGap = 10;
 constexpr Size kCropBox{(kColumnWidth - kCropGap) / 2 - 2 * kOutlineWidth, 260};
-constexpr Size kBarSize{kColumnWidth, 30};
-constexpr int kPartsWidth = 720;  // the longest name has room beside its neighbours
 
-/// What all tiles of a grid share.
-struct Shared {
-  std::optional<ColorScale> errors;
-  std::optional<BarScale> bars;
-};
-
-Shared choose_shared(const Grid& grid) {
+/// The scale of all errors of a grid; nothing where there are none.
+std::optional<ColorScale> choose_error_colors(const Grid& grid) {
   std::vector<const Image*> errors;
-  std::vector<AttributionBar> bars;
-  for (const GridTile& tile : grid.tiles) {
+  for (const GridTile& tile : grid.tiles)
     if (!tile.error.empty()) errors.push_back(&tile.error);
-    if (tile.attribution) bars.push_back(*tile.attribution);
-  }
-  Shared shared;
-  if (!errors.empty())
-    shared.errors = make_signed_scale(grid.error_scale ? *grid.error_scale : choose_error_scale(errors));
-  if (!bars.empty()) shared.bars = choose_bar_scale(bars);
-  return shared;
+  return errors.empty() ? std::nullopt : std::optional(make_signed_scale(choose_error_scale(errors)));
 }
 
 Rect clip_crop(const Rect& crop, const Image& image) {
@@ -115,7 +98,7 @@ Image show_crops(const GridTile& tile, const Grid& grid) {
   return shown;
 }
 
-Stack make_stack(const GridTile& tile, const Grid& grid, const Shared& shared) {
+Stack make_stack(const GridTile& tile, const Grid& grid, const std::optional<ColorScale>& errors) {
   Stack stack(kCropCell + 1);
   stack[kPictureCell].title = tile.label;
   stack[kPictureCell].words = tile.caption;
@@ -125,51 +108,26 @@ Stack make_stack(const GridTile& tile, const Grid& grid, const Shared& shared) {
   }
   stack[kPictureCell].picture = show(tile.picture, grid);
   stack[kVisibilityCell].picture = show(tile.visibility, grid);
-  if (!tile.error.empty()) stack[kErrorCell].picture = color_values(fit_image(tile.error, kPictureBox), *shared.errors);
-  if (shared.bars) stack[kBarCell].words = tile.attribution_words;
-  if (tile.attribution) stack[kBarCell].picture = draw_bar(*tile.attribution, *shared.bars, kBarSize);
+  if (!tile.error.empty()) stack[kErrorCell].picture = color_values(fit_image(tile.error, kPictureBox), *errors);
   stack[kCropCell].picture = show_crops(tile, grid);
   return stack;
 }
 
-/// The parts' colours, each over its name.
-ColorScale make_parts_scale() {
-  constexpr auto kCount = static_cast<double>(metrics::kErrorParts);
-  ColorScale scale{[](double part) { return (part + 0.5) / kCount; },
-                   [](float place) {
-                     const auto part = static_cast<std::size_t>(static_cast<double>(place) * kCount);
-                     return records::list_error_parts()[std::min(part, metrics::kErrorParts - 1)].color;
-                   },
-                   {}};
-  for (std::size_t part = 0; part < metrics::kErrorParts; ++part)
-    scale.ticks.emplace_back(static_cast<double>(part), records::list_error_parts()[part].name);
-  return scale;
-}
-
-std::string explain_rows(const Grid& grid, const Shared& shared) {
+std::string explain_rows(const Grid& grid, bool has_errors) {
   std::string words = "Top: shaded picture. Below it: visibility (white lit, black blocked";
   words += grid.mask.empty() ? ")" : ", hatched no receiver)";
-  words += shared.errors ? ", then its error" : "";
-  words += shared.bars ? ", then the parts of the error." : ".";
+  words += has_errors ? ", then its error." : ".";
   if (grid.crop.width == 0) return words;
   const int factor = fit_size({grid.crop.width, grid.crop.height}, kCropBox).width / grid.crop.width;
   return words + " Bottom: the outlined part of both" + (factor > 1 ? fmt::format(", {} times larger.", factor) : ".");
 }
 
-Stack make_legend(const Grid& grid, const Shared& shared) {
+Stack make_legend(const Grid& grid, const std::optional<ColorScale>& errors) {
   Stack legend;
-  if (shared.errors)
-    legend.push_back(
-        make_color_bar(*shared.errors, "error, visibility less area truth: blue too dark, red too bright"));
-  if (shared.bars) {
-    const std::string words = fmt::format(
-        "Bars: what the error is made of, each part's share times RMSE; parts left of the grey line offset the others. "
-        "The black tick is the RMSE, the full width {}.",
-        records::format_number(shared.bars->length));
-    legend.push_back(make_color_bar(make_parts_scale(), words, kPartsWidth));
-  }
+  if (errors)
+    legend.push_back(make_color_bar(*errors, "error, visibility less area truth: blue too dark, red too bright"));
   const auto shows = [](const GridTile& tile) { return !tile.visibility.empty(); };
-  if (std::ranges::any_of(grid.tiles, shows)) legend.push_back({"", explain_rows(grid, shared)});
+  if (std::ranges::any_of(grid.tiles, shows)) legend.push_back({"", explain_rows(grid, errors.has_value())});
   return legend;
 }
 
@@ -215,33 +173,123 @@ BarScale choose_bar_scale(const std::vector<AttributionBar>& bars) {
   return {below, round_up_length(std::max(kSmallestLength, below + above))};
 }
 
-Image draw_bar(const AttributionBar& bar, const BarScale& scale, Size size) {
-  assert(size.height > 2 * kOverhang && scale.length > 0.0);
-  Image image(size.width, size.height, 3);
-  const auto pixel = [&](double value) { return static_cast<int>(std::lround(scale.place(value) * size.width)); };
-  const auto draw_line = [&](double value, int width, const Rgb& color) {
-    fill_rect(image, {std::clamp(pixel(value) - width / 2, 0, size.width - width), 0, width, size.height}, color);
-  };
-  const int height = size.height - 2 * kOverhang;
-  fill_rect(image, {0, 0, size.width, size.height}, {1.0f, 1.0f, 1.0f});
-  fill_rect(image, {0, kOverhang, size.width, height}, kTrack);
-  draw_line(0.0, 1, kZeroLine);
-  for (const BarSegment& segment : stack_segments(bar))
-    fill_rect(image, {pixel(segment.begin), kOverhang, pixel(segment.end) - pixel(segment.begin), height},
-              records::list_error_parts()[segment.part].color);
-  draw_line(bar.net(), kTickWidth, kTickInk);
-  return image;
-}
-
 Figure make_figure(const Grid& grid) {
-  const Shared shared = choose_shared(grid);
-  Figure figure{grid.title, grid.subtitle, {}, grid.columns, make_legend(grid, shared)};
+  const std::optional<ColorScale> errors = choose_error_colors(grid);
+  Figure figure{grid.title, grid.subtitle, {}, grid.columns, make_legend(grid, errors)};
   figure.stacks.resize(grid.tiles.size());
   tbb::parallel_for(std::size_t{0}, grid.tiles.size(),
-                    [&](std::size_t i) { figure.stacks[i] = make_stack(grid.tiles[i], grid, shared); });
+                    [&](std::size_t i) { figure.stacks[i] = make_stack(grid.tiles[i], grid, errors); });
   return figure;
 }
 
 void write_grid(const std::filesystem::path& path, const Grid& grid) { write_figure(path, make_figure(grid)); }
+
+namespace {
+
+// Small against any disagreement that can be seen, and enough to follow the edge where there is none.
+constexpr double kVarianceFloor = 1e-9;
+// Likewise small against any edge, and enough to follow the disagreement where there is none.
+constexpr double kEdgeFloor = 1e-6;
+constexpr int kTilesAcross = 16;  // of a picture
+
+// Sums of all pixels above and left of each corner: any rectangle's sum is four look-ups.
+class SummedArea {
+ public:
+  SummedArea(int width, int height)
+      : stride_(static_cast<std::size_t>(width) + 1), sums_(stride_ * (static_cast<std::size_t>(height) + 1)) {}
+
+  void set(int x, int y, double value) {
+    const std::size_t i = index(x + 1, y + 1);
+    sums_[i] = value + sums_[i - 1] + sums_[i - stride_] - sums_[i - stride_ - 1];
+  }
+
+  double mean(const Rect& r) const {
+    const double sum = sums_[index(r.x + r.width, r.y + r.height)] - sums_[index(r.x, r.y + r.height)] -
+                       sums_[index(r.x + r.width, r.y)] + sums_[index(r.x, r.y)];
+    return sum / (static_cast<double>(r.width) * r.height);
+  }
+
+ private:
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x); }
+
+  std::size_t stride_;
+  std::vector<double> sums_;
+};
+
+// Quantised, so that sums are exact and equal rectangles tie wherever they lie.
+double quantise(double value) { return std::nearbyint(value * 1048576.0) / 1048576.0; }
+
+double variance_at(const std::vector<const Image*>& images, int x, int y) {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const Image* image : images) {
+    const auto value = static_cast<double>(*image->at(x, y));
+    sum += value;
+    squares += value * value;
+  }
+  const auto count = static_cast<double>(images.size());
+  const double variance = squares / count - (sum / count) * (sum / count);
+  return std::isfinite(variance) ? quantise(std::max(0.0, variance)) : 0.0;
+}
+
+double reference_at(const Image& reference, int x, int y) {
+  const auto value = static_cast<double>(*reference.at(x, y));
+  return std::isfinite(value) ? quantise(std::clamp(value, 0.0, 1.0)) : 0.0;
+}
+
+// The rectangle of `size` in the image with the largest score.
+Rect find_best(const Image& image, Size size, const auto& score_of) {
+  size = {std::min(size.width, image.width), std::min(size.height, image.height)};
+  Rect best{0, 0, size.width, size.height};
+  double best_score = -1.0;
+  for (int y = 0; y + size.height <= image.height; ++y) {
+    for (int x = 0; x + size.width <= image.width; ++x) {
+      const Rect here{x, y, size.width, size.height};
+      const double score = score_of(here);
+      if (score > best_score) {
+        best_score = score;
+        best = here;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Size choose_crop_size(Size picture) {
+  const int width = std::clamp(picture.width / 4, 1, 45);
+  return {width, std::clamp(width * 3 / 4, 1, std::max(1, picture.height))};
+}
+
+Rect find_hardest_edge(const std::vector<const Image*>& visibility, std::size_t reference, Size size) {
+  std::vector<const Image*> images;
+  std::copy_if(visibility.begin(), visibility.end(), std::back_inserter(images),
+               [](const Image* image) { return image != nullptr && !image->empty(); });
+  if (images.empty()) return {};
+  const bool has_reference =
+      reference < visibility.size() && visibility[reference] != nullptr && !visibility[reference]->empty();
+  const Image& edge = has_reference ? *visibility[reference] : *images.front();
+  SummedArea variance(edge.width, edge.height);
+  SummedArea lit(edge.width, edge.height);
+  for (int y = 0; y < edge.height; ++y) {
+    for (int x = 0; x < edge.width; ++x) {
+      variance.set(x, y, variance_at(images, x, y));
+      lit.set(x, y, reference_at(edge, x, y));
+    }
+  }
+  return find_best(edge, size, [&](const Rect& here) {
+    const double m = lit.mean(here);
+    return (variance.mean(here) + kVarianceFloor) * (4.0 * m * (1.0 - m) + kEdgeFloor);
+  });
+}
+
+Rect find_hardest_tile(const Image& values) {
+  SummedArea sums(values.width, values.height);
+  for (int y = 0; y < values.height; ++y)
+    for (int x = 0; x < values.width; ++x) sums.set(x, y, reference_at(values, x, y));
+  const int side = std::max(1, values.width / kTilesAcross);
+  return find_best(values, {side, side}, [&](const Rect& here) { return sums.mean(here); });
+}
 
 }  // namespace shadowbench::images

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "report/images/figure.h"
-#include "report/images/hardest_edge.h"
+#include "report/images/image.h"
 #include "report/records/format.h"
 
 namespace shadowbench::images {
@@ -37,17 +37,10 @@ std::vector<BarSegment> stack_segments(const AttributionBar& bar);
 struct BarScale {
   double below = 0.0;   ///< from the left end to the zero line
   double length = 0.0;  ///< from the left end to the right end; positive
-
-  /// Returns where a value lies: 0 is the left end, 1 the right end.
-  double place(double value) const { return (value + below) / length; }
 };
 
 /// Chooses the scale of several bars: all of them fit, and the length is a round number, at least 0.001.
 BarScale choose_bar_scale(const std::vector<AttributionBar>& bars);
-
-/// Draws a bar: its parts side by side on a pale track, a grey line at zero behind them, and over them a black tick at
-/// the RMSE; line and tick stand out above and below by 4 pixels. Requires more than 8 pixels of height.
-Image draw_bar(const AttributionBar& bar, const BarScale& scale, Size size);
 
 /// One filter's place in a grid.
 struct GridTile {
@@ -57,8 +50,6 @@ struct GridTile {
   Image visibility;     ///< 1 channel, the picture's size; empty where the cell has none
   Image error;          ///< 1 channel, signed: visibility less truth; empty where there is no truth
   std::string message;  ///< shown instead of the images where all are empty: "timed out after 10 s"
-  std::optional<AttributionBar> attribution = std::nullopt;  ///< the parts of the error, drawn as a bar
-  std::string attribution_words = {};  ///< the same in words, or why there is no bar; said where some tile has one
 };
 
 /// A labelled picture of what filters make of one scene, for people.
@@ -70,20 +61,39 @@ struct Grid {
   int columns = 3;        ///< tiles side by side
   double exposure = 1.0;  ///< linear factor, the same for all tiles
   Image mask = {};        ///< 1 channel, 0 where no receiver is: visibility is hatched there; may be empty
-  std::optional<double> error_scale = std::nullopt;  ///< the error that gets the full colour; chosen where not given
 };
 
 /// The cells of a tile's stack, in their order; those that a tile lacks are empty.
-enum GridCell : std::size_t { kPictureCell, kVisibilityCell, kErrorCell, kBarCell, kCropCell };
+enum GridCell : std::size_t { kPictureCell, kVisibilityCell, kErrorCell, kCropCell };
 
 /// Makes the figure of a grid: of each tile its label, a caption, the picture, the visibility, the error as a heat map,
-/// the bar of its parts, and the crop of picture and, to the right of it, visibility, magnified to whole texels. All
-/// heat maps share one scale, and all bars one, which the legend says. Large pictures are reduced in linear light. A
+/// and the crop of picture and, to the right of it, visibility, magnified to whole texels. All heat maps share one
+/// scale, which the legend says. Large pictures are reduced in linear light. A
 /// texel that is not finite becomes magenta.
 Figure make_figure(const Grid& grid);
 
 /// Draws a grid into an 8-bit PNG file.
 /// Throws Error(kOutput).
 void write_grid(const std::filesystem::path& path, const Grid& grid);
+
+/// Returns the size of crop that a grid magnifies well for pictures of this size.
+Size choose_crop_size(Size picture);
+
+/// Finds the rectangle in which filters disagree most about a shadow's edge.
+///
+/// The score of a rectangle is the mean over its pixels of the variance of visibility across the filters, times
+/// 4 m (1 - m), m the mean visibility of the reference in it: 1 where the reference is half lit and half blocked, 0
+/// where it has no edge. Where no filter disagrees, the rectangle that the edge divides most evenly is taken; where
+/// there is no edge, the one in which filters disagree most. Ties go
+/// to the topmost, then leftmost rectangle; a pixel that is not finite in some image counts as one
+/// on which filters agree, and where the reference is not finite as blocked.
+///
+/// `visibility`: 1 channel each, of one size; null or empty images are left out. `reference` is an index into it.
+/// Returns a rectangle of `size`, clipped to the images; an empty one where there are no images.
+Rect find_hardest_edge(const std::vector<const Image*>& visibility, std::size_t reference, Size size);
+
+/// Finds the square, a sixteenth of the picture wide, with the largest mean. Values that are not finite count as 0;
+/// ties go to the topmost, then leftmost one. `values`: 1 channel.
+Rect find_hardest_tile(const Image& values);
 
 }  // namespace shadowbench::images

@@ -17,7 +17,7 @@
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
 #include "report/images/color_values.h"
-#include "report/images/hardest_edge.h"
+#include "report/images/grid.h"
 #include "report/images/picture_io.h"
 #include "report/pages/answer.h"
 #include "report/records/format.h"
@@ -267,8 +267,6 @@ std::vector<std::string> list_sheets(const std::string& grid, std::size_t filter
     sheets.push_back(fmt::format("{}.{}{}", grid.substr(0, dot), i, grid.substr(dot)));
   return sheets;
 }
-
-std::string name_details(const std::string& grid) { return grid.substr(0, grid.rfind(".grid.")) + ".details.png"; }
 
 GridWords list_grid_words(const std::vector<records::CellRecord>& cells, const records::GlRecord& gl) {
   const analysis::CostKind kind = analysis::choose_cost(cells);

@@ -14,9 +14,6 @@ namespace shadowbench::pages {
 /// Names the sheets of a grid of so many filters, the first by its path: "cubes.grid.png", "cubes.grid.2.png".
 std::vector<std::string> list_sheets(const std::string& grid, std::size_t filters);
 
-/// Names the picture of a grid with all that there is of each filter: "cubes.details.png".
-std::string name_details(const std::string& grid);
-
 /// What grids say of cells beside their errors.
 struct GridWords {
   struct OfCell {

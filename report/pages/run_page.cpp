@@ -150,8 +150,6 @@ void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGrou
     for (const std::string& sheet : list_sheets(*grid, filters))
       gallery.pictures.push_back({sheet, "filters on " + group.scene + " by their error, first phase"});
     blocks.emplace_back(std::move(gallery));
-    const std::string details = name_details(*grid);
-    blocks.emplace_back(document::Links{"All images of each filter side by side:", {{details, details}}});
   }
   for (document::Gallery& gallery :
        std::array{make_lights_gallery(group), make_stability_gallery(group), make_map_gallery(group)})
@@ -227,54 +225,8 @@ document::Section make_table_section(const std::vector<records::CellRecord>& cel
       "table",
       "All numbers",
       {document::Mount{"numbers", {document::Table{"RMSE to the area truth", std::move(table)}}}}};
-  if (auto widths = analysis::describe_light_widths(cells); !widths.empty())
-    section.blocks.emplace_back(document::Details{"Kernel widths", {document::Sentences{{}, std::move(widths)}}});
   section.brief = true;
   return section;
-}
-
-/// One filter's estimate as a bar of what adds up to it; its words have what does not.
-document::Bars::Row make_gpu_row(const analysis::GpuCost& cost) {
-  document::Bars::Row row{
-      fmt::format("{}: {} ms", cost.configuration->name, records::format_number(*cost.estimate_ms)),
-      {},
-      *cost.estimate_ms,
-      fmt::format("lookups {}, prefilter {}, map at least {}", records::format_number(cost.lookup_ms),
-                  records::format_number(cost.prefilter_ms), records::format_number(cost.map_ms))};
-  double end = 0.0;
-  const auto add = [&](double ms, std::size_t color) {
-    if (ms > 0.0) row.segments.push_back({end, end + ms, document::style_of(color).color});
-    end += ms;
-  };
-  for (std::size_t i = 0; i < cost.slowest_ms.size(); ++i) {
-    row.words += fmt::format("{}{} {}", i == 0 ? " · alone: " : ", ", analysis::kGpuResources[i],
-                             records::format_number(cost.alone_ms[i]));
-    add(cost.slowest_ms[i], i + 1);
-  }
-  add(cost.prefilter_ms, cost.slowest_ms.size() + 1);
-  add(cost.map_ms, cost.slowest_ms.size() + 2);
-  return row;
-}
-
-/// What estimates are made of, cheapest first; nothing where there is none.
-std::optional<document::Bars> make_gpu_bars(const std::string& gpu, std::vector<analysis::GpuCost> costs) {
-  std::erase_if(costs, [](const analysis::GpuCost& cost) { return !cost.estimate_ms; });
-  if (costs.empty()) return std::nullopt;
-  std::ranges::stable_sort(costs, {}, &analysis::GpuCost::estimate_ms);
-  document::Bars bars;
-  bars.high = std::max(*costs.back().estimate_ms, 1e-9);
-  bars.title = fmt::format(
-      "{}: what an estimate is made of. A bar is the time of the lookup's slowest resource, each with its part where "
-      "that differs between scenes, the prefilter's, and a lower bound of the map's. The other resources work "
-      "meanwhile, and are in the words "
-      "alone, as if each were by itself. The full width is {} ms of a {}x{} frame.",
-      gpu, records::format_number(bars.high), records::kGpuFrameWidth, records::kGpuFrameHeight);
-  for (std::size_t i = 0; i < std::size(analysis::kGpuResources); ++i)
-    bars.legend.emplace_back(document::style_of(i + 1).color, analysis::kGpuResources[i]);
-  bars.legend.emplace_back(document::style_of(std::size(analysis::kGpuResources) + 1).color, "prefilter");
-  bars.legend.emplace_back(document::style_of(std::size(analysis::kGpuResources) + 2).color, "map, at least");
-  for (const analysis::GpuCost& cost : costs) bars.rows.push_back(make_gpu_row(cost));
-  return bars;
 }
 
 /// Facts and estimates for each GPU that the run names; nothing where it names none.
@@ -289,7 +241,6 @@ std::optional<document::Section> make_gpu_section(const std::vector<records::Cel
   for (const std::string& gpu : gpus) {
     const auto costs = analysis::list_gpu_costs(configurations, gpu);
     for (std::string& each : analysis::describe_gpu(gpu, costs)) sentences.items.push_back(std::move(each));
-    if (auto bars = make_gpu_bars(gpu, costs)) tables.blocks.emplace_back(std::move(*bars));
     if (records::TextTable table = analysis::make_gpu_table(costs); !table.rows.empty())
       tables.blocks.emplace_back(document::Table{
           fmt::format("{}: estimates for a {}x{} frame with one map, moving light, and facts of the lookup", gpu,

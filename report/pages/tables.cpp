@@ -147,10 +147,11 @@ std::string say_share(const records::CascadeRecord& cascade) {
 /// What all filters share: one row for each cascade.
 document::Table make_facts(const Cascades& cascades) {
   records::TextTable table;
-  table.header = {"cascade", "texels per metre", "texels per pixel", "receivers"};
+  table.header = {"cascade", "of the farthest", "texels per metre", "texels per pixel", "receivers"};
   for (const records::CascadeRecord& each : cascades)
-    table.rows.push_back({head_cascade(each), records::format_number(each.texels_per_m),
-                          records::format_number(each.texels_per_pixel), say_share(each)});
+    table.rows.push_back({head_cascade(each), fmt::format("{:.4f}", each.end_m / cascades.back().end_m),
+                          records::format_number(each.texels_per_m), records::format_number(each.texels_per_pixel),
+                          say_share(each)});
   return {"Where each cascade ends along the camera's axis, and what it has to draw", std::move(table)};
 }
 
@@ -209,37 +210,6 @@ document::Chart make_chart(const analysis::CellGroup& group, std::size_t number)
   return chart;
 }
 
-/// The ratios of each cascade's length to that of the one before, from the camera on.
-std::string describe_ratios(const Cascades& cascades) {
-  std::vector<std::string> ratios;
-  for (std::size_t i = 1; i < cascades.size(); ++i) {
-    const double before = i == 1 ? 0.0 : cascades[i - 2].end_m;
-    ratios.push_back(
-        records::format_number((cascades[i].end_m - cascades[i - 1].end_m) / (cascades[i - 1].end_m - before)));
-  }
-  return fmt::format("{}", fmt::join(ratios, ", "));
-}
-
-/// The splits as engines ask for them: fractions of the farthest distance, or metres.
-document::Sentences list_engine_settings(const Cascades& cascades) {
-  const double far_m = cascades.back().end_m;
-  std::vector<std::string> metres, shares;
-  for (const records::CascadeRecord& each : cascades) {
-    metres.push_back(records::format_number(each.end_m));
-    if (&each != &cascades.back()) shares.push_back(fmt::format("{:.4f}", each.end_m / far_m));
-  }
-  const std::string far = records::format_number(far_m), list = fmt::format("{}", fmt::join(shares, ", "));
-  return {
-      "The same splits in engines, measured from the camera:",
-      {fmt::format("Unity (URP, HDRP): max distance {}, {} cascades, splits at {} of it", far, cascades.size(), list),
-       fmt::format("Godot: directional_shadow_max_distance {}, splits {}", far, list),
-       fmt::format("three.js CSM: maxFar {}, mode 'custom' with the breaks {}, 1", far, list),
-       fmt::format("Bevy: CascadeShadowConfig bounds [{}]", fmt::join(metres, ", ")),
-       fmt::format("Unreal: dynamic shadow distance {} ({} cm), {} cascades; it has no splits, but a distribution "
-                   "exponent: the ratio of one cascade's length to the one before, here {}",
-                   far, records::format_number(100.0 * far_m), cascades.size(), describe_ratios(cascades))}};
-}
-
 }  // namespace
 
 std::optional<document::Section> make_cascade_section(const std::vector<records::CellRecord>& cells) {
@@ -255,8 +225,7 @@ std::optional<document::Section> make_cascade_section(const std::vector<records:
         make_table(
             "RMSE over the receivers of each cascade, and the seam between them", group,
             [](const records::CascadeRecord& each) { return records::format_number(each.rmse); }, true),
-        make_table("Acne / leak / contact gap in each cascade", group, say_faults, false), make_chart(group, number),
-        list_engine_settings(cascades)};
+        make_table("Acne / leak / contact gap in each cascade", group, say_faults, false), make_chart(group, number)};
     const std::string head =
         fmt::format("{}, map {}, {}", group.scene, group.cells.front().map_size, group.cells.front().fit);
     if (number++ == 0) {

@@ -21,8 +21,8 @@ records::TextTable make_accuracy_table(const analysis::CellGroup& group);
 void explain_columns(document::Details& details, const std::string& file,
                      const std::vector<records::CsvColumn>& columns);
 
-/// Errors and faults by cascade, and where cascades end in the terms of engines: a table and a chart for each scene and
-/// fit. Nothing where no cell has cascades.
+/// Errors and faults by cascade, and where cascades end: tables and a chart for each scene and fit. Nothing where no
+/// cell has cascades.
 std::optional<document::Section> make_cascade_section(const std::vector<records::CellRecord>& cells);
 
 /// What other renderers drew, held against the run's filters; nothing where the run has no such rows.

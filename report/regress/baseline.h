@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/images/uncertainty_images.h"
+#include "report/images/heat_figures.h"
 #include "report/regress/tolerances.h"
 
 namespace shadowbench::regress {

@@ -16,7 +16,7 @@
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/images/color_values.h"
-#include "report/images/hardest_edge.h"
+#include "report/images/grid.h"
 #include "report/images/picture_io.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"

@@ -32,6 +32,7 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {"status big", 2, {"'shadowbench status'", "harness/slurm.sh"}},
       {"flicker --frames 2", 2, {"is gone", "error.flicker"}},
       {"diff a b --html page", 2, {"--html is gone", "--out"}},
+      {"list gl --measure", 2, {"--measure is gone"}},
       {"merge out --times gpu-times.json", 2, {"--times is gone", "'advise --times'"}},
       {"merge nosuch", 2, {"--out"}},
       {"list filter", 2, {"'shadowbench list filter'", "did you mean 'filters'"}},

@@ -174,22 +174,6 @@ TEST_F(Suspects, AreOnNoFront_AndInNoAdvice) {
   expect_valid();
 }
 
-TEST_F(Suspects, DoNotSetTheScaleOfPictures) {
-  const auto grid_beside = [&](const std::string& filter) {
-    std::filesystem::remove_all(folder() / "out");
-    measure({filter});
-    return images::read_picture(folder() / "out" / "cubes.details.png");
-  };
-  const images::Image a = grid_beside("out_of_range"), b = grid_beside("far_taps");
-  ASSERT_EQ(a.width, b.width);
-  ASSERT_EQ(a.height, b.height);
-  // The third of four columns is that of `none`; its caption differs in its times.
-  int different = 0;
-  for (int y = 0; y < a.height; ++y)
-    different += !std::equal(a.at(a.width / 2, y), a.at(3 * a.width / 4, y), b.at(a.width / 2, y));
-  EXPECT_LT(different, a.height / 20) << "of " << a.height << " rows";
-}
-
 TEST_F(Suspects, AFilterThatReadsAsFarAsItDeclares_IsNone) {
   for (const char* radius : {"0", "2", "5"}) {
     succeed(std::string("run --out out --fresh --no-truth --scene cubes --size 96x54 --map-size 128 "

@@ -81,11 +81,6 @@ TEST(Summary, WorkLine_CountsTruthsTracedAndReadFromTheCache) {
 
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 using ::testing::SizeIs;
 
 records::CellRecord make_light_cell(const SweepCell& from, double asked) {
@@ -97,18 +92,12 @@ records::CellRecord make_light_cell(const SweepCell& from, double asked) {
   return cell;
 }
 
-/// On `ball` the filter is as wide as it should be and better than none, on `cubes` as narrow as it can and worse.
+/// On `ball` the filter is as wide as it should be, on `cubes` as narrow as it can.
 std::vector<records::CellRecord> make_cells() {
-  std::vector<records::CellRecord> cells = {
-      make_light_cell({.scene = "ball", .rmse = 0.1}, 4.0),
-      make_light_cell({.scene = "ball", .filter = "vsm", .radius = 4.0, .rmse = 0.05}, 4.0),
-      make_light_cell({.scene = "cubes", .rmse = 0.1}, 0.2),
-      make_light_cell({.scene = "cubes", .filter = "vsm", .radius = 0.4, .rmse = 0.2}, 0.2)};
-  cells[3].attribution.numeric.share = 0.1;
-  cells[3].attribution.estimator.share = 0.6;
-  cells[3].attribution.discretisation.share = 0.2;
-  cells[3].attribution.model.share = 0.1;
-  return cells;
+  return {make_light_cell({.scene = "ball", .rmse = 0.1}, 4.0),
+          make_light_cell({.scene = "ball", .filter = "vsm", .radius = 4.0, .rmse = 0.05}, 4.0),
+          make_light_cell({.scene = "cubes", .rmse = 0.1}, 0.2),
+          make_light_cell({.scene = "cubes", .filter = "vsm", .radius = 0.4, .rmse = 0.2}, 0.2)};
 }
 
 TEST(LightWidths, OneFilter_IsOneConfigurationOnAllScenes) {
@@ -123,18 +112,6 @@ TEST(LightWidths, OneFilter_IsOneConfigurationOnAllScenes) {
   const auto points = list_points(scopes[0], list_error_measures()[0], list_cost_measures(cells)[kMovingCost]);
   ASSERT_THAT(points, SizeIs(2));
   EXPECT_EQ(name_class(points[0].group), "light") << "none is compared with them";
-}
-
-TEST(LightWidths, AreTold_WithWhatCannotBeSoNarrow_AndWhatIsWorseThanNone) {
-  const auto sentences = describe_light_widths(make_cells());
-  ASSERT_THAT(sentences, SizeIs(3));
-  EXPECT_THAT(sentences[0], HasSubstr("4 on ball, 0.2 on cubes"));
-  EXPECT_THAT(sentences[1], AllOf(HasSubstr("vsm on cubes 0.4 for 0.2"), Not(HasSubstr("ball"))));
-  EXPECT_THAT(sentences[2], AllOf(HasSubstr("vsm on cubes (60 % estimator"), Not(HasSubstr("ball"))));
-}
-
-TEST(LightWidths, WithoutOne_NothingIsTold) {
-  EXPECT_THAT(describe_light_widths(make_crossing_cells("cubes")), IsEmpty());
 }
 
 }  // namespace

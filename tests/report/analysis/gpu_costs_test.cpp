@@ -10,22 +10,10 @@ namespace shadowbench::analysis {
 namespace {
 
 using records::CellRecord;
-using ::testing::DoubleEq;
 using ::testing::HasSubstr;
 
 /// What a million lookups take of a frame's.
 double to_us(double ms) { return 1e3 * ms / 2.0736; }
-
-/// Parts of a frame, ms.
-records::GpuEstimateRecord make_parts(double lookup, double prefilter, double arithmetic, double sampling,
-                                      double memory) {
-  return {.lookup_us = to_us(lookup),
-          .prefilter_us = 1e3 * prefilter,
-          .arithmetic_us = to_us(arithmetic),
-          .sampling_us = to_us(sampling),
-          .memory_us = to_us(memory),
-          .bound_by = "memory"};
-}
 
 /// A cell whose frame takes `ms` here, and `gpu_ms` on a GPU.
 CellRecord make_gpu_cell(const std::string& filter, double ms, double gpu_ms) {
@@ -89,16 +77,6 @@ TEST(GpuCosts, OfSeveralScenes_AreMeans) {
   EXPECT_DOUBLE_EQ(costs.costs[0].lookup_ms, 20.0);
   EXPECT_DOUBLE_EQ(costs.costs[0].prefilter_ms, 4.0);
   EXPECT_DOUBLE_EQ(*costs.costs[0].measured_ms, 2.0);
-}
-
-TEST(GpuCosts, SlowestResources_AddUpToTheLookup_WhateverBoundsThePrefilter) {
-  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("a", 3, 30)};
-  cells[1].scene = "stack";
-  cells[0].gpu->at("one").estimate = make_parts(10, 40, 4, 10, 6);
-  cells[1].gpu->at("one").estimate = make_parts(30, 0, 2, 10, 30);
-  const Costs costs(cells);
-  EXPECT_THAT(costs.costs[0].slowest_ms, ::testing::ElementsAre(0.0, DoubleEq(5.0), DoubleEq(15.0)));
-  EXPECT_THAT(costs.costs[0].alone_ms, ::testing::ElementsAre(DoubleEq(3.0), DoubleEq(10.0), DoubleEq(18.0)));
 }
 
 TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {

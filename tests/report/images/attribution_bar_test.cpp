@@ -83,37 +83,5 @@ TEST(BarScale, HoldsAllBarsOnARoundLength) {
   EXPECT_DOUBLE_EQ(choose_bar_scale({{}}).length, 0.001);
 }
 
-constexpr Size kSize{400, 30};
-
-/// The first and the last pixel of a row that have a colour; -1 where none has.
-std::pair<int, int> find_color(const Image& bar, int row, const Rgb& color) {
-  std::pair<int, int> found{-1, -1};
-  for (int x = 0; x < bar.width; ++x) {
-    if (!std::equal(color.begin(), color.end(), bar.at(x, row))) continue;
-    if (found.first < 0) found.first = x;
-    found.second = x;
-  }
-  return found;
-}
-
-Rgb color_at(const Image& bar, int x, int y) { return {bar.at(x, y)[0], bar.at(x, y)[1], bar.at(x, y)[2]}; }
-
-constexpr Rgb kWhite{1.0f, 1.0f, 1.0f}, kBlack{0.0f, 0.0f, 0.0f};
-
-TEST(DrawBar, Lengths_AreInPixelsOfTheScale) {
-  const Image bar = draw_bar({{0.0, 0.5, -0.25, 0.25}}, {0.5, 2.0}, kSize);
-  ASSERT_EQ(bar.width, kSize.width);
-  ASSERT_EQ(bar.height, kSize.height);
-  EXPECT_NE(color_at(bar, 100, 0), kWhite) << "the zero line";
-  EXPECT_EQ(color_at(bar, 99, 0), kWhite);
-  EXPECT_EQ(color_at(bar, 101, 0), kWhite);
-  EXPECT_EQ(find_color(bar, 0, kBlack), std::pair(199, 201)) << "the tick of the RMSE";
-  const auto& parts = list_error_parts();
-  EXPECT_EQ(find_color(bar, 15, parts[0].color).first, -1) << "a part of no length";
-  EXPECT_EQ(find_color(bar, 15, parts[1].color), std::pair(100, 198)) << "up to the tick, which lies over it";
-  EXPECT_EQ(find_color(bar, 15, parts[2].color), std::pair(50, 99));
-  EXPECT_EQ(find_color(bar, 15, parts[3].color), std::pair(202, 249));
-}
-
 }  // namespace
 }  // namespace shadowbench::images

@@ -93,14 +93,6 @@ struct Drawn {
   }
 };
 
-Grid make_hard_attributed_grid() {
-  Grid grid = make_attributed_grid(7, 96, 54);
-  grid.tiles[5].attribution_words = std::string(300, 'x') + " and more";
-  grid.tiles[4] = {"mine", "radius 4", {}, {}, {}, "timed out after 10 s"};
-  grid.tiles[2].attribution = AttributionBar{{0.5, -0.25, -0.25, 0.5}};
-  return grid;
-}
-
 Grid make_hard_grid() {
   Grid grid = make_grid(7, 96, 54);
   grid.title = "A scene whose title is so long that it must be wrapped, because someone named it so and meant it so";
@@ -137,17 +129,8 @@ TEST(Grid, LongTextsAndFailedTile_NothingOverlapsAndNothingIsCut) {
   expect_sound(failed);
 }
 
-TEST(Grid, BarsBesideFailedTilesAndLongReasons_NothingOverlapsAndNothingIsCut) {
-  Grid grid = make_hard_attributed_grid();
-  expect_sound(grid);
-  for (const int columns : {1, 2, 4}) {
-    grid.columns = columns;
-    expect_sound(grid);
-  }
-}
-
 TEST(Grid, OnlyErrors_NothingOverlapsAndThereIsNoMessage) {
-  Grid grid = make_attributed_grid(5, 96, 54);
+  Grid grid = make_error_grid(5, 96, 54);
   for (GridTile& tile : grid.tiles) {
     tile.picture = Image();
     tile.visibility = Image();
@@ -243,7 +226,7 @@ TEST(Grid, TexelThatIsNotFinite_IsMagenta) {
 
 // The drawn picture, not the plan: ink outside the boxes would be text cut off or overlapping.
 TEST(Grid, OutsideTheBoxes_TheCanvasIsEmpty) {
-  for (const Grid& grid : {make_hard_grid(), make_hard_attributed_grid()}) {
+  for (const Grid& grid : {make_hard_grid(), make_error_grid(7, 96, 54)}) {
     Image canvas = draw_figure(make_figure(grid));
     const Figure figure = make_figure(grid);
     for (const Rect& box : list_boxes(layout_figure(figure)))
@@ -276,73 +259,6 @@ TEST(Grid, TilesWithErrors_GetAHeatMapAndOneColourBar) {
   const float* right = drawn.canvas.at(bar.x + bar.width - 3, bar.y + 2);
   EXPECT_GT(left[2], left[0] + 0.3f);
   EXPECT_GT(right[0], right[2] + 0.3f);
-}
-
-// How many pixels of a row have a colour.
-int count_in_row(const Image& canvas, const Rect& row, const images::Rgb& color) {
-  int count = 0;
-  for (int x = row.x; x < row.x + row.width; ++x)
-    count += std::equal(color.begin(), color.end(), canvas.at(x, row.y)) ? 1 : 0;
-  return count;
-}
-
-TEST(Grid, BarsLengths_AreInPixelsOfOneScale) {
-  Grid grid = make_grid(3, 96, 54);
-  grid.tiles[1].attribution = AttributionBar{{0.0, 0.03, 0.0, 0.01}};
-  grid.tiles[2].attribution = AttributionBar{{0.0, 0.015, -0.02, 0.02}};
-  const Drawn drawn(grid);
-  EXPECT_THAT(all_text(grid), HasSubstr("thefullwidth0.06."));
-  EXPECT_EQ(drawn.count(kBarCell), 2u);
-  for (const std::size_t tile : {1u, 2u}) {
-    const records::PartValues& lengths = grid.tiles[tile].attribution->lengths;
-    const Rect box = drawn.find(tile, kBarCell);
-    const Rect row{box.x, box.y + box.height / 2, box.width, 1};
-    for (std::size_t part = 0; part < metrics::kErrorParts; ++part) {
-      const double expected = std::abs(lengths[part]) / 0.06 * box.width;
-      EXPECT_NEAR(count_in_row(drawn.canvas, row, records::list_error_parts()[part].color), expected, 3.5)
-          << part;  // the tick hides 3
-    }
-  }
-}
-
-TEST(Grid, BarsLegend_NamesThePartsBesideTheirColoursAndTheLength) {
-  const Grid grid = make_attributed_grid(4, 96, 54);
-  const std::string text = all_text(grid);
-  EXPECT_THAT(text, HasSubstr("thefullwidth0.06"));
-  EXPECT_THAT(text, HasSubstr("estimator83%,model28%"));
-  const Drawn drawn(grid);
-  const Rect key = drawn.find(drawn.figure.legend.at(1));
-  for (const records::ErrorPart& part : records::list_error_parts()) {
-    EXPECT_NEAR(count_in_row(drawn.canvas, {key.x, key.y, key.width, 1}, part.color), key.width / 4, 1);
-    const auto name =
-        std::ranges::find_if(drawn.layout.texts, [&](const PlacedText& line) { return line.text == part.name; });
-    ASSERT_NE(name, drawn.layout.texts.end()) << part.name;
-    const float* above = drawn.canvas.at(name->box.x + name->box.width / 2, key.y);
-    EXPECT_TRUE(std::equal(above, above + 3, part.color.begin())) << part.name;
-  }
-}
-
-TEST(Grid, ReasonForNoBar_IsSaidOnlyWhereThereAreBars) {
-  Grid grid = make_attributed_grid(4, 96, 54);
-  EXPECT_THAT(all_text(grid), HasSubstr("noattribution:thisfilterhasnoscalarmodel"));
-  for (GridTile& tile : grid.tiles) tile.attribution.reset();
-  EXPECT_THAT(all_text(grid), Not(HasSubstr("noattribution")));
-  EXPECT_THAT(all_text(grid), Not(HasSubstr("discretisation")));
-}
-
-TEST(Grid, GivenErrorScale_IsTakenForEveryTile) {
-  Grid grid = make_attributed_grid(3, 96, 54);
-  grid.error_scale = 0.7;
-  std::ranges::fill(grid.tiles[1].error.texels, 0.7f);
-  std::ranges::fill(grid.tiles[2].error.texels, 0.35f);
-  const Drawn drawn(grid);
-  EXPECT_TRUE(drawn.shows("-0.7"));
-  EXPECT_TRUE(drawn.shows("0.7"));
-  for (const std::size_t tile : {1u, 2u}) {
-    const Rect box = drawn.find(tile, kErrorCell);
-    const Rgb expected = map_diverging(tile == 1 ? 0.7f : 0.35f, 0.7f);
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(drawn.canvas.at(box.x + 5, box.y + 5)[c], expected[c], 1e-5f);
-  }
 }
 
 TEST(Figure, TicksThatHaveNoRoom_LoseTheirLabelsAndNoneOverlap) {
@@ -478,7 +394,7 @@ TEST(Sheet, InInches_IsAnSvgWithTextOfEightPoints) {
 }
 
 TEST(Figure, DrawnInBands_IsTheSamePicture) {
-  const Figure figure = make_figure(make_hard_attributed_grid());
+  const Figure figure = make_figure(make_error_grid(7, 96, 54));
   const Layout layout = layout_figure(figure);
   const Image whole = draw_figure(figure);
   for (int top = 0; top < layout.canvas.height; top += 100) {

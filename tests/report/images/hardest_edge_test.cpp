@@ -1,9 +1,8 @@
-#include "report/images/hardest_edge.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "report/images/grid.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "report/images/color_values.h"
-#include "report/images/map_figures.h"
 #include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
 

@@ -115,26 +115,6 @@ TEST(RunPage, Bars_HaveTheirNumbersAsText) {
   expect_balanced(page);
 }
 
-TEST(RunPage, BarsOfAnEstimate_AreWhatAddsUp_TheRestIsInWords) {
-  records::CellRecord cell = make_cell("cubes", "vsm", 4.0);
-  cell.gpu = {{"one",
-               {{{"lookup", 1, {}}},
-                records::GpuEstimateRecord{.lookup_us = 1e4 / 2.0736,
-                                           .prefilter_us = 4e4,
-                                           .arithmetic_us = 4e3 / 2.0736,
-                                           .sampling_us = 1e4 / 2.0736,
-                                           .memory_us = 6e3 / 2.0736,
-                                           .bound_by = "memory"},
-                ""}}};
-  const std::string page = make_html(make_run(), {cell});
-  EXPECT_THAT(
-      page,
-      HasSubstr(
-          "vsm: 50 ms · lookups 10, prefilter 40, map at least 0 · alone: arithmetic 4, sampling 10, memory 6\""));
-  EXPECT_THAT(page, ::testing::ContainsRegex("<rect x=\"0\" y=\"4\" width=\"200\"[^>]*></rect><rect x=\"200\" y=\"4\" "
-                                             "width=\"800\"[^>]*></rect><rect class=\"net\""));
-}
-
 TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
   std::vector<records::CellRecord> cells;
   for (const auto& [filter, rmse, ms] :
@@ -234,7 +214,6 @@ TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
     const records::CellRecord cell = make_illustrated_cell(scene, "vsm");
     for (const auto& path : {cell.images.picture, cell.images.visibility, cell.images.depth_map, cell.images.grid})
       images::write_grey_png(folder.path() / *path, images::Image(2, 2, 1));
-    images::write_grey_png(folder.path() / name_details(*cell.images.grid), images::Image(2, 2, 1));
     images::write_exr(folder.path() / *cell.images.exr, {{"a", {"Y"}, images::Image(2, 2, 1)}}, {});
     records::write_cell(folder.path(), cell);
     keys.push_back(cell.key);

@@ -135,22 +135,12 @@ inline CellRecord make_attributed_cell(const std::string& filter, double rmse, c
   return cell;
 }
 
-/// A grid whose first tile is a truth, with neither bar nor reason, and whose others have errors and bars, the last but
-/// one a reason instead, where there are that many.
-inline images::Grid make_attributed_grid(int tiles, int width, int height) {
+/// A grid whose tiles but the first have errors.
+inline images::Grid make_error_grid(int tiles, int width, int height) {
   images::Grid grid = make_grid(tiles, width, height);
-  const int without = tiles - 2;
   for (int i = 1; i < tiles; ++i) {
-    images::GridTile& tile = grid.tiles[static_cast<std::size_t>(i)];
-    tile.error = make_visibility(width, height, 9.0f);
-    for (float& value : tile.error.texels) value = 0.3f * (value - 0.5f);
-    if (i == without && without > 1) {
-      tile.attribution_words =
-          "no attribution: this filter has no scalar model, so nothing says what it should have computed";
-      continue;
-    }
-    tile.attribution = images::AttributionBar{{0.0001, 0.03, -0.004 * i, 0.01}};
-    tile.attribution_words = "estimator 83 %, model 28 %";
+    images::Image& error = grid.tiles[static_cast<std::size_t>(i)].error = make_visibility(width, height, 9.0f);
+    for (float& value : error.texels) value = 0.3f * (value - 0.5f);
   }
   return grid;
 }
