@@ -31,10 +31,10 @@ const compare = async (page, run) => {
     return { keeping: keeping.length, beaten: beaten.length, failing: failing.length, unjudged: unjudged.length, noGain: noGain.length };
   });
   const data = await readData(page), indexOf = ({ settings }) => findConfiguration(run, data, settings), labelOf = (each) => data.configurations[indexOf(each)].label;
-  const counts = { keeping: advice.keep, beaten: advice.beaten.length, failing: advice.fail, unjudged: advice.not_judged.length, noGain: advice.no_better_than_none.length };
+  const counts = { keeping: advice.keeping.length, beaten: advice.beaten.length, failing: advice.failing.length, unjudged: advice.not_judged.length, noGain: advice.no_better_than_none.length };
   assert.deepEqual(judged, counts, command);
   if (status === 1) {
-    assert.match(headline, advice.fail > 0 ? /^Nothing keeps these limits/ : /^Nothing can be judged/, command);
+    assert.match(headline, advice.failing.length > 0 ? /^Nothing keeps these limits/ : /^Nothing can be judged/, command);
     return status;
   }
   const rows = await page.locator(".picks tbody tr").all(), cells = await rows[0].locator("td").allTextContents();
