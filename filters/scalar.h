@@ -11,7 +11,7 @@ namespace shadowbench::filters {
 /// The unit round-off of IEEE single precision.
 inline constexpr double kUnitRoundoff = 0x1p-24;
 
-/// Bounds what elementary functions of the GL at hand may get wrong, as `list gl --measure` finds it.
+/// Bounds what elementary functions of the GL at hand may get wrong, as a survey of it finds.
 struct GlAccuracy {
   double exp_roundoffs = 8.0;  ///< relative error of exp(), in units of 2^-24
   double weight_bits = 23.0;   ///< fraction bits of linear filtering weights; 23 or more: full single precision
