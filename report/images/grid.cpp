@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 
 #include "report/images/color_values.h"
 #include "report/images/picture_io.h"
@@ -14,15 +13,6 @@
 
 namespace shadowbench::images {
 namespace {
-
-constexpr double kSmallestLength = 0.001;
-
-double round_up_length(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
-    if (value <= step * power * (1.0 + 1e-9)) return step * power;
-  return 10.0 * power;
-}
 
 constexpr Rgb kOutline{0.93f, 0.32f, 0.05f};
 constexpr int kOutlineWidth = 2;
@@ -132,46 +122,6 @@ Stack make_legend(const Grid& grid, const std::optional<ColorScale>& errors) {
 }
 
 }  // namespace
-
-double AttributionBar::net() const { return std::accumulate(lengths.begin(), lengths.end(), 0.0); }
-
-std::optional<AttributionBar> make_attribution_bar(const records::CellRecord& cell) {
-  const auto shares = records::list_shares(cell);
-  if (cell.status == records::CellStatus::kSuspect || !shares || !cell.error.rmse || !std::isfinite(*cell.error.rmse))
-    return std::nullopt;
-  AttributionBar bar;
-  for (std::size_t i = 0; i < metrics::kErrorParts; ++i) bar.lengths[i] = (*shares)[i].value_or(0.0) * *cell.error.rmse;
-  return bar;
-}
-
-std::vector<BarSegment> stack_segments(const AttributionBar& bar) {
-  std::vector<BarSegment> segments;
-  double left = 0.0;
-  double right = 0.0;
-  for (std::size_t part = 0; part < metrics::kErrorParts; ++part) {
-    const double length = bar.lengths[part];
-    if (length > 0.0) {
-      segments.push_back({part, right, right + length});
-      right += length;
-    } else if (length < 0.0) {
-      segments.push_back({part, left + length, left});
-      left += length;
-    }
-  }
-  return segments;
-}
-
-BarScale choose_bar_scale(const std::vector<AttributionBar>& bars) {
-  double below = 0.0;
-  double above = 0.0;
-  for (const AttributionBar& bar : bars) {
-    for (const BarSegment& segment : stack_segments(bar)) {
-      below = std::max(below, -segment.begin);
-      above = std::max(above, segment.end);
-    }
-  }
-  return {below, round_up_length(std::max(kSmallestLength, below + above))};
-}
 
 Figure make_figure(const Grid& grid) {
   const std::optional<ColorScale> errors = choose_error_colors(grid);

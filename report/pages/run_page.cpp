@@ -12,7 +12,6 @@
 #include "report/analysis/findings.h"
 #include "report/analysis/gpu_costs.h"
 #include "report/analysis/measures.h"
-#include "report/images/grid.h"
 #include "report/pages/answer.h"
 #include "report/pages/grid_sheets.h"
 #include "report/pages/run_data.h"
@@ -95,32 +94,57 @@ std::string css_color(const std::array<float, 3>& color) {
   return fmt::format("#{:02x}{:02x}{:02x}", code(color[0]), code(color[1]), code(color[2]));
 }
 
+/// The error's parts, share times RMSE, positive ones from the zero line to the right, negative ones to the left; words
+/// alone where there is no attribution, or the cell is suspect: it must not set the scale of the others.
 document::Bars::Row make_bar_row(const analysis::CellGroup& group, const records::CellRecord& cell) {
   const std::string head = fmt::format("{}: {}", group.names.name(cell), records::format_number(*cell.error.rmse));
-  const auto bar = images::make_attribution_bar(cell);
-  if (!bar) return {fmt::format("{} · no attribution: {}", head, records::explain_no_attribution(cell)), {}};
-  document::Bars::Row row{head, {}, bar->net(), records::describe_shares(*records::list_shares(cell))};
-  for (const images::BarSegment& segment : images::stack_segments(*bar))
-    row.segments.push_back({segment.begin, segment.end, css_color(records::list_error_parts()[segment.part].color)});
+  const auto shares = records::list_shares(cell);
+  if (cell.status == records::CellStatus::kSuspect || !shares || !std::isfinite(*cell.error.rmse))
+    return {fmt::format("{} · no attribution: {}", head, records::explain_no_attribution(cell)), {}};
+  document::Bars::Row row{head, {}, 0.0, records::describe_shares(*shares)};
+  double left = 0.0, right = 0.0;
+  for (std::size_t part = 0; part < metrics::kErrorParts; ++part) {
+    const double length = (*shares)[part].value_or(0.0) * *cell.error.rmse;
+    const std::string color = css_color(records::list_error_parts()[part].color);
+    row.net += length;
+    if (length > 0.0) row.segments.push_back({right, right + length, color});
+    if (length < 0.0) row.segments.push_back({left + length, left, color});
+    (length > 0.0 ? right : left) += length;
+  }
   return row;
 }
 
-/// Where the error comes from; nothing where no cell of the group has an attribution.
+double round_up_length(double value) {
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (value <= step * power * (1.0 + 1e-9)) return step * power;
+  return 10.0 * power;
+}
+
+/// Where the error comes from, on a scale of a round length that holds all; nothing where no cell of the group has an
+/// attribution.
 std::optional<document::Bars> make_bars(const analysis::CellGroup& group) {
-  std::vector<images::AttributionBar> drawn;
-  for (const records::CellRecord& cell : group.cells)
-    if (const auto bar = images::make_attribution_bar(cell)) drawn.push_back(*bar);
-  if (drawn.empty()) return std::nullopt;
-  const images::BarScale scale = images::choose_bar_scale(drawn);
+  constexpr double kSmallestLength = 0.001;
   document::Bars bars;
-  bars.title = fmt::format("Parts of the RMSE, to {}; those left of the line offset others.",
-                           records::format_number(scale.length));
+  double below = 0.0, above = 0.0;
+  bool is_any = false;
+  for (const records::CellRecord& cell : group.cells) {
+    if (!cell.error.rmse) continue;
+    const document::Bars::Row& row = bars.rows.emplace_back(make_bar_row(group, cell));
+    is_any = is_any || !row.words.empty();
+    for (const auto& segment : row.segments) {
+      below = std::max(below, -segment.begin);
+      above = std::max(above, segment.end);
+    }
+  }
+  if (!is_any) return std::nullopt;
+  const double length = round_up_length(std::max(kSmallestLength, below + above));
+  bars.title =
+      fmt::format("Parts of the RMSE, to {}; those left of the line offset others.", records::format_number(length));
   for (const records::ErrorPart& part : records::list_error_parts())
     bars.legend.push_back({css_color(part.color), part.name});
-  bars.low = -scale.below;
-  bars.high = scale.length - scale.below;
-  for (const records::CellRecord& cell : group.cells)
-    if (cell.error.rmse) bars.rows.push_back(make_bar_row(group, cell));
+  bars.low = -below;
+  bars.high = length - below;
   return bars;
 }
 

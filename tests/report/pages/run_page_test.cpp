@@ -115,6 +115,13 @@ TEST(RunPage, Bars_HaveTheirNumbersAsText) {
   expect_balanced(page);
 }
 
+TEST(RunPage, ASuspectCell_HasNoBar_SinceItWouldSetTheScale) {
+  records::CellRecord cell = make_attributed_cell("mine", 0.04, {0.0, 0.75, -0.25, 0.5});
+  EXPECT_THAT(make_html(make_run(), {cell}), HasSubstr("Parts of the RMSE"));
+  cell.status = records::CellStatus::kSuspect;
+  EXPECT_THAT(make_html(make_run(), {cell}), Not(HasSubstr("Parts of the RMSE")));
+}
+
 TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
   std::vector<records::CellRecord> cells;
   for (const auto& [filter, rmse, ms] :
