@@ -93,24 +93,6 @@ test("WithoutTruthOrValues_ThePicturesStay_AndWithNothingTheViewerIsHidden", asy
   await hidden.close();
 });
 
-test("NarrowDarkAndPrinted_FitThePage", async () => {
-  for (const [name, options] of [["narrow", { viewport: kNarrow }], ["dark", { colorScheme: "dark" }]]) {
-    const { page, messages, shoot, close } = await openViewer(kPage, { ...options, hash: "#view=cubes,truth,vsm%20(radius%201),error,side,0,0,1,25-25-50-30" });
-    await showCrops(page);
-    await settle(page);
-    assert.ok(await measureOverflow(page) <= 0, name);
-    await shoot(name);
-    await page.getByRole("button", { name: "Slider" }).click();
-    await settle(page);
-    assert.ok(await measureOverflow(page) <= 0, name);
-    await shoot(name + "_slider");
-    await page.emulateMedia({ media: "print" });
-    assert.equal(await page.locator("#viewer").isVisible(), false);
-    assert.deepEqual(messages, []);
-    await close();
-  }
-});
-
 test("ManyFiltersWithOddNames_StayUsable", async () => {
   const names = ['a "quoted" <b>name</b>', "مرشح الظل", "a,comma", "name-" + "long".repeat(40)];
   const file = changePage("several", "many.html", (data) => {
@@ -132,28 +114,4 @@ test("ManyFiltersWithOddNames_StayUsable", async () => {
     assert.deepEqual(messages, []);
     await close();
   }
-});
-
-test("ZoomAndPan_KeepPace", async (context) => {
-  const { page, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,side,120,67,1" });
-  await page.waitForSelector(".viewer .strip button canvas");
-  const gaps = await page.evaluate(() => new Promise((resolve) => {
-    const canvas = document.querySelector(".viewer .panes canvas"), box = canvas.getBoundingClientRect(), gaps = [], busy = [];
-    let last = 0;
-    const step = (now) => {
-      if (last) gaps.push(now - last);
-      last = now;
-      const from = performance.now(), at = { clientX: box.left + 200 + gaps.length, clientY: box.top + 150, bubbles: true, cancelable: true };
-      canvas.dispatchEvent(new WheelEvent("wheel", { ...at, deltaY: gaps.length % 60 < 30 ? -40 : 40 }));
-      canvas.dispatchEvent(new PointerEvent("pointermove", at));
-      busy.push(performance.now() - from);
-      if (gaps.length < 240) requestAnimationFrame(step);
-      else resolve(gaps.sort((a, b) => a - b));
-    };
-    requestAnimationFrame(step);
-  }));
-  const at = (share) => gaps[Math.floor(share * (gaps.length - 1))].toFixed(1);
-  context.diagnostic(`frame time while zooming: median ${at(0.5)} ms, 95 % ${at(0.95)} ms, worst ${at(1)} ms`);
-  assert.ok(Number(at(0.5)) < 200, "far above what is usual: the machine may be busy");
-  await close();
 });

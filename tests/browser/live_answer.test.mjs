@@ -79,12 +79,6 @@ test("WhereNothingAgreesWithTheRun_MeasuringSaysSo", () => withBrowser(kMesa, as
   await close();
 }));
 
-test("WithoutWebGl_MeasuringSaysSo", () => withBrowser(["--disable-gpu", "--disable-3d-apis"], async (browser) => {
-  const { page, close } = await open(pageOf("untrue"), { browser });
-  await measureInVain(page, "no WebGL 2");
-  await close();
-}));
-
 // A renderer's name that is not that of a CPU.
 const nameGpu = () => {
   const { getParameter } = WebGL2RenderingContext.prototype;

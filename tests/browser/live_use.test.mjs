@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { changeFrames, keepContexts, keepTime, kMesa, kMsPerLetter, kOwn, loadTimes, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { dragOver, folderOf, kNarrow, measureOverflow, open, pageOf, pick, readData, runProgram, settle } from "./support.mjs";
+import { changeFrames, keepContexts, keepTime, kMesa, kMsPerLetter, loadTimes, openLive, press, readTable, withBrowser } from "./live_support.mjs";
+import { dragOver, folderOf, kNarrow, open, pageOf, pick, readData, runProgram, settle } from "./support.mjs";
 
 const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
 
@@ -164,14 +164,6 @@ test("BeforeItIsReached_AStillAndASentenceAreThere_AndNotesAreWholeAfterwards", 
   await press(page, "Check against the run");
   for (const note of await page.locator(".live p.note, .live .unsaid").all())
     assert.ok(await note.evaluate((each) => each.scrollWidth <= each.clientWidth + 1 && each.getBoundingClientRect().right <= innerWidth), await note.textContent());
-  await close();
-}));
-
-test("OnAPhone_NothingIsWiderThanTheScreen", () => withBrowser(kOwn, async (browser) => {
-  const { page, shoot, close } = await openLive(pageOf("several"), browser, { viewport: kNarrow });
-  await settle(page);
-  assert.ok((await measureOverflow(page)) <= 0);
-  await shoot("live.phone");
   await close();
 }));
 

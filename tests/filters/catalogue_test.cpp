@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "filters/kernel.h"
 #include "filters/model.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -148,14 +149,12 @@ TEST(UserFile, WithATakenId_IsRefused) {
 }
 
 TEST(UserFile, NamedAsAWordWithAMeaning_IsRefused) {
-  const auto folder = std::filesystem::path(::testing::TempDir()) / std::to_string(getpid());
-  std::filesystem::create_directories(folder);
+  const TestFolder folder;
   for (const char* name : {"truth.glsl", "all.glsl", "teaching.glsl"}) {
-    std::filesystem::copy_file(SHADOWBENCH_SOURCE_DIR "/filters/none.glsl", folder / name);
+    std::filesystem::copy_file(SHADOWBENCH_SOURCE_DIR "/filters/none.glsl", folder.path() / name);
     Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-    EXPECT_THROW(catalogue.add_user_file(folder / name), Error) << name;
+    EXPECT_THROW(catalogue.add_user_file(folder.path() / name), Error) << name;
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(UserFile, HasNoWidth) {
@@ -178,15 +177,6 @@ std::vector<std::string> presets_of(const FilterRequest& request) {
   std::vector<std::string> names;
   for (const Preset& preset : request.presets) names.push_back(preset.name);
   return names;
-}
-
-Error error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  return {ErrorKind::kLimit, "no error"};
 }
 
 TEST(ShippedPresets, AreFiltersOfOurs_WithSourceAndVersion) {
@@ -249,23 +239,20 @@ TEST(Presets, Mistakes_AreNamed) {
 class PresetFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::filesystem::create_directories(folder_);
     for (const char* name : {"none.glsl", "vsm.glsl"})
-      std::filesystem::copy_file(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "filters" / name, folder_ / name);
+      std::filesystem::copy_file(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "filters" / name, folder() / name);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// What asking for the preset 'p' answers where its file is this.
   Error ask(const std::string& text) const {
-    std::ofstream(file()) << text;
-    return error_of([&] { Catalogue(folder_).parse_requests("none,@p"); });
+    folder_.write("presets.toml", text);
+    return error_of([&] { Catalogue(folder()).parse_requests("none,@p"); });
   }
-  std::filesystem::path file() const { return folder_ / "presets.toml"; }
-  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path file() const { return folder() / "presets.toml"; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("shadowbench.presets." + std::to_string(getpid()));
+  TestFolder folder_;
 };
 
 const std::string kGood =

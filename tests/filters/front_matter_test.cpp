@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 
 #include "base/error.h"
 #include "filters/catalogue.h"
 #include "filters/kernel.h"
 #include "filters/model.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -23,15 +20,11 @@ std::string with(const std::string& lines, const std::string& glsl = "float visi
   return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = 2\n" + lines + "+++*/\n" + glsl;
 }
 
-void expect_error(const std::string& text, const std::string& where, const std::string& words) {
-  try {
-    parse_filter(text, "dir/mine.glsl");
-    ADD_FAILURE() << "accepted: " << text;
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-    EXPECT_EQ(error.where(), where) << error.what();
-    EXPECT_THAT(error.message(), HasSubstr(words));
-  }
+void expect_error(const std::string& text, int line, const std::string& words) {
+  const Error error = error_of([&] { parse_filter(text, "mine.glsl"); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter) << text;
+  EXPECT_EQ(error.where(), fmt::format("mine.glsl:{}", line)) << error.what();
+  EXPECT_THAT(error.message(), HasSubstr(words));
 }
 
 TEST(FrontMatter, GivesEveryField) {
@@ -43,7 +36,7 @@ TEST(FrontMatter, GivesEveryField) {
       "[param.radius]\ndefault = 3\nmin = 0\nmax = 9\nunit = \"texels\"\ntext = \"help\"\n"
       "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nconst = true\n+++*/\n"
       "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n",
-      "dir/mine.glsl");
+      "mine.glsl");
   EXPECT_EQ(spec.id, "mine");
   EXPECT_EQ(spec.title, "Title");
   EXPECT_EQ(spec.source, "Source");
@@ -95,42 +88,38 @@ TEST(FrontMatter, ReadsOfAnEncodedMap_WithoutEncode_AreFound) {
 }
 
 TEST(FrontMatter, MissingOrMalformed_NamesTheLine) {
-  expect_error("float visibility(Receiver r) { return 1.0; }", "dir/mine.glsl:1", "no front matter");
-  expect_error("/*+++\ntitle = \"t\"\n", "dir/mine.glsl:1", "no front matter");
-  expect_error(with("x = = 1\n"), "dir/mine.glsl:6", "not valid TOML");
-  expect_error("/*+++\nsource = \"s\"\nkind = \"other\"\n+++*/\nfloat visibility(Receiver r) {}", "dir/mine.glsl:1",
-               "'title'");
+  expect_error("float visibility(Receiver r) { return 1.0; }", 1, "no front matter");
+  expect_error("/*+++\ntitle = \"t\"\n", 1, "no front matter");
+  expect_error(with("x = = 1\n"), 6, "not valid TOML");
+  expect_error("/*+++\nsource = \"s\"\nkind = \"other\"\n+++*/\nfloat visibility(Receiver r) {}", 1, "'title'");
 }
 
 TEST(FrontMatter, UnknownKeysAndValues_SuggestTheNearest) {
-  expect_error(with("clams = []\n"), "dir/mine.glsl:6", "did you mean 'claims'");
-  expect_error(with("[param.a]\ndefault = 1.0\nmni = 0.0\nmax = 2.0\ntext = \"x\"\n"), "dir/mine.glsl:8",
-               "did you mean 'min'");
-  expect_error("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"fast\"\n+++*/\nfloat visibility(Receiver r) {}",
-               "dir/mine.glsl:4", "'fast'");
+  expect_error(with("clams = []\n"), 6, "did you mean 'claims'");
+  expect_error(with("[param.a]\ndefault = 1.0\nmni = 0.0\nmax = 2.0\ntext = \"x\"\n"), 8, "did you mean 'min'");
+  expect_error("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"fast\"\n+++*/\nfloat visibility(Receiver r) {}", 4,
+               "'fast'");
 }
 
 TEST(FrontMatter, WrongTypes_AreRefused) {
-  expect_error(with("claims = 3\n"), "dir/mine.glsl:6", "must be a string or a list of strings, but is 3");
-  expect_error(with("[param.a]\ndefault = nan\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:7", "finite");
-  expect_error(with("[param.a]\ndefault = 3.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:7",
-               "outside 0 .. 1");
-  expect_error(with("[param.a]\ndefault = 3.0\ntext = \"x\"\n"), "dir/mine.glsl:7", "needs 'min' and 'max'");
-  expect_error(with("[param.a]\ndefault = \"x\"\nchoices = [\"y\"]\ntext = \"x\"\n"), "dir/mine.glsl:7",
-               "not one of its choices");
-  expect_error(with("[param.gl_a]\ndefault = 1.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), "dir/mine.glsl:6",
+  expect_error(with("claims = 3\n"), 6, "must be a string or a list of strings, but is 3");
+  expect_error(with("[param.a]\ndefault = nan\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), 7, "finite");
+  expect_error(with("[param.a]\ndefault = 3.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), 7, "outside 0 .. 1");
+  expect_error(with("[param.a]\ndefault = 3.0\ntext = \"x\"\n"), 7, "needs 'min' and 'max'");
+  expect_error(with("[param.a]\ndefault = \"x\"\nchoices = [\"y\"]\ntext = \"x\"\n"), 7, "not one of its choices");
+  expect_error(with("[param.gl_a]\ndefault = 1.0\nmin = 0.0\nmax = 1.0\ntext = \"x\"\n"), 6,
                "[param.gl_a]: 'gl_a' cannot be a name in GLSL");
 }
 
 TEST(FrontMatter, StoreAndEncode_ComeTogether) {
-  expect_error(with("store = \"r32f\"\n"), "dir/mine.glsl:6", "lacks 'vec4 encode");
+  expect_error(with("store = \"r32f\"\n"), 6, "lacks 'vec4 encode");
   expect_error(with("", "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }"),
-               "dir/mine.glsl:1", "lacks 'store'");
-  expect_error(with("combine = \"linear\"\n"), "dir/mine.glsl:6", "needs 'store'");
-  expect_error(with("samples = 4\n"), "dir/mine.glsl:6", "'samples' says what is stored, and needs 'store'");
+               1, "lacks 'store'");
+  expect_error(with("combine = \"linear\"\n"), 6, "needs 'store'");
+  expect_error(with("samples = 4\n"), 6, "'samples' says what is stored, and needs 'store'");
   for (const char* wrong : {"3", "0", "32", "4.0", "[1, 5]", "\"4\"", "[]"})
-    expect_error(with(fmt::format("store = \"r32f\"\nsamples = {}\n", wrong)), "dir/mine.glsl:7", "'samples'");
-  expect_error(with("store = \"rgb8\"\n"), "dir/mine.glsl:6", "unknown store 'rgb8'");
+    expect_error(with(fmt::format("store = \"r32f\"\nsamples = {}\n", wrong)), 7, "'samples'");
+  expect_error(with("store = \"rgb8\"\n"), 6, "unknown store 'rgb8'");
 }
 
 TEST(FrontMatter, WhatTheMapHolds_IsDeclared) {
@@ -143,23 +132,19 @@ TEST(FrontMatter, WhatTheMapHolds_IsDeclared) {
   EXPECT_EQ(spec.exponent, "c");
   EXPECT_EQ(spec.variance_floor, "c");
   EXPECT_FALSE(parse_filter(with("store = \"rg32f\"\n", glsl), "a.glsl").holds_moments);
-  expect_error(with("store = [\"rg32f\", \"r32f\"]\nmoments = true\n", glsl), "dir/mine.glsl:7", "'r32f' has one");
-  expect_error(with("store = \"r32f\"\nexponent = \"d\"\n" + param, glsl), "dir/mine.glsl:7",
-               "'d', which is not a numeric parameter");
-  expect_error(with("store = \"rg32f\"\nvariance_floor = \"c\"\n" + param, glsl), "dir/mine.glsl:7",
-               "needs 'moments = true'");
-  expect_error(with("exponent = \"c\"\n" + param), "dir/mine.glsl:6", "needs 'store'");
+  expect_error(with("store = [\"rg32f\", \"r32f\"]\nmoments = true\n", glsl), 7, "'r32f' has one");
+  expect_error(with("store = \"r32f\"\nexponent = \"d\"\n" + param, glsl), 7, "'d', which is not a numeric parameter");
+  expect_error(with("store = \"rg32f\"\nvariance_floor = \"c\"\n" + param, glsl), 7, "needs 'moments = true'");
+  expect_error(with("exponent = \"c\"\n" + param), 6, "needs 'store'");
   std::string bound = with("bound_at_zero = \"c\"\n" + param);
-  expect_error(bound, "dir/mine.glsl:6", "needs 'kind = \"bound\"'");
+  expect_error(bound, 6, "needs 'kind = \"bound\"'");
   bound.replace(bound.find("other"), 5, "bound");
   EXPECT_FALSE(promises_bound(parse_filter(bound, "a.glsl"), {{"c", 1.0}}));
   EXPECT_TRUE(promises_bound(parse_filter(bound, "a.glsl"), {{"c", 0.0}}));
-  expect_error(with("bound_at_zero = \"d\"\n" + param), "dir/mine.glsl:6", "'d', which is not a numeric parameter");
+  expect_error(with("bound_at_zero = \"d\"\n" + param), 6, "'d', which is not a numeric parameter");
 }
 
-TEST(FrontMatter, NoVisibility_IsRefused) {
-  expect_error(with("", "float lit() { return 1.0; }"), "dir/mine.glsl:1", "visibility");
-}
+TEST(FrontMatter, NoVisibility_IsRefused) { expect_error(with("", "float lit() { return 1.0; }"), 1, "visibility"); }
 
 TEST(FrontMatter, PrefilterRadius_MustBeWhole) {
   const std::string glsl =
@@ -168,7 +153,7 @@ TEST(FrontMatter, PrefilterRadius_MustBeWhole) {
       "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = \"linear\"\nradius_texels = "
       "1.5\n+++*/\n" +
           glsl,
-      "dir/mine.glsl:6", "whole number");
+      6, "whole number");
 }
 
 TEST(FrontMatter, LongBlanksAndNames_DoNotExhaustTheStack) {
@@ -176,28 +161,27 @@ TEST(FrontMatter, LongBlanksAndNames_DoNotExhaustTheStack) {
   EXPECT_FALSE(
       parse_filter(with("", "float" + blanks + "visibility" + blanks + "(Receiver r) { return 1.0; }"), "mine.glsl")
           .has_encode);
-  expect_error(with("", "float" + blanks + "visibility"), "dir/mine.glsl:1", "visibility");
+  expect_error(with("", "float" + blanks + "visibility"), 1, "visibility");
   const std::string name(1'000'000, 'a');
   EXPECT_EQ(parse_filter(with("[param." + name + "]\ndefault = 1.0\nmin = 0.0\nmax = 2.0\ntext = \"x\"\n"), "mine.glsl")
                 .params.size(),
             1u);
   std::string key = "a";
   for (int i = 0; i < 1'000'000; ++i) key += ".a";
-  expect_error(with(key + " = 1\n"), "dir/mine.glsl:6", "256 dots");
+  expect_error(with(key + " = 1\n"), 6, "256 dots");
 }
 
 TEST(FrontMatter, FunctionsAreFoundAsWholeWords) {
   for (const char* glsl : {"float my_visibility(Receiver r) {}", "myfloat visibility(Receiver r) {}",
                            "float visibility_of(Receiver r) {}", "float visibility;"})
-    expect_error(with("", glsl), "dir/mine.glsl:1", "visibility");
+    expect_error(with("", glsl), 1, "visibility");
   EXPECT_NO_THROW(parse_filter(with("", "int x; float\n\tvisibility\n(Receiver r) { return 1.0; }"), "mine.glsl"));
   EXPECT_FALSE(parse_filter(with("", "float visibility(Receiver r) { return my_map_depth + map_depths; }"), "mine.glsl")
                    .uses_samplers);
 }
 
 TEST(FrontMatter, ChoicesAreOfOneType_AndBoundWhatTheyDrive) {
-  expect_error(with("[param.a]\ndefault = 1\nchoices = [1, \"x\"]\ntext = \"x\"\n"), "dir/mine.glsl:7",
-               "different types");
+  expect_error(with("[param.a]\ndefault = 1\nchoices = [1, \"x\"]\ntext = \"x\"\n"), 7, "different types");
   const auto with_radius = [](const std::string& choices) {
     return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = "
            "\"linear\"\nradius_texels = \"radius\"\n[param.radius]\ndefault = 1\nchoices = " +
@@ -206,8 +190,8 @@ TEST(FrontMatter, ChoicesAreOfOneType_AndBoundWhatTheyDrive) {
            "return 1.0; }\n";
   };
   EXPECT_TRUE(parse_filter(with_radius("[1, 2]"), "mine.glsl").has_prefilter);
-  expect_error(with_radius("[1, 100000]"), "dir/mine.glsl:6", "radius_texels");
-  expect_error(with_radius("[1, -2]"), "dir/mine.glsl:6", "radius_texels");
+  expect_error(with_radius("[1, 100000]"), 6, "radius_texels");
+  expect_error(with_radius("[1, -2]"), 6, "radius_texels");
 }
 
 TEST(FrontMatter, DisksOfTooManyPoints_AreRefused) {
@@ -216,12 +200,12 @@ TEST(FrontMatter, DisksOfTooManyPoints_AreRefused) {
                 "const = true\ntext = \"x\"\n[disk.points]\ncount = \"taps\"\nseed = " + seed + "\n");
   };
   EXPECT_EQ(parse_filter(with_disk("min = 1\nmax = 64\n", "4294967295"), "mine.glsl").disks.front().seed, 4294967295u);
-  expect_error(with_disk("min = 1\nmax = 2000000000\n", "1"), "dir/mine.glsl:13", "at most 4096 points");
-  expect_error(with_disk("choices = [4, 5000]\n", "1"), "dir/mine.glsl:12", "at most 4096 points");
-  expect_error(with_disk("min = 1\nmax = 64\n", "-1"), "dir/mine.glsl:14", "'seed'");
-  expect_error(with_disk("min = 1\nmax = 64\n", "1.5"), "dir/mine.glsl:14",
+  expect_error(with_disk("min = 1\nmax = 2000000000\n", "1"), 13, "at most 4096 points");
+  expect_error(with_disk("choices = [4, 5000]\n", "1"), 12, "at most 4096 points");
+  expect_error(with_disk("min = 1\nmax = 64\n", "-1"), 14, "'seed'");
+  expect_error(with_disk("min = 1\nmax = 64\n", "1.5"), 14,
                "'seed' in [disk.points] must be a whole number from 0 to 4294967295, but is 1.5");
-  expect_error(with_disk("min = 1\nmax = 64\n", "1e10"), "dir/mine.glsl:14", "'seed'");
+  expect_error(with_disk("min = 1\nmax = 64\n", "1e10"), 14, "'seed'");
 }
 
 TEST(FrontMatter, PassesAreReadInTheirOrder) {
@@ -243,31 +227,29 @@ TEST(FrontMatter, PassesAreReadInTheirOrder) {
 }
 
 TEST(FrontMatter, BadPassesAreRefused) {
-  expect_error(with("pass = 1\n"), "dir/mine.glsl:6", "'pass' must hold tables");
-  expect_error(with("[pass.p]\nstore = \"rgb9\"\n"), "dir/mine.glsl:7",
-               "unknown store 'rgb9' in [pass.p]; expected one of: r16f");
-  expect_error(with("[pass.p]\nsteps = \"once\"\n"), "dir/mine.glsl:6", "lacks 'store'");
-  expect_error(with("[pass.p]\nstore = \"r32f\"\nsteps = \"twice\"\n"), "dir/mine.glsl:8",
+  expect_error(with("pass = 1\n"), 6, "'pass' must hold tables");
+  expect_error(with("[pass.p]\nstore = \"rgb9\"\n"), 7, "unknown store 'rgb9' in [pass.p]; expected one of: r16f");
+  expect_error(with("[pass.p]\nsteps = \"once\"\n"), 6, "lacks 'store'");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\nsteps = \"twice\"\n"), 8,
                "expected one of: once, axes, prefix, levels");
-  expect_error(with("[pass.p]\nstore = \"r32f\"\nsize = \"third\"\n"), "dir/mine.glsl:8",
-               "expected one of: full, half");
-  expect_error(with("[pass.p]\nstore = \"r32f\"\nstep = \"once\"\n"), "dir/mine.glsl:8", "unknown key 'step'");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\nsize = \"third\"\n"), 8, "expected one of: full, half");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\nstep = \"once\"\n"), 8, "unknown key 'step'");
   for (const char* taken : {"map", "depth", "stored", "compare", "compare_nearest", "encode", "visibility"}) {
-    expect_error(with(fmt::format("[pass.{}]\nstore = \"r32f\"\n", taken)), "dir/mine.glsl:6",
+    expect_error(with(fmt::format("[pass.{}]\nstore = \"r32f\"\n", taken)), 6,
                  fmt::format("[pass.{0}]: '{0}' is the name of something else", taken));
   }
-  expect_error(with("[pass.p-1]\nstore = \"r32f\"\n"), "dir/mine.glsl:6", "'p-1' cannot be a name in GLSL");
-  expect_error(with("[param.p]\ndefault = 1\nmin = 0\nmax = 2\ntext = \"t\"\n[pass.p]\nstore = \"r32f\"\n"),
-               "dir/mine.glsl:11", "'p' is the name of something else");
-  expect_error(with("[pass.p]\nstore = \"r32f\"\n"), "dir/mine.glsl:6", "lacks 'vec4 p(PassInput p)'");
+  expect_error(with("[pass.p-1]\nstore = \"r32f\"\n"), 6, "'p-1' cannot be a name in GLSL");
+  expect_error(with("[param.p]\ndefault = 1\nmin = 0\nmax = 2\ntext = \"t\"\n[pass.p]\nstore = \"r32f\"\n"), 11,
+               "'p' is the name of something else");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\n"), 6, "lacks 'vec4 p(PassInput p)'");
   expect_error(with("[pass.p]\nstore = \"r32ui\"\n",
                     "vec4 p(PassInput p) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n"),
-               "dir/mine.glsl:6", "lacks 'uvec4 p(PassInput p)'");
+               6, "lacks 'uvec4 p(PassInput p)'");
   for (const char* number : {"2.5", "0", "17"}) {
-    expect_error(with(fmt::format("[pass.p]\nstore = \"r32f\"\nanisotropy = {}\n", number)), "dir/mine.glsl:8",
+    expect_error(with(fmt::format("[pass.p]\nstore = \"r32f\"\nanisotropy = {}\n", number)), 8,
                  "'anisotropy' in [pass.p] must be a whole number from 1 to 16");
   }
-  expect_error(with("[pass.p]\nstore = \"r32f\"\nanisotropy = 4\n"), "dir/mine.glsl:8", "needs steps = \"levels\"");
+  expect_error(with("[pass.p]\nstore = \"r32f\"\nanisotropy = 4\n"), 8, "needs steps = \"levels\"");
 }
 
 TEST(FrontMatter, DisksPattern_IsNamed_OrAParameterThatChooses) {
@@ -279,22 +261,22 @@ TEST(FrontMatter, DisksPattern_IsNamed_OrAParameterThatChooses) {
   };
   EXPECT_EQ(parse_filter(with_pattern("blue-noise"), "mine.glsl").disks.front().pattern, "blue-noise");
   EXPECT_EQ(parse_filter(with_pattern("p"), "mine.glsl").disks.front().pattern, "p");
-  for (const char* wrong : {"sunflower", "taps", ""})
-    expect_error(with_pattern(wrong), "dir/mine.glsl:18", "'pattern'");
-  expect_error(with_pattern("p", "\"vogel\", \"grid\""), "dir/mine.glsl:18", "vogel, stratified, blue-noise");
+  for (const char* wrong : {"sunflower", "taps", ""}) expect_error(with_pattern(wrong), 18, "'pattern'");
+  expect_error(with_pattern("p", "\"vogel\", \"grid\""), 18, "vogel, stratified, blue-noise");
 }
 
 // Kernels that front matter declares, and users' copies of built-in filters.
 
 /// A filter whose front matter ends with these lines, the first of which is line 14.
-FilterSpec parse_with(const std::string& lines) {
-  return parse_filter(
-      "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = \"radius\"\nparam.radius.default = 3\n"
-      "param.radius.min = 0\nparam.radius.max = 9\nparam.radius.text = \"help\"\nparam.taps.default = 3\n"
-      "param.taps.min = 1\nparam.taps.max = 9\nparam.taps.text = \"help\"\n" +
-          lines + "\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n",
-      "mine.glsl");
+std::string with_kernel(const std::string& lines) {
+  return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = \"radius\"\nparam.radius.default = "
+         "3\n"
+         "param.radius.min = 0\nparam.radius.max = 9\nparam.radius.text = \"help\"\nparam.taps.default = 3\n"
+         "param.taps.min = 1\nparam.taps.max = 9\nparam.taps.text = \"help\"\n" +
+         lines + "\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";
 }
+
+FilterSpec parse_with(const std::string& lines) { return parse_filter(with_kernel(lines), "mine.glsl"); }
 
 Kernel declare(const std::string& lines) {
   const FilterSpec spec = parse_with(lines);
@@ -333,63 +315,43 @@ TEST(DeclaredKernel, WithAParameter_FollowsIt_AndGivesTheFilterAWidth) {
   EXPECT_EQ(solve_radius(spec, default_values(spec), "soft"), 3.0);
 }
 
-void expect_refused(const std::string& lines, int line, const std::string& words) {
-  try {
-    parse_with(lines);
-    ADD_FAILURE() << "accepted: " << lines;
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-    EXPECT_EQ(error.where(), "mine.glsl:" + std::to_string(line)) << error.what();
-    EXPECT_THAT(error.message(), HasSubstr(words));
-  }
-}
-
 TEST(DeclaredKernel, ThatIsNone_IsRefused_WithItsLine) {
-  expect_refused("kernel = 'tant:2'", 14, "did you mean 'tent'");
-  expect_refused("kernel = 'tent'", 14, "\"tent:2\"");
-  expect_refused("kernel = 3", 14, "\"tent:2\"");
-  expect_refused("kernel = 'disk:2x'", 14, "neither a number nor a numeric parameter");
-  expect_refused("kernel = 'disk:nan'", 14, "neither a number nor a numeric parameter");
-  expect_refused("kernel = 'disk:radios'", 14, "neither a number nor a numeric parameter");
-  expect_refused("kernel = 'disk:-1'", 14, "within 0 .. 64");
-  expect_refused("kernel = 'tent:radius'", 14, "within 0.5 .. 64");
-  expect_refused("kernel = 'box:2.5'", 14, "whole number within 1 .. 129");
-  expect_refused("[kernel]\nshape = 'gaussian:65'", 15, "within 0 .. 64");
-  expect_refused("[kernel]\nread = 'nearest'", 14, "either 'shape' or 'weights'");
-  expect_refused("[kernel]\nshape = 'box:3'\nread = 'cubic'", 16, "expected one of: bilinear, nearest");
-  expect_refused("[kernel]\nshape = 'disk:3'\nread = 'nearest'", 16, "a box, a gaussian, or weights");
-  expect_refused("[kernel]\nweigths = [1]", 15, "did you mean 'weights'");
+  expect_error(with_kernel("kernel = 'tant:2'"), 14, "did you mean 'tent'");
+  expect_error(with_kernel("kernel = 'tent'"), 14, "\"tent:2\"");
+  expect_error(with_kernel("kernel = 3"), 14, "\"tent:2\"");
+  expect_error(with_kernel("kernel = 'disk:2x'"), 14, "neither a number nor a numeric parameter");
+  expect_error(with_kernel("kernel = 'disk:nan'"), 14, "neither a number nor a numeric parameter");
+  expect_error(with_kernel("kernel = 'disk:radios'"), 14, "neither a number nor a numeric parameter");
+  expect_error(with_kernel("kernel = 'disk:-1'"), 14, "within 0 .. 64");
+  expect_error(with_kernel("kernel = 'tent:radius'"), 14, "within 0.5 .. 64");
+  expect_error(with_kernel("kernel = 'box:2.5'"), 14, "whole number within 1 .. 129");
+  expect_error(with_kernel("[kernel]\nshape = 'gaussian:65'"), 15, "within 0 .. 64");
+  expect_error(with_kernel("[kernel]\nread = 'nearest'"), 14, "either 'shape' or 'weights'");
+  expect_error(with_kernel("[kernel]\nshape = 'box:3'\nread = 'cubic'"), 16, "expected one of: bilinear, nearest");
+  expect_error(with_kernel("[kernel]\nshape = 'disk:3'\nread = 'nearest'"), 16, "a box, a gaussian, or weights");
+  expect_error(with_kernel("[kernel]\nweigths = [1]"), 15, "did you mean 'weights'");
 }
 
 TEST(DeclaredKernel, ThatDoesNotSumToOne_OrIsNotSymmetric_IsRefused_WithItsLine) {
-  expect_refused("[kernel]\nweights = [0.25, 0.4, 0.25]", 15, "sum to 0.9, not to 1");
-  expect_refused("[kernel]\nweights = [0, 0]", 15, "sum to 0, not to 1");
-  expect_refused("[kernel]\nweights = [1, 2]", 15, "symmetric");
-  expect_refused("[kernel]\nweights = []", 15, "a list of 1 .. 129 numbers");
-  expect_refused("[kernel]\nweights = [0.5,\ninf, 0.5]", 16, "finite");
-  expect_refused("[kernel]\nweights = [1.0, -1.0, 1.0]", 15, "0 or more");
+  expect_error(with_kernel("[kernel]\nweights = [0.25, 0.4, 0.25]"), 15, "sum to 0.9, not to 1");
+  expect_error(with_kernel("[kernel]\nweights = [0, 0]"), 15, "sum to 0, not to 1");
+  expect_error(with_kernel("[kernel]\nweights = [1, 2]"), 15, "symmetric");
+  expect_error(with_kernel("[kernel]\nweights = []"), 15, "a list of 1 .. 129 numbers");
+  expect_error(with_kernel("[kernel]\nweights = [0.5,\ninf, 0.5]"), 16, "finite");
+  expect_error(with_kernel("[kernel]\nweights = [1.0, -1.0, 1.0]"), 15, "0 or more");
   EXPECT_NO_THROW(parse_with("kernel = { weights = [0.3333333, 0.3333334, 0.3333333] }"));
 }
 
 /// Reads filters that a user wrote into a folder.
 class Copies : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  static std::string read(const FilterSpec& spec) {
-    std::ifstream file(spec.path);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
   FilterSpec add(const std::string& text) {
-    std::ofstream(folder_ / "mine.glsl") << text;
     Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-    catalogue.add_user_file(folder_ / "mine.glsl");
+    catalogue.add_user_file(folder_.write("mine.glsl", text));
     return catalogue.find("mine");
   }
 
-  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / ("copies" + std::to_string(getpid()));
+  TestFolder folder_;
   Catalogue built_in_{SHADOWBENCH_SOURCE_DIR "/filters"};
 };
 
@@ -401,7 +363,7 @@ std::string replace(std::string text, const std::string& from, const std::string
 
 TEST_F(Copies, OfAnyBuiltInFilter_HaveItsModel_UnderAnotherTitle_WithOtherCommentsAndBlanks) {
   for (const FilterSpec& spec : built_in_.filters()) {
-    std::string text = replace(read(spec), "title = \"", "title = \"My ");
+    std::string text = replace(read_text(spec.path), "title = \"", "title = \"My ");
     text = replace(text, "+++*/\n", "+++*/\n// My own lines.\n\n");
     text = replace(text, "float visibility(Receiver r) {", "float\t visibility(Receiver r) /* mine */  {") + "\n\n";
     EXPECT_EQ(add(text).copy_of, spec.id);
@@ -410,7 +372,7 @@ TEST_F(Copies, OfAnyBuiltInFilter_HaveItsModel_UnderAnotherTitle_WithOtherCommen
 }
 
 TEST_F(Copies, ThatComputeSomethingElse_AreNone) {
-  const std::string text = read(built_in_.find("poisson"));
+  const std::string text = read_text(built_in_.find("poisson").path);
   EXPECT_EQ(add(text).copy_of, "poisson");
   EXPECT_EQ(add(replace(text, "r.depth", "r.depth_unbiased")).copy_of, "");
   EXPECT_EQ(add(replace(text, "seed = ", "seed = 9")).copy_of, "");

@@ -144,36 +144,5 @@ TEST_P(GoldenOfScene, NoFilterPassesAsAnother) {
 INSTANTIATE_TEST_SUITE_P(BuiltIn, GoldenOfScene, ::testing::ValuesIn(builtin_scenes()),
                          [](const auto& each) { return each.param; });
 
-/// Says whether a filter's image is found not to be one of a stochastic filter's, drawn with another seed.
-bool is_told_apart(const regress::CellFile& expected, const images::Image& actual, double level) {
-  const images::UncertaintyImages& spread = expected.images.begin()->second.uncertainty;
-  const regress::SpreadTest test =
-      regress::test_spread(actual, spread, expected.cells.front().values.numbers.at("cost.fetches"), level);
-  return test.pixels.beyond + test.blocks.beyond > 0;
-}
-
-/// Noise hides small differences: one small picture does not tell every filter from it, but the scenes together do,
-/// unless a kernel is about as wide: the mean of a stochastic filter is that of its disk.
-TEST(GoldenOfAllScenes, NoFilterPassesAsNoise) {
-  const regress::Baseline baseline(kBaseline);
-  const double level = regress::read_tolerances(baseline.tolerance_file()).find("", regress::kLevel).limit;
-  std::map<std::pair<std::string, std::string>, int> told_apart;
-  for (const std::string& scene : builtin_scenes()) {
-    std::map<std::string, regress::CellFile> files;
-    for (const std::string& id : filter_ids()) files.emplace(id, baseline.read_cells(scene, id));
-    for (const auto& [expected, file] : files) {
-      if (file.images.begin()->second.uncertainty.seed_mean.empty()) continue;
-      for (const auto& [actual, other] : files) {
-        const double ratio = find_sigma(actual) / find_sigma(expected);
-        if (actual == expected || (ratio > 0.8 && ratio < 1.25)) continue;
-        told_apart[{actual, expected}] += is_told_apart(file, other.images.begin()->second.visibility, level) ? 1 : 0;
-      }
-    }
-  }
-  EXPECT_FALSE(told_apart.empty());
-  for (const auto& [pair, scenes] : told_apart)
-    EXPECT_GE(scenes, 2) << pair.first << " passes as noise of " << pair.second;
-}
-
 }  // namespace
 }  // namespace shadowbench::test

@@ -15,6 +15,7 @@
 
 #include "base/files.h"
 #include "harness/cli/commands.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 
@@ -29,35 +30,13 @@ struct Outcome {
   std::string err;
 };
 
-inline std::string read_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 /// A folder of its own for each test, removed afterwards; runs the program in it.
 class ProgramTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string(info->test_suite_name()) + "." + info->name();
-    for (char& c : name) c = c == '/' ? '_' : c;
-    folder_ = std::filesystem::temp_directory_path() / ("shadowbench." + name + "." + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-
-  void TearDown() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
+    return folder_.write(name, text);
   }
 
   /// A file of the program's source.
@@ -72,7 +51,7 @@ class ProgramTest : public ::testing::Test {
   }
 
   /// Where the program keeps traced images: a folder of each test's own.
-  std::filesystem::path cache_folder() const { return folder_ / "cache"; }
+  std::filesystem::path cache_folder() const { return folder() / "cache"; }
 
   /// Runs that name no GPUs compile for none, and those that ask for no grids draw none: the one would take long with
   /// an empty cache, the other is half of a small run.
@@ -100,8 +79,8 @@ class ProgramTest : public ::testing::Test {
     return outcome;
   }
 
-  std::string read(const std::string& name) const { return read_text(folder_ / name); }
-  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+  std::string read(const std::string& name) const { return folder_.read(name); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder() / name); }
   json read_json(const std::string& name) const { return json::parse(read(name)); }
   json read_results(const std::string& out = "out") const { return read_json(out + "/results.json"); }
   json read_cells(const std::string& out = "out") const { return read_results(out)["cells"]; }
@@ -122,19 +101,19 @@ class ProgramTest : public ::testing::Test {
 
   /// Expects that the results follow their schema.
   void expect_valid() const {
-    const std::string out = (folder_ / "out").string();
+    const std::string out = (folder() / "out").string();
     const std::string check =
         "/usr/bin/python3 -m jsonschema -i '" + out + "/results.json' '" + out + "/results.schema.json'";
     EXPECT_EQ(std::system(check.c_str()), 0);
   }
 
   Outcome run_process(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = "cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' " +
+    const std::string command = "cd '" + folder().string() + "' && XDG_CACHE_HOME='" + cache_folder().string() + "' " +
                                 environment + " '" SHADOWBENCH_PROGRAM "' " + arguments +
                                 " >stdout.txt 2>stderr.txt </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout.txt"),
-            read_text(folder_ / "stderr.txt")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder() / "stdout.txt"),
+            read_text(folder() / "stderr.txt")};
   }
 
   /// Expects one clear message with all the words, the exit code, and no report.
@@ -145,7 +124,7 @@ class ProgramTest : public ::testing::Test {
     const std::size_t begin = outcome.err.rfind("shadowbench: ");
     ASSERT_NE(begin, std::string::npos) << outcome.err;
     for (const std::string& word : words) EXPECT_NE(outcome.err.find(word, begin), std::string::npos) << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "results.json"));
+    EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "results.json"));
   }
 
   /// Words, the exit code, and what the message holds.
@@ -167,14 +146,14 @@ class ProgramTest : public ::testing::Test {
     static const ScratchFolder kept(
         make_temporary_folder_path(std::filesystem::temp_directory_path() / "shadowbench", "runs"));
     const std::filesystem::path made = kept.path() / std::to_string(std::hash<std::string>()(words));
-    std::filesystem::remove_all(folder_ / out);
+    std::filesystem::remove_all(folder() / out);
     if (!std::filesystem::exists(made)) {
       succeed(words + " --out " + out);
       std::filesystem::create_directories(made);
-      return std::filesystem::copy(folder_ / out, made, std::filesystem::copy_options::recursive);
+      return std::filesystem::copy(folder() / out, made, std::filesystem::copy_options::recursive);
     }
-    std::filesystem::create_directories(folder_ / out);
-    std::filesystem::copy(made, folder_ / out, std::filesystem::copy_options::recursive);
+    std::filesystem::create_directories(folder() / out);
+    std::filesystem::copy(made, folder() / out, std::filesystem::copy_options::recursive);
   }
 
   static std::string user_filter(const std::string& name) {
@@ -184,7 +163,7 @@ class ProgramTest : public ::testing::Test {
  private:
   Outcome run_within(const std::string& arguments) const {
     const std::filesystem::path before = std::filesystem::current_path();
-    std::filesystem::current_path(folder_);
+    std::filesystem::current_path(folder());
     setenv("XDG_CACHE_HOME", cache_folder().c_str(), 1);
     std::vector<std::string> words{SHADOWBENCH_PROGRAM};
     wordexp_t split{};
@@ -201,7 +180,7 @@ class ProgramTest : public ::testing::Test {
     return outcome;
   }
 
-  std::filesystem::path folder_;
+  const TestFolder folder_;
 };
 
 }  // namespace shadowbench::test

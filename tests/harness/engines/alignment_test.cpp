@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "report/images/picture_io.h"
-#include "tests/error_of.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::engines {
 namespace {

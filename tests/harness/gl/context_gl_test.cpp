@@ -8,8 +8,8 @@
 #include "harness/gl/context/context.h"
 #include "harness/gl/objects.h"
 #include "harness/gl/survey.h"
-#include "tests/harness/gl/expect_error.h"
 #include "tests/harness/gl/gl_fixture.h"
+#include "tests/test_files.h"
 
 #ifdef __SANITIZE_ADDRESS__
 /// Mesa unloads its driver with the last GLX context, and no leak could be traced to the driver, nor suppressed, after
@@ -101,7 +101,7 @@ TEST(Context, TwoAlive_TakeTurns) {
 TEST(Context, ABackendThatTheBuildLeavesOut_IsRefusedByName) {
   for (const Backend backend : {Backend::kOsmesa, Backend::kEgl, Backend::kGlfw}) {
     if (has_backend(backend)) continue;
-    const Error error = catch_error([&] { create_context(backend); });
+    const Error error = error_of([&] { create_context(backend); });
     EXPECT_EQ(error.kind(), ErrorKind::kContext);
     EXPECT_THAT(error.message(), HasSubstr(fmt::format("this build has no --gl {}", backend_name(backend))));
   }
@@ -168,7 +168,7 @@ TEST(Context, GlfwWithoutADisplay_IsRefusedWithTheReason) {
   const char* display = std::getenv("DISPLAY");
   const std::string kept = display ? display : "";
   unsetenv("DISPLAY");
-  const Error error = catch_error([] { create_context(Backend::kGlfw); });
+  const Error error = error_of([] { create_context(Backend::kGlfw); });
   EXPECT_EQ(error.kind(), ErrorKind::kContext);
   EXPECT_THAT(error.message(), HasSubstr("glfw: "));
   if (display) setenv("DISPLAY", kept.c_str(), 1);
@@ -177,7 +177,7 @@ TEST(Context, GlfwWithoutADisplay_IsRefusedWithTheReason) {
 /// Mesa would end this process.
 TEST(Context, DriverThatMesaLacks_IsRefusedByName) {
   setenv("GALLIUM_DRIVER", "nosuch", 1);
-  const Error error = catch_error([] { create_context(Backend::kSoftware); });
+  const Error error = error_of([] { create_context(Backend::kSoftware); });
   unsetenv("GALLIUM_DRIVER");
   EXPECT_EQ(error.kind(), ErrorKind::kContext);
   EXPECT_THAT(error.message(), HasSubstr("GALLIUM_DRIVER=nosuch"));

@@ -5,7 +5,7 @@
 
 #include "harness/gl/objects.h"
 #include "harness/gl/survey.h"
-#include "tests/harness/gl/expect_error.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -16,7 +16,7 @@ TEST(Backend, EveryName_ReadsBackAsItself) {
 }
 
 TEST(Backend, UnknownName_IsAUsageErrorThatListsTheOthers) {
-  const Error error = catch_error([] { parse_backend("vulkan"); });
+  const Error error = error_of([] { parse_backend("vulkan"); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
   EXPECT_THAT(error.message(), ::testing::HasSubstr("'vulkan'"));
   EXPECT_THAT(error.message(), ::testing::HasSubstr("osmesa"));
@@ -29,7 +29,7 @@ TEST(PixelFormat, Name_FindsTheFormat) {
 }
 
 TEST(PixelFormat, UnknownName_IsAUsageErrorThatListsTheOthers) {
-  const Error error = catch_error([] { parse_pixel_format("rgb5"); });
+  const Error error = error_of([] { parse_pixel_format("rgb5"); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
   EXPECT_THAT(error.message(), ::testing::HasSubstr("rg32f"));
 }

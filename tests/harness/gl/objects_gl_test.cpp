@@ -9,8 +9,8 @@
 #include "harness/gl/objects.h"
 #include "harness/gl/program.h"
 #include "harness/gl/survey.h"
-#include "tests/harness/gl/expect_error.h"
 #include "tests/harness/gl/gl_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -93,23 +93,23 @@ TEST_F(GlTest, Texture_WrongNumberOfTexels_IsABug) {
 
 TEST_F(GlTest, Texture_AboveTheLimit_IsAUsageErrorWithLimitAndValue) {
   const int limit = context().info().max_texture_size;
-  const Error error = catch_error([&] { Texture("depth map", GL_R8, limit + 1, 1); });
+  const Error error = error_of([&] { Texture("depth map", GL_R8, limit + 1, 1); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
   EXPECT_THAT(error.message(), HasSubstr("depth map"));
   EXPECT_THAT(error.message(), HasSubstr(std::to_string(limit + 1) + "x1"));
   EXPECT_THAT(error.message(), HasSubstr("at most " + std::to_string(limit)));
-  EXPECT_EQ(catch_error([&] { Texture("tall", GL_R8, 1, limit + 1); }).kind(), ErrorKind::kUsage);
+  EXPECT_EQ(error_of([&] { Texture("tall", GL_R8, 1, limit + 1); }).kind(), ErrorKind::kUsage);
   EXPECT_NO_THROW(Texture("at the limit", GL_R8, limit, 1));
 }
 
 TEST_F(GlTest, Texture_OfNoSize_IsAUsageError) {
-  EXPECT_EQ(catch_error([] { Texture("none", GL_R8, 0, 4); }).kind(), ErrorKind::kUsage);
-  EXPECT_EQ(catch_error([] { Texture("none", GL_R8, 4, -1); }).kind(), ErrorKind::kUsage);
+  EXPECT_EQ(error_of([] { Texture("none", GL_R8, 0, 4); }).kind(), ErrorKind::kUsage);
+  EXPECT_EQ(error_of([] { Texture("none", GL_R8, 4, -1); }).kind(), ErrorKind::kUsage);
 }
 
 TEST_F(GlTest, Texture_BeyondMemory_IsAnInputError) {
   const int limit = context().info().max_texture_size;
-  const Error error = catch_error([&] { Texture("huge", GL_RGBA32F, limit, limit); });
+  const Error error = error_of([&] { Texture("huge", GL_RGBA32F, limit, limit); });
   EXPECT_EQ(error.kind(), ErrorKind::kInput);
   EXPECT_THAT(error.message(), HasSubstr("huge"));
   context().take_gl_errors();

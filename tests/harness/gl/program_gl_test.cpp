@@ -7,8 +7,8 @@
 
 #include "harness/gl/objects.h"
 #include "harness/gl/program.h"
-#include "tests/harness/gl/expect_error.h"
 #include "tests/harness/gl/gl_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -50,7 +50,7 @@ std::vector<float> draw(Program& program) {
 }
 
 TEST_F(GlTest, CompileErrorInAFilter_NamesTheUsersLine) {
-  const Error error = catch_error([] { make_filter_program("\nfloat visibility() {\n  return nosuch;\n}\n"); });
+  const Error error = error_of([] { make_filter_program("\nfloat visibility() {\n  return nosuch;\n}\n"); });
   EXPECT_EQ(error.kind(), ErrorKind::kFilter);
   EXPECT_EQ(error.where(), "/home/me/soft.glsl:20");
   EXPECT_THAT(error.message(), HasSubstr("nosuch"));
@@ -58,12 +58,12 @@ TEST_F(GlTest, CompileErrorInAFilter_NamesTheUsersLine) {
 }
 
 TEST_F(GlTest, CompileErrorInOurPartOfTheShader_NamesOurLine) {
-  const Error error = catch_error([] { make_filter_program("#define visibility nosuch\n"); });
+  const Error error = error_of([] { make_filter_program("#define visibility nosuch\n"); });
   EXPECT_EQ(error.where(), "lookup.frag:4");
 }
 
 TEST_F(GlTest, MissingFunction_IsALinkErrorOfTheFilter) {
-  const Error error = catch_error([] { make_filter_program("float unrelated() { return 1.0; }\n"); });
+  const Error error = error_of([] { make_filter_program("float unrelated() { return 1.0; }\n"); });
   EXPECT_EQ(error.kind(), ErrorKind::kFilter);
   EXPECT_THAT(error.message(), HasSubstr("visibility"));
 }
@@ -73,7 +73,7 @@ TEST_F(GlTest, CompileErrorInAShaderOfOurs_IsABug) {
 }
 
 TEST_F(GlTest, CompileError_LeavesNoGlError) {
-  catch_error([] { make_filter_program("x"); });
+  EXPECT_THROW(make_filter_program("x"), Error);
   EXPECT_THAT(context().take_gl_errors(), ::testing::IsEmpty());
 }
 

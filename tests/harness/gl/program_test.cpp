@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/harness/gl/expect_error.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -22,21 +22,14 @@ using ::testing::Not;
 class ShaderSourceTest : public ::testing::Test {
  protected:
   ShaderSourceTest() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) / (std::string("shader_source_") + info->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_ / "lib");
-    options_.roots = {folder_};
+    options_.roots = {folder_.path()};
     options_.main_file = "main.frag";
   }
-  ~ShaderSourceTest() override { std::filesystem::remove_all(folder_); }
 
-  void write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).generic_string(); }
+  void write(const std::string& name, const std::string& text) { folder_.write(name, text); }
+  std::string path(const std::string& name) const { return (folder_.path() / name).generic_string(); }
 
-  std::filesystem::path folder_;
+  TestFolder folder_;
   SourceOptions options_;
 };
 
@@ -85,11 +78,11 @@ TEST_F(ShaderSourceTest, SameFileByTwoNames_IsInsertedOnce) {
 }
 
 TEST_F(ShaderSourceTest, FirstRootThatHasTheFile_Wins) {
-  std::filesystem::create_directories(folder_ / "second");
+  std::filesystem::create_directories(folder_.path() / "second");
   write("second/main.frag", "second\n");
   write("second/other.glsl", "other\n");
   write("main.frag", "first\n#include \"other.glsl\"\n");
-  options_.roots = {folder_, folder_ / "second"};
+  options_.roots = {folder_.path(), folder_.path() / "second"};
   EXPECT_THAT(locate_lines(build_source(options_)),
               ElementsAre(::testing::_, "main.frag:1 first", "other.glsl:1 other"));
 }
@@ -118,7 +111,7 @@ TEST_F(ShaderSourceTest, Circle_IsRefusedWhereItCloses) {
   write("main.frag", "#include \"lib/a.glsl\"\n");
   write("lib/a.glsl", "\n#include \"lib/b.glsl\"\n");
   write("lib/b.glsl", "\n\n#include \"lib/a.glsl\"\n");
-  const Error error = catch_error([&] { build_source(options_); });
+  const Error error = error_of([&] { build_source(options_); });
   EXPECT_EQ(error.kind(), ErrorKind::kInput);
   EXPECT_EQ(error.where(), path("lib/b.glsl") + ":3");
   EXPECT_THAT(error.message(), HasSubstr("includes itself"));
@@ -126,11 +119,11 @@ TEST_F(ShaderSourceTest, Circle_IsRefusedWhereItCloses) {
 
 TEST_F(ShaderSourceTest, WhatAFilterMayNotHold_IsRefusedOnItsLine) {
   write("secret.txt", "SECRET\n");
-  options_.roots = {folder_ / "lib"};
+  options_.roots = {folder_.path() / "lib"};
   write("lib/main.frag", "#include \"filter\"\nvoid main() {}\n");
   const auto expect = [&](const std::string& line, const std::string& words) {
     options_.pieces = {{"filter", "x\n" + line + "\n", "user.glsl", 20}};
-    const Error error = catch_error([&] { build_source(options_); });
+    const Error error = error_of([&] { build_source(options_); });
     EXPECT_EQ(error.kind(), ErrorKind::kFilter) << line;
     EXPECT_EQ(error.where(), "user.glsl:21") << line;
     EXPECT_THAT(error.message(), HasSubstr(words)) << line;
@@ -147,21 +140,21 @@ TEST_F(ShaderSourceTest, WhatAFilterMayNotHold_IsRefusedOnItsLine) {
 }
 
 TEST_F(ShaderSourceTest, MissingMainFile_IsAnInputError) {
-  const Error error = catch_error([&] { build_source(options_); });
+  const Error error = error_of([&] { build_source(options_); });
   EXPECT_EQ(error.kind(), ErrorKind::kInput);
   EXPECT_THAT(error.message(), HasSubstr("main.frag"));
 }
 
 TEST_F(ShaderSourceTest, Folder_IsNoFile) {
   options_.main_file = "lib";
-  EXPECT_THAT(catch_error([&] { build_source(options_); }).message(), HasSubstr("not found"));
+  EXPECT_THAT(error_of([&] { build_source(options_); }).message(), HasSubstr("not found"));
 }
 
 TEST_F(ShaderSourceTest, MalformedInclude_NamesItsLine) {
   for (const std::string bad : {"#include <lib/a.glsl>", "#include", "#include \"", "#include \"\" // x",
                                 "#include \"\"", "#include \"a\" b"}) {
     write("main.frag", "\n" + bad + "\n");
-    const Error error = catch_error([&] { build_source(options_); });
+    const Error error = error_of([&] { build_source(options_); });
     EXPECT_EQ(error.where(), path("main.frag") + ":2") << bad;
     EXPECT_THAT(error.message(), HasSubstr("malformed")) << bad;
   }
@@ -171,7 +164,7 @@ TEST_F(ShaderSourceTest, TextWithTooManyLines_IsRefused) {
   write("main.frag", std::string(kLinesPerFile - 2, '\n'));
   EXPECT_NO_THROW(build_source(options_));
   write("main.frag", std::string(kLinesPerFile, '\n'));
-  EXPECT_EQ(catch_error([&] { build_source(options_); }).where(), path("main.frag"));
+  EXPECT_EQ(error_of([&] { build_source(options_); }).where(), path("main.frag"));
 }
 
 const std::vector<std::string> kFiles = {"(set by the program)", "lookup.frag", "my filter.glsl"};

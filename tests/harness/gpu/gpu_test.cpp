@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::gpu {
 namespace {
@@ -16,24 +16,10 @@ using ::testing::HasSubstr;
 
 const std::filesystem::path kShipped = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "gpus";
 
-std::string read(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// The message of the error that loading `text` ends in.
 std::string load_error(const std::string& text) {
-  const auto file = std::filesystem::temp_directory_path() / ("shadowbench." + std::to_string(getpid()) + ".toml");
-  std::ofstream(file) << text;
-  std::string message = "loaded";
-  try {
-    load_gpu(file);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kInput);
-    message = error.what();
-  }
-  std::filesystem::remove(file);
-  return message;
+  const TestFolder folder;
+  return error_of([&] { load_gpu(folder.write("a.toml", text)); }).what();
 }
 
 std::string replace(std::string text, const std::string& from, const std::string& to) {
@@ -50,8 +36,8 @@ TEST(Gpus, EveryShippedOneNamesASourceForEveryNumber) {
 }
 
 TEST(Gpus, AFileIsRefusedWithItsLine) {
-  const std::string good = read(kShipped / "navi21.toml");
-  EXPECT_EQ(load_error(good), "loaded");
+  const std::string good = read_text(kShipped / "navi21.toml");
+  EXPECT_EQ(load_error(good), "no error");
   EXPECT_THAT(load_error(replace(good, "[simds]", "[simd]")), HasSubstr("unknown key 'simd'"));
   EXPECT_THAT(load_error(replace(good, "value = 2015", "value = 0")), HasSubstr(":9: "));
   EXPECT_THAT(load_error(replace(good, "value = 2015", "")), HasSubstr("value"));

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "harness/render/bias.h"
-#include "tests/error_of.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::options {
 namespace {
@@ -18,23 +18,15 @@ using ::testing::HasSubstr;
 
 class ExperimentFile : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(const std::string& text) const {
-    std::ofstream(folder_ / "e.toml") << text;
-    return folder_ / "e.toml";
-  }
-  Experiment read(const std::string& text) const { return read_experiment(write(text)); }
+  Experiment read(const std::string& text) const { return read_experiment(folder_.write("e.toml", text)); }
   std::string expand(const std::string& text) const {
     static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
     return expand_filters(read(text), catalogue);
   }
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("shadowbench.experiment." + std::to_string(getpid()));
+  TestFolder folder_;
 };
 
 TEST_F(ExperimentFile, KeysAreOptions_ListsAreSeveralValues) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "harness/options/experiment_file.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::options {
 namespace {
@@ -76,8 +77,6 @@ const std::map<std::string, std::vector<std::string>>& list_others() {
 
 class RunOptionsTest : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(file_); }
-
   RunOptions read(const std::vector<RunOption>& all) const {
     RunOptions options;
     options.resources = find_resources();
@@ -87,16 +86,15 @@ class RunOptionsTest : public ::testing::Test {
 
   /// The same options, by way of an experiment file.
   RunOptions write_and_read(const RunOptions& options) const {
-    std::ofstream(file_) << write_experiment(options);
+    const auto file = folder_.write("e.toml", write_experiment(options));
     std::vector<RunOption> all = list_run_options();
-    for (const ExperimentSetting& setting : read_experiment(file_).settings)
+    for (const ExperimentSetting& setting : read_experiment(file).settings)
       tell(*std::ranges::find(all, setting.option, &RunOption::name), setting.values);
     return read(all);
   }
 
  private:
-  std::filesystem::path file_ =
-      std::filesystem::temp_directory_path() / ("shadowbench.options." + std::to_string(getpid()) + ".toml");
+  TestFolder folder_;
 };
 
 TEST_F(RunOptionsTest, WhatIsTold_IsRead_AndWritten_AndReadAgain) {

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "filters/front_matter.h"
-#include "tests/harness/gl/expect_error.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::render {
 namespace {
@@ -73,14 +73,14 @@ TEST(Bias, ReceiverPlane_IsRefusedForFiltersThatDoNotCompareTapByTap) {
   const auto vsm = filters::load_filter(SHADOWBENCH_SOURCE_DIR "/filters/vsm.glsl");
   EXPECT_NO_THROW(require_usable(rule, filters::load_filter(SHADOWBENCH_SOURCE_DIR "/filters/poisson.glsl")));
   EXPECT_NO_THROW(require_usable({}, vsm));
-  const Error error = catch_error([&] { require_usable(rule, vsm); });
+  const Error error = error_of([&] { require_usable(rule, vsm); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
   EXPECT_THAT(error.message(), ::testing::HasSubstr("'vsm'"));
 }
 
 TEST(Bias, Mistakes_AreNamed) {
   const auto expect = [](const std::string& text, const std::string& words) {
-    const Error error = catch_error([&] { parse_bias({text}); });
+    const Error error = error_of([&] { parse_bias({text}); });
     EXPECT_EQ(error.kind(), ErrorKind::kUsage) << text;
     EXPECT_THAT(error.message(), ::testing::HasSubstr(words));
   };

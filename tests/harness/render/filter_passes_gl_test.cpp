@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "filters/front_matter.h"
 #include "filters/kernel.h"
-#include "tests/harness/gl/expect_error.h"
 #include "tests/harness/render/bench_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {
@@ -205,7 +205,7 @@ TEST_P(RefusedPasses, AreNamedWithFileAndLine) {
   const scene::Scene scene = load_builtin("ball");
   Bench bench(shared_context(), scene, 96, 64, 36);
   const Refused& refused = GetParam();
-  const Error error = catch_error([&] { bench.draw(make_request({"", refused.passes, refused.glsl, 0})); });
+  const Error error = error_of([&] { bench.draw(make_request({"", refused.passes, refused.glsl, 0})); });
   EXPECT_EQ(error.kind(), ErrorKind::kFilter);
   EXPECT_EQ(error.where(), refused.where) << error.message();
   EXPECT_THAT(error.message(), ::testing::HasSubstr(refused.words));

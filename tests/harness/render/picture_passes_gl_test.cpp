@@ -12,7 +12,7 @@
 #include "report/images/picture_io.h"
 #include "tests/harness/render/bench_fixture.h"
 #include "tests/harness/render/contract_fixture.h"
-#include "tests/harness/scene/test_files.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {
@@ -83,7 +83,7 @@ TEST(BackProjection, MirrorsConeAndMapThroughTheLamp) {
 
 /// A floor, a box on it and a wall in the plane x = 0.
 scene::Scene load_room(const std::string& light) {
-  const scene::TestFolder folder;
+  const TestFolder folder;
   return scene::load_scene(folder.write("room.toml", "title = \"room\"\n[light]\n" + light + R"(
 [camera]
 position = [3, 2.5, 4]

@@ -13,7 +13,7 @@
 #include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/contract_fixture.h"
-#include "tests/harness/scene/test_files.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {
@@ -93,7 +93,7 @@ scene::Scene load_fence_at(double distance) {
   const auto at = [&](double x, double y, double z) {
     return fmt::format("[{:.12g}, {}, {:.12g}]\n", distance + x, y, distance + z);
   };
-  const scene::TestFolder folder;
+  const TestFolder folder;
   const std::string text =
       "title = \"fence\"\n[camera]\nvertical_fov_deg = 35\nposition = " + at(3.0, 2.5, 4.0) +
       "target = " + at(0.0, 0.5, 0.0) + "[light]\nazimuth_deg = 72\nelevation_deg = 38\n" +

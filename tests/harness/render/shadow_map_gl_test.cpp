@@ -15,8 +15,8 @@
 #include "harness/render/shadow_map.h"
 #include "harness/scene/mesh_tools.h"
 #include "tests/filters/perspective_depth.h"
-#include "tests/harness/gl/expect_error.h"
 #include "tests/harness/render/bench_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {
@@ -295,7 +295,7 @@ TEST(DepthPrecision, EveryFormat_KeepsWhatTheoryAllows) {
 
 TEST(DepthPrecision, FormatOfOtherBits_IsRefused) {
   EXPECT_NO_THROW(render::require_depth_bits(GL_DEPTH_COMPONENT16, 16));
-  const Error error = catch_error([] { render::require_depth_bits(GL_DEPTH_COMPONENT24, 32); });
+  const Error error = error_of([] { render::require_depth_bits(GL_DEPTH_COMPONENT24, 32); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
   EXPECT_NE(std::string(error.what()).find("d24 in 32 bits"), std::string::npos) << error.what();
 }
@@ -407,7 +407,7 @@ TEST(DepthSamplesOfAMap, MoreThanTheGlGives_AreRefusedWithTheLine) {
   if (most >= 16) GTEST_SKIP() << "this GL gives " << most << " samples";
   const scene::Scene scene = load_builtin("ball");
   Bench bench(shared_context(), scene, kSampledSide, 64, 36);
-  const Error error = catch_error([&] { encode(bench, make_sampled(16)); });
+  const Error error = error_of([&] { encode(bench, make_sampled(16)); });
   EXPECT_EQ(error.kind(), ErrorKind::kFilter);
   EXPECT_EQ(error.where(), "sampled.glsl:6");
   EXPECT_EQ(error.message(), fmt::format("samples = 16: this GL gives at most {} samples of depth a texel", most));

@@ -10,8 +10,8 @@
 #include "harness/measure/scene_truth.h"
 #include "report/images/picture_io.h"
 #include "report/records/record_fields.h"
-#include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::run {
 
@@ -60,7 +60,7 @@ class ComparePictures : public ::testing::Test {
   }
 
  private:
-  records::TemporaryFolder folder_{"compare_pictures"};
+  TestFolder folder_;
 };
 
 TEST_F(ComparePictures, Values_AreWhatTheirDefinitionsGive) {

@@ -10,7 +10,7 @@
 
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
-#include "test_files.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -104,13 +104,6 @@ TEST(Completion, WithAFloorUnderAPartAlone_TheCameraStaysOutside) {
   EXPECT_GT(complete(row, {.needs_sun = true}, "x").cameras.at(0).position_ws.y, 6.0f);
 }
 
-TEST(ViewChoice, IsTheSameAgain) {
-  const ViewChoice first = choose_view(make_box_on_floor(), kAllFree),
-                   second = choose_view(make_box_on_floor(), kAllFree);
-  EXPECT_EQ(describe_choice(first, kAllFree), describe_choice(second, kAllFree));
-  EXPECT_EQ(first.edges.at_edge, second.edges.at_edge);
-}
-
 TEST(ViewChoice, LongWallWithBoxesBefore_IsSeenFromAnEnd_UnlessItIsHigh) {
   const auto choose = [](float height_m) {
     std::vector<Mesh> meshes = {make_box({20.0f, height_m, 0.2f}, 1)};
@@ -129,14 +122,6 @@ TEST(Completion, ChosenDirectionsDoNotDependOnTheSizeOfThePicture) {
   EXPECT_EQ(wide.cameras[0].forward_ws, tall.cameras[0].forward_ws);
   EXPECT_NE(wide.cameras[0].position_ws, tall.cameras[0].position_ws);
   EXPECT_EQ(to_light(wide.light, {}), to_light(tall.light, {}));
-}
-
-TEST(Completion, ChoiceIsNoted_WithItsScoreAndTheUsualOne) {
-  const Scene scene = complete(make_wall(), {.needs_sun = true}, "x");
-  EXPECT_THAT(scene.warnings, IsEmpty());
-  EXPECT_THAT(scene.notes,
-              ElementsAre(AllOf(HasSubstr("camera from azimuth "), HasSubstr("; sun from azimuth "),
-                                HasSubstr(" % of the picture's surfaces ("), HasSubstr(" % in the usual view)"))));
 }
 
 TEST(Completion, CameraOfItsOwn_StaysAndOnlyTheSunIsChosen) {
@@ -210,24 +195,6 @@ TEST(Completion, FloorUnderATriangle_ShowsItsShadow) {
   const Scene scene = complete(make_bare({make_triangle()}), {.needs_sun = true, .ground = true}, "x");
   EXPECT_THAT(scene.warnings, IsEmpty());
   EXPECT_THAT(scene.notes, ElementsAre(HasSubstr("edges of shadows")));
-}
-
-TEST(Completion, SceneFileWithoutACamera_KeepsItsLight) {
-  const TestFolder folder;
-  const auto file = folder.write("a.toml", R"(title = "a"
-[light]
-direction = [0.5, -1, 0.5]
-[[object]]
-shape = "plane"
-size = [6, 6]
-[[object]]
-shape = "box"
-center = [0, 0.5, 0]
-size = [1, 1, 1]
-)");
-  const Scene scene = load_scene(file);
-  EXPECT_LT(glm::distance(-to_light(scene.light, {}), glm::normalize(glm::vec3(0.5f, -1.0f, 0.5f))), 1e-6f);
-  EXPECT_THAT(scene.notes, ElementsAre(AllOf(HasSubstr("camera from"), Not(HasSubstr("sun")))));
 }
 
 TEST(Completion, EachOfSeveralLights_HasAViewOfItsOwn_ALampFromNearBy) {

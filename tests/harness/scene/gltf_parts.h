@@ -3,14 +3,25 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/scene.h"
-#include "tests/harness/scene/test_files.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::scene {
+
+/// The bytes of numbers, one after the other.
+template <typename T>
+std::string bytes_of(const std::vector<T>& values) {
+  std::string bytes(values.size() * sizeof(T), '\0');
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
 
 /// A quad in the plane z = 0, facing +z: four positions (48 bytes), then the indices 0 1 2 0 2 3 (12 bytes).
 inline const std::vector<float> kQuad{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
@@ -72,6 +83,24 @@ inline std::string glb_of(GltfParts parts) {
 inline std::string tga_bytes() {
   std::string tga("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\40\50", 18);
   return tga + std::string("\x00\x00\xff\xff\xff\x00\x00\x80", 8);
+}
+
+/// The quad, and nodes with lights, each as its JSON and the rest of its node's.
+inline GltfParts lit_parts(const std::vector<std::pair<std::string, std::string>>& lights) {
+  GltfParts parts;
+  std::string all, nodes = R"({"mesh": 0})", indices = "0";
+  for (const auto& [light, more_of_node] : lights) {
+    nodes += fmt::format(R"(, {{"extensions": {{"KHR_lights_punctual": {{"light": {}}}}}{}}})",
+                         std::count(indices.begin(), indices.end(), ','), more_of_node);
+    all += (all.empty() ? "" : ", ") + light;
+    indices += fmt::format(", {}", std::count(indices.begin(), indices.end(), ',') + 1);
+  }
+  parts.more = fmt::format(
+      R"(, "extensionsUsed": ["KHR_lights_punctual"], "extensions": {{"KHR_lights_punctual": {{"lights": [{}]}}}})",
+      all);
+  parts.nodes = "[" + nodes + "]";
+  parts.scenes = R"([{"nodes": [)" + indices + "]}]";
+  return parts;
 }
 
 inline GltfParts textured_parts(const std::string& image) {

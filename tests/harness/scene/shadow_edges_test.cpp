@@ -8,7 +8,7 @@
 #include "harness/scene/complete.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
-#include "test_files.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::scene {
 namespace {

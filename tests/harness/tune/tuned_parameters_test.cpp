@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "harness/options/options.h"
 #include "harness/tune/tune_filters.h"
-#include "tests/error_of.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::tune {
 namespace {
@@ -14,17 +14,7 @@ using ::testing::HasSubstr;
 
 class TunedParameters : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::temp_directory_path() / ("shadowbench.tuned." + name);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(const std::string& text) const {
-    std::ofstream(folder_ / "tuned.json") << text;
-    return folder_ / "tuned.json";
-  }
+  std::filesystem::path write(const std::string& text) const { return folder_.write("tuned.json", text); }
 
   /// A file with these entries as its filters.
   std::filesystem::path write_filters(const std::string& filters) const {
@@ -44,7 +34,7 @@ class TunedParameters : public ::testing::Test {
     EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr(words), HasSubstr("tuned.json")));
   }
 
-  std::filesystem::path folder_;
+  TestFolder folder_;
   filters::Catalogue catalogue_{options::find_resources().filters};
   std::vector<std::string> notes_;
 };
@@ -108,7 +98,7 @@ TEST_F(TunedParameters, OfAnotherFit_AreTakenWithANote) {
 }
 
 TEST_F(TunedParameters, BadFiles_AreRefusedWithTheField) {
-  expect_refusal(folder_ / "no" / "tuned.json", "cannot be read");
+  expect_refusal(folder_.path() / "no" / "tuned.json", "cannot be read");
   expect_refusal(write(""), "not JSON");
   expect_refusal(write(R"({"schema_version": 2, "met)"), "cut off");
   expect_refusal(write("[]"), "'schema_version' is missing");

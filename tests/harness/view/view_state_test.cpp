@@ -6,8 +6,7 @@
 
 #include <string>
 
-#include "base/error.h"
-#include "base/files.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {
@@ -27,26 +26,18 @@ constexpr const char* kGood =
 class LessonsFile : public ::testing::Test {
  protected:
   std::vector<view::Lesson> read(const std::string& text) const {
-    write_text_file(file_, text);
-    return view::read_lessons(file_);
+    return view::read_lessons(folder_.write("lessons.toml", text));
   }
 
   /// What is said of the good file with a line in place of another.
   std::string refuse(const std::string& old_line, const std::string& line) const {
     std::string text = kGood;
     text.replace(text.find(old_line), old_line.size(), line);
-    try {
-      read(text);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kInput);
-      return error.what();
-    }
-    return "accepted";
+    return error_of([&] { read(text); }).what();
   }
 
  private:
-  ScratchFolder folder_{make_temporary_folder_path(std::filesystem::temp_directory_path(), "lessons")};
-  std::filesystem::path file_ = folder_.path() / "lessons.toml";
+  TestFolder folder_;
 };
 
 TEST_F(LessonsFile, Good_IsReadWhole) {

@@ -3,13 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <functional>
+
+#include "tests/test_files.h"
 
 namespace shadowbench::truth {
 namespace {
@@ -22,18 +23,8 @@ std::optional<Layers> load(TruthCache& cache, const std::string& name) { return 
 
 class Cache : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    folder_ = std::filesystem::temp_directory_path() / ("shadowbench.cache." + name + "." + std::to_string(getpid()));
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   TruthCache open() {
     return {folder_, [this](const std::string& message) { notes_.push_back(message); }};
-  }
-  static std::string read(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
   }
   std::filesystem::path file(const std::string& name) const { return folder_ / (name + ".truth"); }
 
@@ -43,7 +34,8 @@ class Cache : public ::testing::Test {
     return {layer, std::vector<float>(kValues, value)};
   }
 
-  std::filesystem::path folder_;
+  const TestFolder parent_;
+  const std::filesystem::path folder_ = parent_.path() / "cache";
   std::vector<std::string> notes_;
 };
 
@@ -68,9 +60,9 @@ TEST_F(Cache, AnotherContentUnderTheName_IsNotTaken) {
 TEST_F(Cache, OtherValuesUnderTheSameFirstLine_AreNotTaken) {
   TruthCache cache = open();
   cache.store("a", make_layers(0.5f));
-  const std::string first_line = read(file("a")).substr(0, read(file("a")).find('\n'));
+  const std::string first_line = read_text(file("a")).substr(0, read_text(file("a")).find('\n'));
   cache.store("a", make_layers(0.75f));
-  const std::string other = read(file("a"));
+  const std::string other = read_text(file("a"));
   std::ofstream(file("a"), std::ios::binary) << first_line << other.substr(other.find('\n'));
   EXPECT_FALSE(load(cache, "a"));
 }
@@ -234,11 +226,6 @@ AreaLight make_light() { return AreaLight::make_sun({0.0, 1.0, 0.0}, 2.0); }
 
 class Tracer : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("shadowbench.tracer." + std::to_string(getpid()));
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   /// The number of results that were traced, and not found in the cache.
   int count_traced(const Meshes& meshes, const std::function<void(CachedTracer&)>& work, std::uint32_t seed = 1) {
     TruthCache cache(
@@ -248,7 +235,8 @@ class Tracer : public ::testing::Test {
     return cache.traced();
   }
 
-  std::filesystem::path folder_;
+  const TestFolder parent_;
+  const std::filesystem::path folder_ = parent_.path() / "cache";
 };
 
 TEST_F(Tracer, ASecondRun_DoesNotTraceAgain_AndSeesTheSame) {

@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "report/analysis/advice_words.h"
 #include "report/records/records.h"
-#include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::analysis {
 

@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "report/images/picture_io.h"
-#include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::files {
 
@@ -27,7 +27,7 @@ std::string message_of(const std::function<void()>& action) {
 }
 
 TEST(AtomicFile, NotCommitted_LeavesNothing) {
-  const TemporaryFolder folder("atomic_nothing");
+  const TestFolder folder;
   {
     AtomicFile file(folder.path() / "results.json");
     file.write("half");
@@ -38,21 +38,21 @@ TEST(AtomicFile, NotCommitted_LeavesNothing) {
 }
 
 TEST(AtomicFile, NotCommitted_KeepsTheOldFile) {
-  const TemporaryFolder folder("atomic_old");
+  const TestFolder folder;
   write_text_file(folder.path() / "a.txt", "old");
   { AtomicFile(folder.path() / "a.txt").write("new"); }
   EXPECT_EQ(read_text(folder.path() / "a.txt"), "old");
 }
 
 TEST(AtomicFile, Committed_IsWholeAndAlone) {
-  const TemporaryFolder folder("atomic_whole");
+  const TestFolder folder;
   write_text_file(folder.path() / "cells" / "a.json", "text");
   EXPECT_EQ(read_text(folder.path() / "cells" / "a.json"), "text");
   EXPECT_EQ(count_files(folder.path() / "cells"), 1u);
 }
 
 TEST(AtomicFile, TemporaryName_KeepsFolderAndExtension) {
-  const TemporaryFolder folder("atomic_name");
+  const TestFolder folder;
   const PendingFile file(folder.path() / "cubes.grid.png");
   EXPECT_EQ(file.temporary_path().parent_path(), folder.path());
   EXPECT_EQ(file.temporary_path().extension(), ".png");
@@ -61,7 +61,7 @@ TEST(AtomicFile, TemporaryName_KeepsFolderAndExtension) {
 
 /// Whoever made the folder may know the name that is written to first.
 TEST(AtomicFile, LinkOfTheTemporaryName_IsNotWrittenThrough) {
-  const TemporaryFolder folder("atomic_link");
+  const TestFolder folder;
   const std::filesystem::path own = folder.path() / "own.txt", out = folder.path() / "a.png";
   const std::function<void()> writers[] = {[&] { write_text_file(out, "x"); }, [&] { copy_whole_file(__FILE__, out); },
                                            [&] { images::write_grey_png(out, images::Image(2, 2, 1)); }};
@@ -75,7 +75,7 @@ TEST(AtomicFile, LinkOfTheTemporaryName_IsNotWrittenThrough) {
 }
 
 TEST(AtomicFile, FolderThatIsAFile_IsAnOutputErrorWithPathAndReason) {
-  const TemporaryFolder folder("atomic_folder");
+  const TestFolder folder;
   write_text_file(folder.path() / "file", "");
   const std::string message = message_of([&] { write_text_file(folder.path() / "file" / "a.txt", "x"); });
   EXPECT_THAT(message, HasSubstr((folder.path() / "file").string()));
@@ -84,7 +84,7 @@ TEST(AtomicFile, FolderThatIsAFile_IsAnOutputErrorWithPathAndReason) {
 }
 
 TEST(AtomicFile, FolderThatVanishes_IsSaid) {
-  const TemporaryFolder folder("atomic_vanished");
+  const TestFolder folder;
   const std::string message = message_of([&] {
     AtomicFile file(folder.path() / "cells" / "a.json");
     std::filesystem::rename(folder.path() / "cells", folder.path() / "moved");
@@ -96,7 +96,7 @@ TEST(AtomicFile, FolderThatVanishes_IsSaid) {
 }
 
 TEST(AtomicFile, NameThatIsAFolder_IsAnOutputErrorAndLeavesNoTemporary) {
-  const TemporaryFolder folder("atomic_rename");
+  const TestFolder folder;
   std::filesystem::create_directories(folder.path() / "a.txt" / "inside");
   EXPECT_THAT(message_of([&] { write_text_file(folder.path() / "a.txt", "x"); }), HasSubstr("Is a directory"));
   EXPECT_EQ(count_files(folder.path()), 1u);
@@ -104,7 +104,7 @@ TEST(AtomicFile, NameThatIsAFolder_IsAnOutputErrorAndLeavesNoTemporary) {
 
 // A limit on file sizes stands for a full disk.
 TEST(AtomicFile, FullDisk_IsAnOutputErrorAndKeepsTheOldFile) {
-  const TemporaryFolder folder("atomic_full");
+  const TestFolder folder;
   write_text_file(folder.path() / "a.txt", "old");
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);

@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "tests/error_of.h"
 #include "tests/report/records/synthetic.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::files {
 
@@ -32,7 +32,7 @@ std::set<std::string> list_names(const std::filesystem::path& folder) {
 }
 
 TEST(FolderLock, IsOfOneAtATime_AndLeavesItsMark) {
-  const TemporaryFolder folder("lock_one");
+  const TestFolder folder;
   const std::filesystem::path out = folder.path() / "a" / "out";
   {
     const FolderLock lock(out);
@@ -46,13 +46,13 @@ TEST(FolderLock, IsOfOneAtATime_AndLeavesItsMark) {
 }
 
 TEST(FolderLock, OfAKilledProcess_IsFree) {
-  const TemporaryFolder folder("lock_killed");
+  const TestFolder folder;
   write_text_file(folder.path() / ".shadowbench-lock", "1\n");
   EXPECT_EQ(refusal_of(folder.path()), "");
 }
 
 TEST(FolderLock, FolderThatIsGoneOrAnother_IsNoticed) {
-  const TemporaryFolder folder("lock_gone");
+  const TestFolder folder;
   const std::filesystem::path out = folder.path() / "out";
   const FolderLock lock(out);
   std::filesystem::remove_all(out);
@@ -64,7 +64,7 @@ TEST(FolderLock, FolderThatIsGoneOrAnother_IsNoticed) {
 
 /// It would empty the file that the link leads to.
 TEST(FolderLock, LockThatIsALinkOrAPipe_IsRefused) {
-  const TemporaryFolder folder("lock_link");
+  const TestFolder folder;
   const std::filesystem::path own = folder.path() / "own.txt", lock = folder.path() / "out" / ".shadowbench-lock";
   write_text_file(own, "kept");
   std::filesystem::create_directories(lock.parent_path());
@@ -81,7 +81,7 @@ TEST(FolderLock, LockThatIsALinkOrAPipe_IsRefused) {
 }
 
 TEST(FolderLock, LinkAtAnyLevel_IsRefused) {
-  const TemporaryFolder folder("lock_deep_link");
+  const TestFolder folder;
   const std::filesystem::path out = folder.path() / "out", link = out / "a" / "b" / "link";
   { const FolderLock marks(out); }
   std::filesystem::create_directories(link.parent_path());
@@ -96,7 +96,7 @@ TEST(FolderLock, LinkAtAnyLevel_IsRefused) {
 TEST(FolderLock, FolderOfSomebodyElse_IsLeftAsItIs_UnlessItIsTold) {
   for (const char* name : {"results.json", "index.html", "a.shadowbench-tmp-99999999.png", ".worker-99999999/a",
                            "cells/notes.json", "stress/notes.txt", "deep/er/a.txt"}) {
-    const TemporaryFolder folder("lock_foreign");
+    const TestFolder folder;
     write_text_file(folder.path() / name, R"({"schema_version": 1})");
     const std::set<std::string> before = list_names(folder.path());
     EXPECT_THAT(refusal_of(folder.path()), HasSubstr("--force")) << name;
@@ -108,19 +108,19 @@ TEST(FolderLock, FolderOfSomebodyElse_IsLeftAsItIs_UnlessItIsTold) {
 /// Versions of before left no mark.
 TEST(FolderLock, FolderOfThisProgram_IsTakenAgain) {
   for (const char* name : {"results.json", "stress.json", "cells/0123456789abcdef.json", ".shadowbench-folder"}) {
-    const TemporaryFolder folder("lock_own");
+    const TestFolder folder;
     write_text_file(folder.path() / name, R"({"command": ["shadowbench"], "schema_version": 1})");
     write_text_file(folder.path() / "notes.txt", "of the user");
     EXPECT_EQ(refusal_of(folder.path()), "") << name;
   }
-  const TemporaryFolder folder("lock_parent");
+  const TestFolder folder;
   { const FolderLock inner(folder.path() / "out" / "stress"); }
   EXPECT_EQ(refusal_of(folder.path() / "out"), "");
 }
 
 /// Only names of ours are removed, however alike others are.
 TEST(TemporaryFiles, AreRemoved_AndNothingElseIs) {
-  const TemporaryFolder folder("lock_clean");
+  const TestFolder folder;
   const char* others[] = {"a.json",      "a.tmp-12.png", "a.shadowbench-tmp-.png", "a.shadowbench-tmp-12x.png",
                           ".worker-x/a", ".worker-/a",   "cells/b.json",           "deep/er/a.shadowbench-tmp-12.png"};
   const char* ours[] = {"a.shadowbench-tmp-12.png",        "b.grid.shadowbench-tmp-12.json", "c.shadowbench-tmp-12",
@@ -138,7 +138,7 @@ TEST(TemporaryFiles, AreRemoved_AndNothingElseIs) {
 
 /// Machines that share a folder have processes of equal numbers.
 TEST(TemporaryFiles, OfAnotherMachine_AreItsOwn) {
-  const TemporaryFolder folder("lock_host");
+  const TestFolder folder;
   const std::string theirs = "a.shadowbench-tmp-99999999-elsewhere.json";
   write_text_file(folder.path() / theirs, "x");
   write_text_file(folder.path() / ("a.shadowbench-tmp-99999999-" + this_writer().host + ".json"), "x");
@@ -151,7 +151,7 @@ TEST(TemporaryFiles, OfAnotherMachine_AreItsOwn) {
 }
 
 TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
-  const TemporaryFolder folder("lock_own");
+  const TestFolder folder;
   { PendingFile(folder.path() / "x.png"); }
   for (const char* name : {"x.png", "x", "x.y.exr"}) write_text_file(make_temporary_path(folder.path() / name), "x");
   std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "worker"));

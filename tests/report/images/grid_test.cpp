@@ -378,7 +378,7 @@ TEST(Sheet, Crops_AreMagnifiedToWholeTexelsOfAScreen) {
 }
 
 TEST(Sheet, InInches_IsAnSvgWithTextOfEightPoints) {
-  const TemporaryFolder folder("sheet_svg");
+  const TestFolder folder;
   Sheet sheet = make_sheet(3, "a<b&c");
   write_sheet(folder.path() / "a.svg", sheet, {3.3, true});
   const std::string svg = read_text(folder.path() / "a.svg");

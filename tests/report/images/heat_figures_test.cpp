@@ -138,7 +138,7 @@ long count_pixels(const Image& picture, IsColor is_color) {
 }
 
 TEST(DifferencePicture, ShowsBothSigns_WhatIsNotFinite_AndFlip) {
-  const records::TemporaryFolder folder("difference_picture");
+  const TestFolder folder;
   Image difference(64, 32, 1);
   for (int x = 0; x < 64; ++x)
     for (int y = 0; y < 32; ++y) difference.at(x, y)[0] = x < 16 ? 0.1f : x < 24 ? -0.1f : 0.0f;

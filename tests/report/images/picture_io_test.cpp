@@ -57,7 +57,7 @@ TEST(PictureIo, DecodingSrgb_UndoesEncodingIt) {
 }
 
 TEST(PictureIo, PicturePng_IsEncodedForADisplay) {
-  const TemporaryFolder folder("png_picture");
+  const TestFolder folder;
   Image picture(2, 1, 3);
   picture.texels = {0.0f, 0.5f, 1.0f, -1.0f, 2.0f, 0.2158605f};
   write_picture_png(folder.path() / "a.png", picture);
@@ -73,7 +73,7 @@ TEST(PictureIo, PicturePng_IsEncodedForADisplay) {
 }
 
 TEST(PictureIo, GreyPng_IsLinearInTheValue) {
-  const TemporaryFolder folder("png_grey");
+  const TestFolder folder;
   Image image(4, 1, 1);
   image.texels = {0.0f, 0.5f, 1.0f, 2.0f};
   write_grey_png(folder.path() / "a.png", image);
@@ -84,7 +84,7 @@ TEST(PictureIo, GreyPng_IsLinearInTheValue) {
 }
 
 TEST(PictureIo, Png_KeepsEveryCode) {
-  const TemporaryFolder folder("png_codes");
+  const TestFolder folder;
   for (const int channels : {1, 3}) {
     Image image(257, 129, channels);  // more than one block of deflate
     for (std::size_t i = 0; i < image.texels.size(); ++i)
@@ -101,7 +101,7 @@ TEST(PictureIo, Png_KeepsEveryCode) {
 }
 
 TEST(PictureIo, TexelThatIsNotFinite_IsMagenta) {
-  const TemporaryFolder folder("png_nan");
+  const TestFolder folder;
   Image image(2, 1, 1);
   image.texels = {0.25f, std::numeric_limits<float>::quiet_NaN()};
   write_grey_png(folder.path() / "a.png", image);
@@ -114,7 +114,7 @@ TEST(PictureIo, TexelThatIsNotFinite_IsMagenta) {
 }
 
 TEST(PictureIo, Exr_ComesBackBitForBit) {
-  const TemporaryFolder folder("exr_bits");
+  const TestFolder folder;
   Image special = make_noise(7, 5, 1);
   special.texels[3] = std::numeric_limits<float>::infinity();
   special.texels[4] = std::numeric_limits<float>::denorm_min();
@@ -141,7 +141,7 @@ TEST(PictureIo, Exr_ComesBackBitForBit) {
 }
 
 TEST(PictureIo, ExrParts_MayDifferInSize) {
-  const TemporaryFolder folder("exr_sizes");
+  const TestFolder folder;
   const std::vector<Part> parts = {{"visibility", {"visibility"}, make_noise(8, 4, 1)},
                                    {"depth", {"Z"}, make_noise(32, 32, 1)}};
   write_exr(folder.path() / "a.exr", parts, {});
@@ -155,7 +155,7 @@ TEST(PictureIo, ExrParts_MayDifferInSize) {
 }
 
 TEST(PictureIo, RoundingToHalf_GivesWhatAHalfPartKeeps) {
-  const TemporaryFolder folder("exr_round");
+  const TestFolder folder;
   Image image = make_noise(31, 17, 3);
   image.texels[0] = 1e-7f;                  // below the smallest normal half
   image.texels[1] = 1e6f;                   // above the largest
@@ -168,7 +168,7 @@ TEST(PictureIo, RoundingToHalf_GivesWhatAHalfPartKeeps) {
 }
 
 TEST(PictureIo, PartsOfOneName_AreAnOutputError) {
-  const TemporaryFolder folder("exr_names");
+  const TestFolder folder;
   const Part part{"a", {"Y"}, make_noise(2, 2, 1)};
   EXPECT_THAT(
       [&] {
@@ -184,7 +184,7 @@ TEST(PictureIo, PartsOfOneName_AreAnOutputError) {
 }
 
 TEST(PictureIo, DamagedFile_IsAnInputError) {
-  const TemporaryFolder folder("exr_damaged");
+  const TestFolder folder;
   write_text_file(folder.path() / "a.exr", "not an image");
   for (const char* name : {"a.exr", "missing.exr"}) {
     try {
@@ -199,7 +199,7 @@ TEST(PictureIo, DamagedFile_IsAnInputError) {
 
 // A limit on file sizes stands for a full disk, which the image libraries overlook.
 TEST(PictureIo, FullDisk_IsAnOutputErrorAndLeavesNothing) {
-  const TemporaryFolder folder("picture_full");
+  const TestFolder folder;
   const Image grey = make_noise(64, 64, 1), colour = make_noise(64, 64, 3);
   const std::vector<std::function<void()>> actions = {
       [&] { write_grey_png(folder.path() / "a.png", grey); },

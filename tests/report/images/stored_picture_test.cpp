@@ -28,7 +28,7 @@ Image make_grey(float value) {
 /// A folder with the file "a.exr" of two parts.
 class StoredPictureTest : public ::testing::Test {
  protected:
-  TemporaryFolder folder_{"stored_picture"};
+  TestFolder folder_;
 
   void SetUp() override {
     write_exr(folder_.path() / "a.exr",

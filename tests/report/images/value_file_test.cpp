@@ -54,14 +54,14 @@ std::vector<double> decode(const nlohmann::json& file, const nlohmann::json& pla
 }
 
 nlohmann::json write_and_parse(const Image& plane) {
-  const records::TemporaryFolder folder("value_file_planes");
+  const TestFolder folder;
   write_value_file(folder.path() / "a.js", "a", {{"p", plane}});
-  const std::string text = records::read_text(folder.path() / "a.js");
+  const std::string text = read_text(folder.path() / "a.js");
   return nlohmann::json::parse(text.substr(23, text.size() - 26));
 }
 
 TEST(ValueFile, ComesBackWithinHalfAStep) {
-  const records::TemporaryFolder folder("value_file");
+  const TestFolder folder;
   Image visibility(5, 3, 1), error(5, 3, 1);
   for (std::size_t i = 0; i < 15; ++i) {
     visibility.texels[i] = static_cast<float>(i * i % 15) / 14.0f;
@@ -70,7 +70,7 @@ TEST(ValueFile, ComesBackWithinHalfAStep) {
   visibility.texels[7] = std::numeric_limits<float>::quiet_NaN();
   error.texels[8] = std::numeric_limits<float>::infinity();
   write_value_file(folder.path() / "a.js", "a \"b\".js", {{"visibility", visibility}, {"error", error}});
-  const std::string text = records::read_text(folder.path() / "a.js");
+  const std::string text = read_text(folder.path() / "a.js");
   const std::string start = "shadowbenchValues(\"a \\\"b\\\".js\", ";
   ASSERT_EQ(text.substr(0, start.size()), start);
   ASSERT_EQ(text.substr(text.size() - 3), ");\n");

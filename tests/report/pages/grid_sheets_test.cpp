@@ -17,8 +17,6 @@ constexpr int kWidth = 200, kHeight = 120;
 /// A report folder of one view, whose filters blur an edge by as many pixels as their numbers say.
 class GridFolder {
  public:
-  explicit GridFolder(const std::string& name) : folder_(name) {}
-
   const std::filesystem::path& path() const { return folder_.path(); }
   std::vector<CellRecord> cells;
 
@@ -57,7 +55,7 @@ class GridFolder {
   }
 
  private:
-  records::TemporaryFolder folder_;
+  TestFolder folder_;
   std::vector<images::Part> parts_;
 };
 
@@ -68,7 +66,7 @@ std::vector<std::string> list_names(const images::Sheet& sheet) {
 }
 
 TEST(GridSheets, FiltersStandByTheirErrors_WithBarsOfOneScale_SuspectsBehind) {
-  GridFolder folder("grid_order");
+  GridFolder folder;
   folder.add("none", 0.1f, 0.08);
   folder.add("pcss", 4.0f, 0.02);
   folder.add("broken", 30.0f, 0.001);
@@ -90,7 +88,7 @@ TEST(GridSheets, FiltersStandByTheirErrors_WithBarsOfOneScale_SuspectsBehind) {
 }
 
 TEST(GridSheets, TheCrop_IsWhereFiltersDiffer_AndIsCutFromThePictures) {
-  GridFolder folder("grid_crop");
+  GridFolder folder;
   folder.add("none", 0.1f, 0.08);
   folder.add("vsm", 12.0f, 0.04);
   folder.write();
@@ -106,7 +104,7 @@ TEST(GridSheets, TheCrop_IsWhereFiltersDiffer_AndIsCutFromThePictures) {
 }
 
 TEST(GridSheets, ThePicks_HaveTheirRoles_AndASingleFilterHasNone) {
-  GridFolder folder("grid_roles");
+  GridFolder folder;
   folder.add("none", 0.1f, 0.08);
   folder.write();
   EXPECT_EQ(folder.make().front().filters[0].role, "");
@@ -118,7 +116,7 @@ TEST(GridSheets, ThePicks_HaveTheirRoles_AndASingleFilterHasNone) {
 }
 
 TEST(GridSheets, WithoutTruthOrCost_SaysWhy) {
-  GridFolder folder("grid_untrue");
+  GridFolder folder;
   folder.add("none", 0.1f, std::nullopt);
   folder.cells.back().time_ms = {};
   folder.write(false);
@@ -132,7 +130,7 @@ TEST(GridSheets, WithoutTruthOrCost_SaysWhy) {
 }
 
 TEST(GridSheets, ThirtyOneFilters_TakeFourSheets_WithOneCropAndScale) {
-  GridFolder folder("grid_many");
+  GridFolder folder;
   for (int i = 0; i < 31; ++i)
     folder.add("filter_whose_name_has_sixty_letters_or_nearly_as_many_as_" + std::to_string(i),
                1.0f + static_cast<float>(i), 0.01 * (i + 1));
@@ -150,7 +148,7 @@ TEST(GridSheets, ThirtyOneFilters_TakeFourSheets_WithOneCropAndScale) {
 }
 
 TEST(GridSheets, ImagesThatCannotBeRead_AreSaid_AndWithoutAnyThereIsNoGrid) {
-  GridFolder folder("grid_gone");
+  GridFolder folder;
   folder.add("none", 0.1f, 0.08);
   folder.add("vsm", 4.0f, 0.02);
   folder.write();

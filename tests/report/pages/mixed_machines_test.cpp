@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 std::string write_and_read(const std::vector<CellRecord>& cells, const RunRecord& run, const std::string& file) {
-  const TemporaryFolder folder("mixed_machines");
+  const TestFolder folder;
   std::vector<std::string> keys;
   for (const CellRecord& cell : cells) {
     write_cell(folder.path(), cell);

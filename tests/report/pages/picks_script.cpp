@@ -59,7 +59,7 @@ nlohmann::json ask(const nlohmann::json& data, const std::vector<records::CellRe
 
 TEST(PicksScript, AgreesWithTheProgram_InMadeUpRuns) {
   if (std::system("node --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "node is not installed";
-  const records::TemporaryFolder folder("picks_script");
+  const TestFolder folder;
   std::mt19937 random(57);
   std::ofstream file(folder.path() / "runs.json");
   for (int i = 0; i < kRuns; ++i) {

@@ -215,7 +215,7 @@ TEST(RunPage, SceneWithSeveralMapsAndFits_IsNamedWithEach) {
 }
 
 TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
-  const TemporaryFolder folder("html_links");
+  const TestFolder folder;
   std::vector<std::string> keys;
   for (const std::string scene : {"cubes", "we ird#%<scene>?"}) {
     const records::CellRecord cell = make_illustrated_cell(scene, "vsm");
@@ -279,7 +279,7 @@ TEST(RunPage, LargeRun_LeavesTablesOfScenesToTheCsvFiles_AndKeepsPictures) {
 }
 
 TEST(Report, OfNoCell_IsWritten) {
-  const TemporaryFolder folder("report_empty");
+  const TestFolder folder;
   write_report(folder.path(), make_run(), std::vector<std::string>{});
   for (const char* name : {"results.json", "results.schema.json", "timings.csv", "summary.md", "index.html"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;

@@ -34,7 +34,7 @@ nlohmann::json read_charts(const std::string& page) {
   return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
-std::string write_and_read(const TemporaryFolder& folder, const std::vector<records::CellRecord>& cells,
+std::string write_and_read(const TestFolder& folder, const std::vector<records::CellRecord>& cells,
                            const std::string& file) {
   std::vector<std::string> keys;
   for (const records::CellRecord& cell : cells) {
@@ -164,7 +164,7 @@ TEST(TradeSection, HostileTexts_EndNoElement) {
 }
 
 TEST(TradeSection, Report_HasItBeforeTheEvidence) {
-  const TemporaryFolder folder("trade_report");
+  const TestFolder folder;
   const std::string page = write_and_read(folder, make_crossing_cells("cubes"), "index.html");
   EXPECT_THAT(page, HasSubstr("<h2>The trade</h2>"));
   EXPECT_LT(page.find("id=\"trade\""), page.find("id=\"evidence\""));
@@ -173,7 +173,7 @@ TEST(TradeSection, Report_HasItBeforeTheEvidence) {
 }
 
 TEST(TradeSection, OfAFewCells_IsNotThere) {
-  const TemporaryFolder folder("trade_small");
+  const TestFolder folder;
   const std::string page =
       write_and_read(folder, {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");
   EXPECT_THAT(page, Not(HasSubstr("id=\"charts\"")));

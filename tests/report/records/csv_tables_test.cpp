@@ -124,24 +124,6 @@ TEST(AccuracyCsv, HoldsTheErrors_AndEmptyFieldsWhereThereAreNone) {
   EXPECT_EQ(rows[1][column("max")], "");
 }
 
-TEST(AccuracyCsv, HoldsArtefactsAndAttribution) {
-  CellRecord cell = make_attributed_cell("vsm", 0.5, {0.125, 0.75, -0.25, 0.375});
-  cell.artefact.acne = 0.1;
-  cell.artefact.leak = 0.2;
-  cell.artefact.contact_gap = 0.3;
-  cell.artefact.noise = 0.4;
-  const auto rows = parse_csv(make_csv(CsvTable::kAccuracy, make_run(), {cell}));
-  EXPECT_EQ(field(rows, 1, "kernel_rmse"), "0.25");
-  EXPECT_EQ(field(rows, 1, "acne"), "0.1");
-  EXPECT_EQ(field(rows, 1, "leak"), "0.2");
-  EXPECT_EQ(field(rows, 1, "contact_gap"), "0.3");
-  EXPECT_EQ(field(rows, 1, "noise"), "0.4");
-  EXPECT_EQ(field(rows, 1, "numeric_rms"), "0.0625");
-  EXPECT_EQ(field(rows, 1, "estimator_share"), "0.75");
-  EXPECT_EQ(field(rows, 1, "discretisation_share"), "-0.25");
-  EXPECT_EQ(field(rows, 1, "model_rms"), "0.1875");
-}
-
 // The column of a record's field: "error.rmse" is rmse, "truth.se" is truth_se, "attribution.model.rms" is model_rms.
 std::string column_of(std::string path) {
   for (const char* group : {"error.", "coverage.", "artefact.", "attribution.", "stability."})

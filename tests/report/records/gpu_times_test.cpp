@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "tests/error_of.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::records {
 namespace {

@@ -14,7 +14,7 @@
 #include "reference/metrics/metric_table.h"
 #include "report/records/json_values.h"
 #include "synthetic.h"
-#include "tests/error_of.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::records {
 namespace {
@@ -225,14 +225,14 @@ TEST(JsonIo, WhatWasMeasuredAfterReadingAgain_IsNoLongerAbsent) {
 }
 
 TEST(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
-  const TemporaryFolder folder("json_utf8");
+  const TestFolder folder;
   CellRecord cell = make_cell("bad\xff", "vsm", 4.0);
   write_cell(folder.path(), cell);
   EXPECT_EQ(read_cell(folder.path(), cell.key).scene, "bad\xEF\xBF\xBD");
 }
 
 TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
-  const TemporaryFolder folder("json_valid");
+  const TestFolder folder;
   RunRecord run = make_run();
   run.warnings = {"a \"warning\""};
   run.machine.load_at_start = std::nullopt;
@@ -245,7 +245,7 @@ TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
 }
 
 TEST(JsonIo, CellFile_IsValidAgainstItsPartOfTheSchema) {
-  const TemporaryFolder folder("json_cell");
+  const TestFolder folder;
   const CellRecord cell = make_cell("cubes", "vsm", 4.5);
   write_cell(folder.path(), cell);
   json schema = json::parse(results_schema());
@@ -256,7 +256,7 @@ TEST(JsonIo, CellFile_IsValidAgainstItsPartOfTheSchema) {
 
 // One broken results.json per line: each must be refused by the schema.
 TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
-  const TemporaryFolder folder("json_broken");
+  const TestFolder folder;
   write_results(folder.path(), make_run(), {make_cell("cubes", "vsm", 4.5)});
   const json good = json::parse(read_text(folder.path() / "results.json"));
   const std::vector<json> patches = {
@@ -297,7 +297,7 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
 }
 
 TEST(JsonIo, Results_HoldTheCellsInTheGivenOrder) {
-  const TemporaryFolder folder("json_order");
+  const TestFolder folder;
   write_results(folder.path(), make_run(), {make_cell("cubes", "vsm", 5.0), make_cell("cubes", "none", 4.0)});
   const Results results = read_results(folder.path() / "results.json");
   ASSERT_EQ(results.cells.size(), 2u);
@@ -307,7 +307,7 @@ TEST(JsonIo, Results_HoldTheCellsInTheGivenOrder) {
 }
 
 TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {
-  const TemporaryFolder folder("json_cut");
+  const TestFolder folder;
   const CellRecord cell = make_cell("cubes", "vsm", 4.5);
   write_cell(folder.path(), cell);
   const std::string whole = read_text(cell_path(folder.path(), cell.key));
@@ -319,7 +319,7 @@ TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {
 }
 
 TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
-  const TemporaryFolder folder("json_version");
+  const TestFolder folder;
   write_text_file(folder.path() / "results.json", R"({"schema_version": 99})");
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
               HasSubstr(fmt::format("schema_version is 99, and this program reads {}", kSchemaVersion)));
@@ -328,7 +328,7 @@ TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
 }
 
 TEST(JsonIo, CellsThatAreNone_AreRefused_OnceTheFileIsKnownToBeWhole) {
-  const TemporaryFolder folder("json_no_cells");
+  const TestFolder folder;
   const std::filesystem::path file = folder.path() / "results.json";
   write_results(folder.path(), make_run(), {make_cell("cubes", "vsm", 4.5)});
   const json good = json::parse(read_text(file));
@@ -349,7 +349,7 @@ TEST(JsonIo, CellsThatAreNone_AreRefused_OnceTheFileIsKnownToBeWhole) {
 }
 
 TEST(JsonIo, CellThatStandsTwice_IsRefused) {
-  const TemporaryFolder folder("json_twice");
+  const TestFolder folder;
   const CellRecord cell = make_cell("cubes", "vsm", 4.5);
   write_results(folder.path(), make_run(), {cell, make_cell("cubes", "esm", 4.5), cell});
   EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr(cell.key));
@@ -382,7 +382,7 @@ TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
 }
 
 TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
-  const TemporaryFolder folder("json_deep");
+  const TestFolder folder;
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
   write_text_file(folder.path() / "results.json",
                   fmt::format(R"({{"schema_version": {}, "commit": {}}})", kSchemaVersion, deep));

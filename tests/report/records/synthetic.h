@@ -15,25 +15,9 @@
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 #include "report/records/records.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::records {
-
-/// A folder of its own for one test, removed at the end.
-class TemporaryFolder : public ScratchFolder {
- public:
-  explicit TemporaryFolder(const std::string& name)
-      : ScratchFolder(std::filesystem::path(::testing::TempDir()) /
-                      ("shadowbench_" + name + "_" + std::to_string(getpid()))) {
-    std::filesystem::remove_all(path());
-    std::filesystem::create_directories(path());
-  }
-};
-
-inline std::string read_text(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 /// A slanted shadow edge of the given softness, in pixels.
 inline images::Image make_visibility(int width, int height, float softness) {

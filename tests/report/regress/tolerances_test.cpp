@@ -7,30 +7,24 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "tests/error_of.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::regress {
 namespace {
 
 class ToleranceFile : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(file_); }
-
-  Tolerances read(const std::string& text) const {
-    std::ofstream(file_) << text;
-    return read_tolerances(file_);
-  }
+  Tolerances read(const std::string& text) const { return read_tolerances(folder_.write("tolerances.toml", text)); }
 
   /// Expects one message that names the line and holds the words.
   void expect_refusal(const std::string& text, int line, const std::string& words) const {
     const Error error = error_of([&] { read(text); });
     EXPECT_EQ(error.kind(), ErrorKind::kInput) << text;
-    EXPECT_EQ(error.where(), file_.string() + ":" + std::to_string(line));
+    EXPECT_EQ(error.where(), (folder_.path() / "tolerances.toml").string() + ":" + std::to_string(line));
     EXPECT_THAT(error.message(), ::testing::HasSubstr(words));
   }
 
-  std::filesystem::path file_ =
-      std::filesystem::temp_directory_path() / ("shadowbench.tolerances." + std::to_string(getpid()) + ".toml");
+  TestFolder folder_;
 };
 
 TEST_F(ToleranceFile, WhatIsWritten_IsReadBack) {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "tests/harness/scene/test_files.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::scene {
 namespace {

@@ -10,7 +10,7 @@
 #include "harness/scene/lights/light_kinds.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
-#include "tests/harness/scene/test_files.h"
+#include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {
 namespace {
