@@ -81,6 +81,17 @@ bool reads_nearest(const ParamValues& values) {
   return combines_logs(values) || text_or(values, "sample", "linear") == "nearest";
 }
 
+std::vector<ScreenSpec> list_screens(const FilterSpec& spec, const ParamValues& values) {
+  std::vector<ScreenSpec> screens = spec.screens;
+  if (spec.find_param("screen"))
+    std::erase_if(screens, [&](const ScreenSpec& each) { return each.name != text_or(values, "screen", ""); });
+  return screens;
+}
+
+int reach_pixels(const ScreenSpec& screen, const ParamValues& values) {
+  return static_cast<int>(number_or_param(screen.reach, values));
+}
+
 int depth_samples(const ParamValues& values) {
   return values.contains("samples") ? static_cast<int>(number(values, "samples")) : 1;
 }

@@ -69,6 +69,19 @@ struct PassSpec {
   bool operator==(const PassSpec&) const = default;
 };
 
+/// A pass over the picture that the lookup drew: the GLSL function of its name makes each pixel of its neighbours.
+struct ScreenSpec {
+  std::string name;
+  std::variant<double, std::string> reach = 0.0;  ///< pixels, along either axis: a number or a parameter's name
+  int steps = 1;                                  ///< how often it is drawn
+  int line = 1;                                   ///< of the filter's file
+
+  bool operator==(const ScreenSpec&) const = default;
+};
+
+/// The farthest that a screen pass may read, pixels.
+inline constexpr int kMaxScreenReach = 64;
+
 enum class KernelShape { kTent, kBox, kDisk, kGaussian, kWeights };
 
 /// A kernel that the front matter declares; make_kernel() makes it.
@@ -95,6 +108,7 @@ struct FilterSpec {
   std::vector<ParamSpec> params;  ///< the lists `store`, `combine`, `sample`, `samples` included
   std::vector<DiskTable> disks;
   std::vector<PassSpec> passes;          ///< in the order in which they run
+  std::vector<ScreenSpec> screens;       ///< likewise; see list_screens()
   std::optional<DeclaredKernel> kernel;  ///< none: only a scalar model knows it
   std::string copy_of;                   ///< a user's file: the built-in filter that it copies; empty: none
   std::string front_matter;              ///< as it is written
@@ -156,6 +170,13 @@ bool combines_logs(const ParamValues& values);
 
 /// Whether fetches of the encoded map read its nearest texel, and not the four around a point.
 bool reads_nearest(const ParamValues& values);
+
+/// The screen passes that these values ask for: all, or where a text parameter is called `screen` the one that it
+/// names.
+std::vector<ScreenSpec> list_screens(const FilterSpec& spec, const ParamValues& values);
+
+/// How far a screen pass says that it reads, pixels.
+int reach_pixels(const ScreenSpec& screen, const ParamValues& values);
 
 /// The samples of depth a texel that encode() is asked for, and whose mean is stored: 1, or what `samples` says.
 int depth_samples(const ParamValues& values);

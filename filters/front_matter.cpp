@@ -24,6 +24,7 @@ constexpr std::string_view kOpen = "/*+++";
 constexpr std::string_view kClose = "+++*/";
 constexpr double kMostDiskPoints = 4096.0;
 constexpr std::size_t kMostPasses = 6;  // as many texture units are free
+constexpr int kMostScreenSteps = 8;
 
 int count_lines(std::string_view text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 
@@ -297,9 +298,37 @@ void read_passes(const TomlTable& root, std::string_view code, std::vector<std::
     throw root.error("pass", fmt::format("{} passes are declared; {} are the most", spec.passes.size(), kMostPasses));
 }
 
+/// Reads the tables `[screen.NAME]`, as read_passes().
+void read_screens(const TomlTable& root, std::string_view code, std::vector<std::string> taken, FilterSpec& spec) {
+  const ParamSpec* chosen = spec.find_param("screen");
+  taken.insert(taken.end(), {"encode", "visibility"});
+  for (const PassSpec& pass : spec.passes) taken.push_back(pass.name);
+  for (const TomlTable& table : read_named_tables(root, "screen", taken)) {
+    table.require_known_keys(front_matter_keys().at("screen"));
+    ScreenSpec screen{.name = table.key(), .line = table.line()};
+    screen.reach = read_number_or_param(table, spec, "reach", 0.0);
+    const auto* name = std::get_if<std::string>(&screen.reach);
+    const ParamSpec* param = name ? spec.find_param(*name) : nullptr;
+    const Ends ends = param ? ends_of(*param) : Ends{0.0, std::get<double>(screen.reach)};
+    if (ends.smallest < 0.0 || ends.largest > kMaxScreenReach || std::floor(ends.largest) != ends.largest ||
+        (param && !param->integer))
+      throw table.error("reach", fmt::format("'reach' must be a whole number of pixels within 0 .. {}, or a "
+                                             "whole-numbered parameter within them",
+                                             kMaxScreenReach));
+    screen.steps = table.integer("steps", {1, kMostScreenSteps}, 1);
+    if (!has_function(code, "vec2", screen.name))
+      throw table.error(fmt::format("the GLSL lacks 'vec2 {}(ScreenInput s)', which this pass draws", screen.name));
+    if (chosen && std::ranges::find(chosen->choices, ParamValue(screen.name)) == chosen->choices.end())
+      throw table.error(
+          fmt::format("the parameter 'screen' has no choice '{}', so that this pass is never drawn", screen.name));
+    spec.screens.push_back(screen);
+  }
+}
+
 void inspect_body(const TomlTable& root, const std::vector<std::string>& names, FilterSpec& spec) {
   const std::string code = strip_comments(spec.body);
   read_passes(root, code, names, spec);
+  read_screens(root, code, names, spec);
   spec.has_encode = has_function(code, "vec4", "encode");
   for (const char* sampler : {"map_depth", "map_compare", "map_compare_nearest", "map_stored"})
     spec.uses_samplers = spec.uses_samplers || has_word(code, sampler);
@@ -324,12 +353,13 @@ void inspect_body(const TomlTable& root, const std::vector<std::string>& names, 
 
 const std::map<std::string, std::vector<std::string>>& front_matter_keys() {
   static const std::map<std::string, std::vector<std::string>> keys = {
-      {"",
-       {"title", "source", "kind", "store", "combine", "sample", "samples", "claims", "radius_texels", "bias_texels",
-        "teaching", "moments", "exponent", "variance_floor", "bound_at_zero", "param", "disk", "kernel", "pass"}},
+      {"", {"title",         "source",        "kind",        "store",    "combine", "sample",   "samples",
+            "claims",        "radius_texels", "bias_texels", "teaching", "moments", "exponent", "variance_floor",
+            "bound_at_zero", "param",         "disk",        "kernel",   "pass",    "screen"}},
       {"param", {"default", "min", "max", "choices", "unit", "text", "const"}},
       {"disk", {"count", "seed", "pattern"}},
       {"pass", {"store", "steps", "size", "anisotropy"}},
+      {"screen", {"reach", "steps"}},
       {"kernel", {"shape", "weights", "read"}}};
   return keys;
 }

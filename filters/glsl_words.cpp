@@ -26,7 +26,7 @@ constexpr std::string_view kMapNames =
     "compare_nearest compare_2x2 fetch_depth gather_compare gather_depth nearest_depth corner_depth fetch_map "
     "load_depth "
     "load_map texel_fraction texels_per_pixel random_turn interleaved_gradient_turn blue_noise_turn map_depth "
-    "map_compare map_compare_nearest map_stored map_texel_uv";
+    "map_compare map_compare_nearest map_stored map_texel_uv load_screen screen_value";
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_word_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; }

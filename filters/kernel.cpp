@@ -262,7 +262,7 @@ const std::string& require_width_param(const FilterSpec& spec, const ParamValues
   const auto sigma = find_kernel_sigma(spec, values);
   const auto* name = std::get_if<std::string>(&spec.radius_texels);
   refuse_width(spec, width,
-               name ? fmt::format("{}; set '{}' itself", explain_no_kernel(spec), *name)
+               name ? fmt::format("{}; set '{}' itself", explain_no_kernel(spec, values), *name)
                     : "the filter has no radius that a width could set" +
                           (sigma ? fmt::format("; its kernel is {:.3g} texels wide", *sigma) : std::string()));
 }

@@ -31,6 +31,8 @@ struct ModelInput {
 struct Tally {
   bool excused = false;  ///< rounding decided which texel was read, or on which side of a tie a comparison fell
   double disk_radius_texels = 0.0;  ///< of the kernel used here, where kernels differ; see ModelResult
+  double screen_value = 0.0;        ///< handed on to screen passes, and a bound on its rounding
+  double screen_bound = 0.0;
 };
 
 /// A shift in texels.

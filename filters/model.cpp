@@ -1,6 +1,7 @@
 #include "filters/model.h"
 
 #include "filters/front_matter.h"
+#include "filters/screen.h"
 
 namespace shadowbench::filters {
 
@@ -20,9 +21,34 @@ std::optional<Kernel> find_kernel(const FilterSpec& spec, const ParamValues& val
   return model ? model->kernel(values) : std::nullopt;
 }
 
-const char* explain_no_kernel(const FilterSpec& spec) {
+const char* explain_no_kernel(const FilterSpec& spec, const ParamValues& values) {
+  if (!list_screens(spec, values).empty()) return "a part of the filter's kernel is on the screen, in pixels";
   return make_model(spec) ? "the filter's kernel differs from pixel to pixel"
                           : "the filter declares no kernel, and has no scalar model that knows it";
+}
+
+void ScreenPicture::add(const Receiver& receiver, const ModelResult& result) {
+  Pixel& pixel = pixels_[static_cast<std::size_t>(receiver.pixel.y * size_.x + receiver.pixel.x)];
+  const double share = static_cast<double>(receiver.layer_share);
+  pixel.receiver = &receiver;
+  pixel.share += receiver.layer_share;
+  pixel.result.visibility += share * result.visibility;
+  pixel.result.bound += share * result.bound;
+  pixel.result.screen_value += share * result.screen_value;
+  pixel.result.screen_bound += share * result.screen_bound;
+  pixel.result.excused = pixel.result.excused || result.excused;
+}
+
+void ScreenPicture::filter(const ScalarModel& model, const FilterSpec& spec, const ParamValues& values,
+                           Precision precision) {
+  for (const ScreenSpec& screen : list_screens(spec, values)) {
+    for (int step = 0; step < screen.steps; ++step) {
+      std::vector<Pixel> next = pixels_;
+      for (Pixel& pixel : next)
+        if (pixel.takes_part()) pixel.result = model.screen(*this, pixel.receiver->pixel, step, precision);
+      pixels_ = std::move(next);
+    }
+  }
 }
 
 }  // namespace shadowbench::filters

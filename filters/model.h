@@ -28,7 +28,11 @@ struct ModelResult {
   /// Where the filter's kernel differs from receiver to receiver: that of this one, a uniform disk of this radius read
   /// through 2x2 texels; 0 for one fetch, and where the filter averages nothing.
   double disk_radius_texels = 0.0;
+  double screen_value = 0.0;  ///< handed on to screen passes
+  double screen_bound = 0.0;  ///< as `bound`, of that
 };
+
+class ScreenPicture;
 
 /// A model with its map prepared: encoded and blurred where the filter does that.
 class Lookup {
@@ -45,6 +49,9 @@ struct ScalarModel {
   /// Names the kernel that the filter averages with, for these complete parameter values; none where it differs from
   /// receiver to receiver, and is ModelResult::disk_radius_texels wide.
   std::optional<Kernel> (*kernel)(const ParamValues& values);
+
+  /// What a step of a screen pass makes of a pixel that takes part; null where the filter has none.
+  ModelResult (*screen)(const ScreenPicture& picture, glm::ivec2 pixel, int step, Precision precision) = nullptr;
 };
 
 /// Makes the model of a filter; CMake lists one for each `<id>.cpp` that stands beside its `<id>.glsl`.
@@ -68,7 +75,7 @@ inline constexpr const char* kNoModel = "the filter has no scalar model";
 std::optional<Kernel> find_kernel(const FilterSpec& spec, const ParamValues& values);
 
 /// Why a filter has no kernel.
-const char* explain_no_kernel(const FilterSpec& spec);
+const char* explain_no_kernel(const FilterSpec& spec, const ParamValues& values);
 
 // What filters' sources instantiate.
 
@@ -90,7 +97,8 @@ class TemplatedLookup final : public Lookup {
   ModelResult at(const Receiver& receiver) const override {
     Tally tally;
     const auto visibility = filter_.visibility(receiver, tally);
-    return {value_of(visibility), bound_of(visibility), tally.excused, tally.disk_radius_texels};
+    return {value_of(visibility),     bound_of(visibility), tally.excused,
+            tally.disk_radius_texels, tally.screen_value,   tally.screen_bound};
   }
 
  private:
@@ -108,12 +116,26 @@ std::unique_ptr<Lookup> prepare_templated(const ModelInput& input, Precision pre
   return nullptr;
 }
 
+template <template <class> class Filter>
+ModelResult screen_templated(const ScreenPicture& picture, glm::ivec2 pixel, int step, Precision precision) {
+  switch (precision) {
+    case Precision::kFloat: return Filter<float>::screen(picture, pixel, step);
+    case Precision::kDouble: return Filter<double>::screen(picture, pixel, step);
+    case Precision::kExtended: return Filter<long double>::screen(picture, pixel, step);
+    case Precision::kTracked: return Filter<Tracked>::screen(picture, pixel, step);
+  }
+  return {};
+}
+
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
-/// `static Kernel kernel(const ParamValues&)`, or an optional one, as a ScalarModel.
+/// `static Kernel kernel(const ParamValues&)`, or an optional one, as a ScalarModel; with
+/// `static ModelResult screen(const ScreenPicture&, glm::ivec2 pixel, int step)` where it has a screen pass.
 template <template <class> class Filter>
 std::unique_ptr<ScalarModel> make_templated_model() {
   const auto kernel = [](const ParamValues& values) -> std::optional<Kernel> { return Filter<double>::kernel(values); };
-  return std::make_unique<ScalarModel>(ScalarModel{&prepare_templated<Filter>, kernel});
+  ScalarModel model{&prepare_templated<Filter>, kernel};
+  if constexpr (requires { &Filter<double>::screen; }) model.screen = &screen_templated<Filter>;
+  return std::make_unique<ScalarModel>(model);
 }
 
 }  // namespace shadowbench::filters

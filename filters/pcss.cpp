@@ -1,6 +1,7 @@
 #include "filters/model.h"
 #include "filters/penumbra.h"
 #include "filters/random.h"
+#include "filters/screen.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -34,13 +35,52 @@ class Pcss {
     const P radius = disk_.radius(r, static_cast<P>(r.depth) - *blocker, tally);
     if (radius < Disk::kOneFetch) return compare_tap(r, {}, tally);
     tally.disk_radius_texels = static_cast<double>(radius);
+    tally.screen_value = static_cast<double>(radius) * static_cast<double>(r.texel_size_ws);
+    tally.screen_bound = static_cast<double>(Disk::kRounding) * static_cast<double>(r.texel_size_ws);
     return bail_.template average<T>(points_, tally, [&](const glm::vec2& point) {
       const Offset<T> offset = turn.place(radius, point);
       return compare_tap(r, offset, tally);
     });
   }
 
+  /// Where one of the pixels that count is excused, so is this one.
+  static ModelResult screen(const ScreenPicture& picture, glm::ivec2 pixel, int step) {
+    const glm::ivec2 axis = step == 0 ? glm::ivec2(1, 0) : glm::ivec2(0, 1);
+    const ScreenPicture::Pixel& own = *picture.find(pixel);
+    ModelResult result = own.result;
+    T radii{};
+    P found{};
+    for (int i = -kBlurReach; i <= kBlurReach; i += 2) {
+      const ScreenPicture::Pixel* there = picture.find(pixel + i * axis);
+      if (!there) continue;
+      result.excused = result.excused || there->result.excused;
+      if (there->result.screen_value <= 0.0) continue;
+      radii = radii + make_uncertain<T>(static_cast<P>(there->result.screen_value), there->result.screen_bound);
+      found += P(1);
+    }
+    if (found == P(0)) return result;
+    const T radius = radii / T(found), blurred = T(kBlurShare) * radius;
+    T sum = make_uncertain<T>(static_cast<P>(own.result.visibility), own.result.bound), weights(P(1));
+    for (int i = -kBlurReach; i <= kBlurReach; ++i) {
+      const ScreenPicture::Pixel* there = picture.find(pixel + i * axis);
+      if (!there || i == 0) continue;
+      const T weight = near_on_surface<T>(*own.receiver, *there->receiver, blurred);
+      if (value_of(weight) > 0.0) result.excused = result.excused || there->result.excused;
+      sum = sum + weight * make_uncertain<T>(static_cast<P>(there->result.visibility), there->result.bound);
+      weights = weights + weight;
+    }
+    const T mean = sum / weights;
+    result.visibility = value_of(mean);
+    result.bound = bound_of(mean);
+    result.screen_value = value_of(radius);
+    result.screen_bound = bound_of(radius);
+    return result;
+  }
+
  private:
+  static constexpr int kBlurReach = 4;     ///< pixels
+  static constexpr P kBlurShare = P(0.5);  ///< of the penumbra's radius
+
   DepthReader<T> map_;
   EarlyBail bail_;
   std::vector<glm::vec2> points_;

@@ -35,6 +35,13 @@ text = "what a tap of the average compares: bilinear 2x2 texels, weighted by the
 default = "none"
 choices = ["none", "agree"]
 text = "agree ends the search where none of its four taps nearest the rim blocks, and the average where the four there are all lit or all blocked (Calinou 2021, Godot's pull request 54160); faster, and shadows thinner than the disks get holes"
+[param.screen]
+default = "none"
+choices = ["none", "bilateral"]
+text = "bilateral blurs the picture along its rows and columns as far as the penumbra is wide, within surfaces (Gumbau et al. 2010, Screen Space Soft Shadows, GPU Pro); few taps then suffice"
+[screen.bilateral]
+reach = 4
+steps = 2
 [disk.disk_points]
 count = "taps"
 seed = 1
@@ -44,6 +51,7 @@ seed = 2
 +++*/
 #include "lib/early_bail.glsl"
 #include "lib/penumbra.glsl"
+#include "lib/screen_blur.glsl"
 
 // The depth that a tap of the search reads, and the one that it blocks if it is nearer.
 vec2 read_tap(Receiver r, vec2 offset) {
@@ -80,6 +88,7 @@ float visibility(Receiver r) {
   if (blockers == 0.0) return 1.0;
   float radius = min(penumbra_radius(r, r.depth - depths / blockers), max_radius);
   if (radius < one_fetch) return compare_tap(r, vec2(0.0));
+  screen_value = radius * r.texel_size_ws;
   float sum = 0.0;
   for (int i = 0; i < taps; ++i) {
     vec2 offset = radius * rotate(disk_points[order_tap(i, taps)], turn);
@@ -87,4 +96,34 @@ float visibility(Receiver r) {
     if (agrees(i, sum)) return sum / float(first_taps);
   }
   return sum / float(taps);
+}
+
+const int blur_reach = 4;
+const float blur_share = 0.5;  // of the penumbra's radius
+
+// The penumbra's radius around, and the mean of visibility within a share of it: along the picture's rows, then columns.
+vec2 bilateral(ScreenInput s) {
+  ivec2 axis = s.step == 0 ? ivec2(1, 0) : ivec2(0, 1);
+  vec2 own = load_screen(s, ivec2(0));
+  float radii = 0.0;
+  float found = 0.0;
+  for (int i = -blur_reach; i <= blur_reach; i += 2) {
+    float radius = load_screen(s, i * axis).y;
+    if (radius <= 0.0) continue;
+    radii += radius;
+    found += 1.0;
+  }
+  if (found == 0.0) return own;
+  float radius = radii / found;
+  ScreenSurface here = load_surface(s, ivec2(0));
+  float sum = own.x;
+  float weights = 1.0;
+  for (int i = -blur_reach; i <= blur_reach; ++i) {
+    vec2 there = load_screen(s, i * axis);
+    if (i == 0 || there.y < 0.0) continue;
+    float weight = near_on_surface(here, load_surface(s, i * axis), blur_share * radius);
+    sum += weight * there.x;
+    weights += weight;
+  }
+  return vec2(sum / weights, radius);
 }

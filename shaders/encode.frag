@@ -4,6 +4,7 @@
 #include "lib/random.glsl"
 #include "lib/encode_input.glsl"
 #include "lib/pass_input.glsl"
+#include "lib/screen_input.glsl"
 #include "filter_parameters"
 #include "filter"
 

@@ -55,6 +55,12 @@ records::GpuEstimateRecord estimate(const Gpu& gpu, const FilterWork& work) {
   Part longest = largest({Part{"arithmetic", result.arithmetic_us}, Part{"sampling", result.sampling_us},
                           Part{"memory", result.memory_us.value_or(0.0)}});
   result.lookup_us = longest.us;
+  for (PrefilterWork pass : work.screen) {
+    pass.texels *= kMillion;
+    const Part part = estimate_pass(gpu, pass);
+    result.lookup_us += part.us;
+    if (part.us > longest.us) longest = part;
+  }
   longest.us = 1e3 * records::lookups_ms(longest.us);  // of a frame, beside the passes of its map
   for (const PrefilterWork& pass : work.prefilter) {
     const Part part = estimate_pass(gpu, pass);

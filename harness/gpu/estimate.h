@@ -38,6 +38,7 @@ struct FilterWork {
   Reads reads;                         ///< of a receiver's lookup, the mean
   std::optional<double> memory_bytes;  ///< that a lookup moves from memory to the cache, the mean
   std::vector<PrefilterWork> prefilter;
+  std::vector<PrefilterWork> screen;  ///< its texels are draws: of each pixel
   MapWork map;
 };
 

@@ -13,6 +13,7 @@
 #include "filters/kernel.h"
 #include "filters/model.h"
 #include "filters/random.h"
+#include "filters/screen.h"
 #include "harness/gl/survey.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_truth.h"
@@ -142,6 +143,7 @@ class SceneBench {
                         .passes = cell.cost.passes,
                         .map_bytes = cell.cost.map_bytes,
                         .prefilter_texels = cell.cost.prefilter_texels};
+    if (filter.has_screen()) cell.record.screen_reads = cell.cost.screen.per_receiver;
     if (!cell.cost.fetches) cell.record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
     check_drawing(cell, *rig_.renderer.context);
     return cell;
@@ -180,24 +182,36 @@ class SceneBench {
   /// Bounds what the same computation in single precision may make of each pixel.
   images::Image bound_rounding(const filters::ScalarModel& model, const render::FilterPasses& filter) {
     images::Image image(rig_.options.width, rig_.options.height, 1);
+    const filters::FilterRequest& request = filter.request();
+    const bool has_screen = model.screen && filter.has_screen();
+    filters::ScreenPicture picture(has_screen ? rig_.options.width : 0, has_screen ? rig_.options.height : 0);
+    std::vector<std::vector<filters::Receiver>> layers;
     for (const render::LightSetup& layer : filter.light()) {
       const filters::DepthMap map = light_.map.read(layer.frustum.layer);
-      const auto tracked = model.prepare({.spec = filter.request().spec,
-                                          .values = filter.request().values,
+      const auto tracked = model.prepare({.spec = request.spec,
+                                          .values = request.values,
                                           .map = map,
                                           .accuracy = measure_accuracy(rig_.renderer),
                                           .seed = rig_.options.seed,
                                           .plane_max_tangent = rig_.options.bias.plane_max_tangent()},
                                          filters::Precision::kTracked);
-      const auto receivers = render::read_receivers(rig_.renderer.shaders, gbuffer_, layer);
+      const std::vector<filters::Receiver>& receivers =
+          layers.emplace_back(render::read_receivers(rig_.renderer.shaders, gbuffer_, layer));
       visit_in_parallel(receivers.size(), [&](std::size_t i) {
         const filters::ModelResult result = tracked->at(receivers[i]);
+        if (has_screen) picture.add(receivers[i], result);
         const float of_share = receivers[i].layer_share < 1.0f ? 0x1p-23f : 0.0f;
         const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) + of_share : 1.0f;
         float& pixel = image.texels[find_pixel(receivers[i], rig_.options.width, rig_.options.height)];
         pixel = result.excused ? images::kMayFlip : pixel + receivers[i].layer_share * bound;
       });
     }
+    if (!has_screen) return image;
+    picture.filter(model, request.spec, request.values, filters::Precision::kTracked);
+    for (const filters::ScreenPicture::Pixel& pixel : picture.pixels())
+      if (pixel.takes_part())
+        image.texels[find_pixel(*pixel.receiver, rig_.options.width, rig_.options.height)] =
+            pixel.result.excused ? images::kMayFlip : static_cast<float>(std::min(pixel.result.bound, 1.0));
     return image;
   }
 
@@ -338,7 +352,7 @@ void set_kernel(records::CellRecord& record, const filters::FilterRequest& reque
   }
   if (!record.kernel.sigma_texels)
     record.absent[record.kernel.width_class ? "kernel.sigma_texels" : "kernel"] =
-        filters::explain_no_kernel(request.spec);
+        filters::explain_no_kernel(request.spec, request.values);
   else if (!record.kernel.width_class)
     record.absent["kernel.class"] =
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);
@@ -448,6 +462,8 @@ void check_reads(MeasuredCell& cell) {
             "it reads the encoded map, but no encode() writes one; write encode(), or call fetch_depth or "
             "compare_nearest");
   }
+  for (const std::string& screen : cost.screen.exceeded)
+    suspect(cell, fmt::format("its screen pass {}; declare what it reads, or read less", screen));
   if (!cost.reach_texels) return;
   if (*cost.fetches == 0.0)
     suspect(cell,

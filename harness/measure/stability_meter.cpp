@@ -226,7 +226,7 @@ std::string explain_no_bound(const filters::FilterRequest& request, const filter
   if (!filters::promises_bound(request.spec, request.values))
     return fmt::format("the filter is a bound with {}=0 only", request.spec.bound_at_zero);
   if (!model) return filters::kNoModel;
-  return model->kernel(request.values) ? "" : filters::explain_no_kernel(request.spec);
+  return model->kernel(request.values) ? "" : filters::explain_no_kernel(request.spec, request.values);
 }
 
 constexpr const char* kReadsDepth = "the filter reads the depth map itself";

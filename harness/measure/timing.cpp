@@ -135,10 +135,13 @@ class Rounds {
       const double prefilter_ms = filters_[i].prefilter ? filters_[i].prefilter() : 0.0;
       for (int settle = 0; filters_[i].prefilter && settle < kSettlingLookups; ++settle)
         times_.spent_ms += filters_[i].lookup();
-      const double lookup_ms = filters_[i].lookup();
+      const double reading_ms = filters_[i].lookup();
+      const double screen_ms = filters_[i].screen ? filters_[i].screen() : 0.0;
+      const double lookup_ms = reading_ms + screen_ms;
       times_.spent_ms += prefilter_ms + lookup_ms;
       if (!counted) continue;
       if (filters_[i].prefilter) times_.filters[i].prefilter.push_back(prefilter_ms);
+      if (filters_[i].screen) times_.filters[i].screen.push_back(screen_ms);
       times_.filters[i].lookup.push_back(lookup_ms);
     }
   }
@@ -239,11 +242,13 @@ std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes
   return sum;
 }
 
-TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup) {
-  TimedFilter timed;
-  if (prefilter) timed.prefilter = [timer, prefilter = std::move(prefilter)] { return gl::time_ms(timer, prefilter); };
-  timed.lookup = [timer, lookup = std::move(lookup)] { return gl::time_ms(timer, lookup); };
-  return timed;
+TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup,
+                       std::function<void()> screen) {
+  const auto make = [timer](std::function<void()> pass) -> std::function<double()> {
+    if (!pass) return {};
+    return [timer, pass = std::move(pass)] { return gl::time_ms(timer, pass); };
+  };
+  return {make(std::move(prefilter)), make(std::move(lookup)), make(std::move(screen))};
 }
 
 RoundTimes run_rounds(const TimedPasses& passes, const RoundPlan& plan) { return Rounds(passes, plan).run(); }
@@ -261,13 +266,14 @@ double time_once(render::FilterPasses& filter, const render::ShadowMap& map, con
 RoundTimes time_rounds(const DrawnFilters& drawn, const RoundPlan& plan) {
   render::ImageTarget target("timed visibility", GL_R32F, drawn.gbuffer.width(), drawn.gbuffer.height());
   const auto look_up_by = [&](render::FilterPasses* filter) {
-    return [&, filter] { filter->lookup(drawn.gbuffer, drawn.map, target); };
+    return [&, filter] { filter->look_up(drawn.gbuffer, drawn.map, target); };
   };
   TimedPasses timed{.draw_map = [&] { return gl::time_ms(drawn.timer, drawn.draw_map); }};
   for (render::FilterPasses* filter : drawn.filters) {
-    std::function<void()> prefilter;
+    std::function<void()> prefilter, screen;
     if (filter->has_prefilter()) prefilter = [&, filter] { filter->prefilter(drawn.map); };
-    timed.filters.push_back(make_timed(drawn.timer, prefilter, look_up_by(filter)));
+    if (filter->has_screen()) screen = [&, filter] { filter->filter_screen(drawn.gbuffer, target); };
+    timed.filters.push_back(make_timed(drawn.timer, prefilter, look_up_by(filter), screen));
   }
   for (const auto& empty : drawn.empties)
     timed.empties.push_back(make_timed(drawn.timer, {}, look_up_by(empty.get())).lookup);
@@ -281,6 +287,7 @@ void note_times(records::CellRecord& record, const RoundTimes& rounds, const Tim
   const auto count = static_cast<std::ptrdiff_t>(times.lookup.size());
   record.time_ms.map = summarise(rounds.map);
   record.time_ms.lookup = summarise(times.lookup);
+  if (!times.screen.empty()) record.time_ms.screen = summarise(times.screen);
   record.time_ms.empty = summarise({empty.begin(), empty.begin() + count});
   record.time_ms.static_light = find_difference(times.lookup, empty);
   record.time_ms.moving = find_difference(moving, empty);

@@ -41,7 +41,8 @@ enum class StopReason {
 /// Times of one filter, one entry per round it took part in, from the first on; milliseconds.
 struct FilterTimes {
   std::vector<double> prefilter;  ///< empty for filters that read depth
-  std::vector<double> lookup;
+  std::vector<double> lookup;     ///< screen passes included
+  std::vector<double> screen;     ///< these alone; empty for filters without
   StopReason stopped = StopReason::kRounds;
 };
 
@@ -57,10 +58,12 @@ struct RoundTimes {
 struct TimedFilter {
   std::function<double()> prefilter;  ///< empty for filters that read depth
   std::function<double()> lookup;
+  std::function<double()> screen;  ///< empty for filters without screen passes
 };
 
-/// Makes passes that are timed; `prefilter` is empty for filters that read depth.
-TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup);
+/// Makes passes that are timed; of no function none is made.
+TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup,
+                       std::function<void()> screen = {});
 
 /// What takes turns in timed rounds; each gives its time in milliseconds.
 struct TimedPasses {

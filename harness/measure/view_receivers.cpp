@@ -13,6 +13,7 @@
 #include "filters/kernel.h"
 #include "filters/percentage_closer.h"
 #include "filters/receiver.h"
+#include "filters/screen.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/render/geometry.h"
 
@@ -188,6 +189,8 @@ ModelImages evaluate_model(const filters::FilterRequest& request, const std::vec
   images.model.assign(pixels, 1.0);
   if (has_disks) images.closer.assign(pixels, 1.0);
   std::atomic<std::int64_t> excused = 0;
+  const bool has_screen = model->screen && !filters::list_screens(request.spec, request.values).empty();
+  filters::ScreenPicture picture(has_screen ? view.width : 0, has_screen ? view.height : 0);
   for (const ModelLayer& layer : layers) {
     const filters::ModelInput input{.spec = request.spec,
                                     .values = request.values,
@@ -204,9 +207,19 @@ ModelImages evaluate_model(const filters::FilterRequest& request, const std::vec
       if (has_disks)
         images.disk_radii_texels.back()[pixel] =
             std::round(kRadiiPerTexel * static_cast<float>(result.disk_radius_texels)) / kRadiiPerTexel;
+      if (has_screen) picture.add(receiver, result);
       if (result.excused) ++excused;
     });
     if (has_disks) compare_disks(images, layer, view);
+  }
+  if (has_screen) {
+    picture.filter(*model, request.spec, request.values, filters::Precision::kDouble);
+    excused = 0;
+    for (const filters::ScreenPicture::Pixel& pixel : picture.pixels()) {
+      if (!pixel.takes_part()) continue;
+      images.model[find_pixel(*pixel.receiver, view.width, view.height)] = pixel.result.visibility;
+      if (pixel.result.excused) ++excused;
+    }
   }
   images.excused = excused;
   return images;

@@ -57,6 +57,8 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
     own_.emplace(shaders, request, map_size_, light.front(), map_defines_);
     if (prefilter_) own_->check_encode(prefilter_->encode_program());
   }
+  if (!filters::list_screens(request.spec, request.values).empty())
+    screen_.emplace(shaders, request, light.front(), map_defines_);
   if (light.size() == 1) return;  // else every layer has maps of its own
   layers_.resize(light.size());
   turn_to(prepare(light, make_encoded_targets()));
@@ -66,6 +68,7 @@ gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines
                                          const std::optional<std::string>& body) const {
   for (const Defines& more : {map_defines_, receiver_defines(layers_.front().light)})
     defines.insert(defines.end(), more.begin(), more.end());
+  if (!filters::list_screens(request_.spec, request_.values).empty()) defines.emplace_back("SCREEN", "1");
   if (layers_.front().light.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
   std::vector<gl::Piece> pieces = filter_pieces(request_);
   if (body) pieces.back().text = *body;
@@ -91,6 +94,7 @@ void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& va
   set_uniforms(lookup_, light.front());
   if (prefilter_) prefilter_->retune(shaders, request_, light.front());
   if (own_) own_->retune(request_, light.front());
+  if (screen_) screen_->retune(request_, light.front());
   for (std::size_t i = 0; i < light.size(); ++i) {
     layers_[i].light = light[i];
     if (layers() > 1 && prefilter_) layers_[i].border = prefilter_->find_border(light[i]);
@@ -165,8 +169,21 @@ const ReceiverBuffer& FilterPasses::bind_lookup(gl::Program& program, const GBuf
 
 void FilterPasses::lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target,
                           const std::optional<glm::ivec2>& columns) {
+  look_up(gbuffer, map, target, columns);
+  filter_screen(gbuffer, target, columns);
+}
+
+void FilterPasses::filter_screen(const GBuffer& gbuffer, ImageTarget& target,
+                                 const std::optional<glm::ivec2>& columns) {
+  if (screen_) screen_->run(gbuffer, target, columns);
+}
+
+/// Screen passes read beyond the columns that are asked for.
+void FilterPasses::look_up(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& drawn,
+                           const std::optional<glm::ivec2>& columns) {
+  ImageTarget& target = screen_ ? screen_->input(gbuffer) : drawn;
   const auto narrow = [&] {
-    if (columns) glViewport(columns->x, 0, columns->y - columns->x, gbuffer.height());
+    if (columns && !screen_) glViewport(columns->x, 0, columns->y - columns->x, gbuffer.height());
   };
   if (layers() > 1) target.clear(glm::vec4(0.0f));
   for (int layer = 0; layer < layers(); ++layer) {
@@ -264,6 +281,7 @@ std::vector<DrawnPass> FilterPasses::list_passes(int depth_bytes) const {
     pass.draws *= layers();
     pass.texels *= layers();
   }
+  if (screen_) add(screen_->list_passes());
   return passes;
 }
 
@@ -281,7 +299,12 @@ FilterCost FilterPasses::measure_cost(ShaderLibrary& shaders, const GBuffer& gbu
   if (!request_.spec.uses_samplers) count_fetches(cost, shaders, gbuffer, map);
   cost.map_bytes = count_map_bytes(map);
   cost.bytes_per_texel = cost.map_bytes / (std::int64_t{layers()} * map_size_ * map_size_);
-  cost.passes = 2 * layers() + prefilter_passes();
+  if (screen_) {
+    ImageTarget drawn("screen", GL_R32F, gbuffer.width(), gbuffer.height());
+    look_up(gbuffer, map, drawn);
+    cost.screen = screen_->count_reads(shaders, gbuffer, layers_.front().light);
+  }
+  cost.passes = 2 * layers() + prefilter_passes() + (screen_ ? screen_->passes() : 0);
   cost.prefilter_texels =
       layers() * ((prefilter_ ? prefilter_->texels_written() : 0) + (own_ ? own_->texels_written() : 0));
   return cost;

@@ -7,6 +7,7 @@
 
 #include "harness/render/gbuffer.h"
 #include "harness/render/prefilter.h"
+#include "harness/render/screen_passes.h"
 
 namespace shadowbench::render {
 
@@ -22,6 +23,7 @@ struct FilterCost {
   std::int64_t bytes_per_texel = 0;   ///< of the maps that the lookup reads
   std::int64_t passes = 0;            ///< depth map, encode, blur, the filter's own, lookup
   std::int64_t map_bytes = 0;         ///< of the maps that the lookup reads
+  ScreenReads screen;                 ///< of screen passes
   std::int64_t prefilter_texels = 0;  ///< texels that encode, blur and the filter's own passes write
 };
 
@@ -107,9 +109,18 @@ class FilterPasses {
 
   /// Looks every receiver up; `target` is R32F, of the G-buffer's size. Background is 1. Of a map with layers each is
   /// looked up in a pass of its own, for the receivers that it serves, and what they make of their shares is added.
+  /// The filter's screen passes follow.
   /// Only in `columns`, from the first up to the second, where they are given.
   void lookup(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target,
               const std::optional<glm::ivec2>& columns = std::nullopt);
+
+  bool has_screen() const { return screen_.has_value(); }
+
+  /// The two parts of lookup(), one after the other: the second is nothing without screen passes.
+  void look_up(const GBuffer& gbuffer, const ShadowMap& map, ImageTarget& target,
+               const std::optional<glm::ivec2>& columns = std::nullopt);
+  void filter_screen(const GBuffer& gbuffer, ImageTarget& target,
+                     const std::optional<glm::ivec2>& columns = std::nullopt);
 
   /// Compiles and runs the counting variant of the lookup. Call after prefilter().
   FilterCost measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
@@ -136,6 +147,7 @@ class FilterPasses {
   Defines map_defines_;
   std::optional<Prefilter> prefilter_;
   std::optional<OwnPasses> own_;
+  std::optional<ScreenPasses> screen_;
   gl::Program lookup_;
   std::optional<gl::Texture> blue_noise_;  ///< for filters that read it
   gl::FullscreenTriangle triangle_;

@@ -36,6 +36,7 @@ struct DrawnPass {
   int draws = 1;
   std::int64_t texels = 0;  ///< that it writes, all draws together
   int read_bytes = 0;       ///< of a texel of what it reads
+  bool is_screen = false;   ///< writes every pixel of the picture, and `texels` says nothing
 };
 
 /// An encoded map as it was read back.

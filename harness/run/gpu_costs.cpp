@@ -148,6 +148,9 @@ records::GpuRecord GpuCosts::make_record(const gpu::Gpu& gpu, const measure::Mea
       work.empty = answer.facts;
     else if (pass == &cell.passes.front())
       work.lookup = answer.facts;
+    else if (pass->is_screen)
+      work.screen.push_back(
+          {answer.facts, static_cast<double>(pass->draws), pass->target.bytes_per_texel, pass->read_bytes});
     else
       work.prefilter.push_back(
           {answer.facts, static_cast<double>(pass->texels), pass->target.bytes_per_texel, pass->read_bytes});

@@ -14,7 +14,9 @@
 namespace shadowbench::stress {
 
 FilterBench::FilterBench(const AxisInputs& inputs, filters::FilterRequest request)
-    : shaders_(inputs.renderer->shaders), request_(std::move(request)) {}
+    : shaders_(inputs.renderer->shaders), request_(std::move(request)) {
+  request_.spec.screens.clear();  // receivers side by side are no picture
+}
 
 void FilterBench::resize(const BenchSize& size) {
   if (surfaces_ && size == size_) return;

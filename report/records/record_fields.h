@@ -207,7 +207,9 @@ void visit_fields(Is<KernelRecord> auto& kernel, auto&& visit) {
 }
 
 void visit_fields(Is<TimeRecord> auto& time, auto&& visit) {
-  visit("lookup", time.lookup, {.column = "filtered lookup of all pixels"});
+  visit("lookup", time.lookup, {.column = "filtered lookup of all pixels, screen passes included"});
+  visit("screen", time.screen,
+        {.text = "of the lookup the screen passes", .may_lack = true, .column = "screen passes"});
   visit("prefilter", time.prefilter, {.column = "encoding and blurring the map"});
   visit("map", time.map, {.column = "drawing the depth map"});
   visit("empty", time.empty,
@@ -420,6 +422,10 @@ void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
         {.text = "why status is not ok; empty otherwise", .column = "why the status is not ok"});
   visit("suspect_of", cell.suspect_of,
         {.text = "what is wrong with the filter of a suspect cell, and what to do", .filled = true});
+  visit("screen_reads", cell.screen_reads,
+        {.text = "pixels of the picture that the filter's screen passes read for a receiver, mean",
+         .least = 0,
+         .may_lack = true});
   visit("excused", cell.excused, {.text = "pixels left out: on a tie or a texel's border"});
   visit_group("time_ms", cell.time_ms, visit, {.text = "milliseconds of the clock that gl.timer names"});
   visit_group("ratio_to_none", cell.ratio_to_none, visit,

@@ -94,8 +94,9 @@ struct RangeRecord {
 struct TimeRecord {
   std::optional<Quartiles> map;
   std::optional<Quartiles> prefilter;
-  std::optional<Quartiles> lookup;
-  std::optional<Quartiles> empty = std::nullopt;  ///< a lookup that reads what the filter does of its receivers, alone
+  std::optional<Quartiles> lookup;                 ///< screen passes included
+  std::optional<Quartiles> screen = std::nullopt;  ///< of it these
+  std::optional<Quartiles> empty = std::nullopt;   ///< a lookup that reads what the filter does of its receivers, alone
   std::optional<OwnTime> static_light = std::nullopt;  ///< lookup less empty: the filter's own
   std::optional<OwnTime> moving = std::nullopt;  ///< map, prefilter and the filter's own: what a moving light pays
   std::optional<std::string> stopped =
@@ -309,6 +310,7 @@ struct CellRecord : metrics::MetricValues {
   RangeRecord range;
   int width = 0;  ///< pixels
   int height = 0;
+  std::optional<double> screen_reads;   ///< pixels that screen passes read for a receiver, mean
   std::optional<std::int64_t> excused;  ///< pixels left out: on a tie or a texel's border
   std::optional<std::int64_t>
       phases;  ///< places of the map's grid that the errors of visibility are means over; all else is of the first

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "filters/model.h"
+#include "filters/screen.h"
 #include "harness/measure/view_receivers.h"
 #include "tests/harness/render/bench_fixture.h"
 
@@ -49,6 +50,8 @@ std::map<std::size_t, ModelPixel> model_pixels(Bench& bench, const filters::Filt
   const auto model = filters::make_model(request.spec);
   const std::vector<filters::Receiver> receivers = bench.receivers(request, rule);
   std::map<std::size_t, ModelPixel> pixels;
+  filters::ScreenPicture single_picture(bench.gbuffer().width(), bench.gbuffer().height());
+  filters::ScreenPicture tracked_picture = single_picture;
   for (int layer = 0; layer < bench.map().layers(); ++layer) {
     const filters::DepthMap map = bench.map().read(layer);
     const filters::ModelInput input{
@@ -58,6 +61,8 @@ std::map<std::size_t, ModelPixel> model_pixels(Bench& bench, const filters::Filt
     for (const filters::Receiver& r : receivers) {
       if (r.layer != layer) continue;
       const filters::ModelResult single = in_float->at(r), reference = tracked->at(r);
+      single_picture.add(r, single);
+      tracked_picture.add(r, reference);
       ModelPixel& pixel = pixels[bench.index(r)];
       measure::put_share(pixel.single, r, single.visibility);
       measure::put_share(pixel.reference, r, reference.visibility);
@@ -65,6 +70,13 @@ std::map<std::size_t, ModelPixel> model_pixels(Bench& bench, const filters::Filt
       if (r.layer_share < 1.0f) pixel.bound += kShareRounding;
       pixel.excused |= single.excused || reference.excused;
     }
+  }
+  if (filters::list_screens(request.spec, request.values).empty()) return pixels;
+  single_picture.filter(*model, request.spec, request.values, filters::Precision::kFloat);
+  tracked_picture.filter(*model, request.spec, request.values, filters::Precision::kTracked);
+  for (auto& [index, pixel] : pixels) {
+    const auto &single = single_picture.pixels()[index].result, &reference = tracked_picture.pixels()[index].result;
+    pixel = {single.visibility, reference.visibility, reference.bound, single.excused || reference.excused};
   }
   return pixels;
 }
@@ -217,7 +229,9 @@ TEST_P(ModelVariants, GlImageEqualsModel) {
   const filters::FilterRequest request = catalogue().parse_requests(GetParam().substr(0, end)).front();
   const Agreement a = compare(bench, request);
   EXPECT_GT(a.shadowed, 0.01);
-  EXPECT_LT(static_cast<double>(a.excused), most_excused(request.spec, 0.005) * static_cast<double>(a.compared));
+  // A screen pass spreads what rounding decides over the pixels around.
+  const double otherwise = filters::list_screens(request.spec, request.values).empty() ? 0.005 : 0.05;
+  EXPECT_LT(static_cast<double>(a.excused), most_excused(request.spec, otherwise) * static_cast<double>(a.compared));
   const bool half = filters::text_or(request.values, "store", "").find("16") != std::string::npos;
   if (stores(request.spec)) {
     EXPECT_LE(a.worst_bound_ratio, 1.0);
@@ -232,15 +246,16 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         "gather_pcf:radius=1", "gather_pcf:radius=3,shape=castano", "pcss:rotation=none,max_radius=2",
         "pcss:rotation=interleaved-gradient,taps=8,search_taps=4", "pcss:max_radius=0", "pcss:read=nearest",
-        "pcss:read=nearest,max_radius=0", "pcss:read=interpolated", "dpcf:rotation=none,max_radius=2",
-        "dpcf:rotation=interleaved-gradient,taps=8", "dpcf:max_radius=20,taps=32", "dpcf:max_radius=0",
-        "poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8", "poisson:radius=0,taps=4",
-        "evsm2:radius=0", "evsm2:bleed_reduction=0.2", "evsm4:bleed_reduction=0.2", "gather_pcf:radius=1,shape=castano",
-        "gather_pcf:shape=castano", "gather_pcf:radius=3", "evsm4:store=rgba16f", "evsm4:radius=1,c_down=20",
-        "msm_hamburger:store=rgba16", "msm_hausdorff:store=rgba16,radius=1", "msm_hausdorff:radius=1",
-        "poisson:taps=32,radius=6", "vsm:radius=0", "vsm:radius=12", "vsm:bleed_reduction=0,slope_variance=0",
-        "vsm:slope_variance=1", "vsm:min_variance=0.001,store=rg16f", "esm:radius=0", "esm:c=20",
-        "esm:fallback=percentage-closer", "esm:fallback=percentage-closer,radius=0",
+        "pcss:read=nearest,max_radius=0", "pcss:read=interpolated", "pcss:screen=bilateral",
+        "pcss:taps=4,search_taps=4,screen=bilateral on ball", "pcss:screen=bilateral on avenue",
+        "dpcf:rotation=none,max_radius=2", "dpcf:rotation=interleaved-gradient,taps=8", "dpcf:max_radius=20,taps=32",
+        "dpcf:max_radius=0", "poisson:rotation=none", "poisson:rotation=interleaved-gradient,taps=8",
+        "poisson:radius=0,taps=4", "evsm2:radius=0", "evsm2:bleed_reduction=0.2", "evsm4:bleed_reduction=0.2",
+        "gather_pcf:radius=1,shape=castano", "gather_pcf:shape=castano", "gather_pcf:radius=3", "evsm4:store=rgba16f",
+        "evsm4:radius=1,c_down=20", "msm_hamburger:store=rgba16", "msm_hausdorff:store=rgba16,radius=1",
+        "msm_hausdorff:radius=1", "poisson:taps=32,radius=6", "vsm:radius=0", "vsm:radius=12",
+        "vsm:bleed_reduction=0,slope_variance=0", "vsm:slope_variance=1", "vsm:min_variance=0.001,store=rg16f",
+        "esm:radius=0", "esm:c=20", "esm:fallback=percentage-closer", "esm:fallback=percentage-closer,radius=0",
         "esm:fallback=percentage-closer,combine=log,radius=1", "esm:combine=log,c=500", "esm:combine=log,radius=0",
         "esm:c=8,store=r16f", "vsm_sat:radius=0", "vsm_sat:radius=20", "vsm_sat:bleed_reduction=0,slope_variance=0",
         "csm_conv:radius=0,damping=0", "csm_conv:scale=1", "vssm:max_radius=0", "vssm:max_radius=4,bleed_reduction=0",

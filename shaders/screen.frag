@@ -1,0 +1,30 @@
+// One step of a filter's screen pass. PASS is the name of its function.
+#include "lib/receiver.glsl"
+#include "lib/map_access.glsl"
+#include "lib/random.glsl"
+#include "lib/encode_input.glsl"
+#include "lib/pass_input.glsl"
+#include "lib/screen_input.glsl"
+#include "filter_parameters"
+#include "filter"
+
+uniform int pass_step;
+
+layout(location = 0) out vec2 out_screen;
+#ifdef COUNT_SCREEN
+layout(location = 1) out vec2 out_reads;  // their number, and their reach in pixels; -1: there was no receiver
+#endif
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  out_screen = texelFetch(screen_image, pixel, 0).xy;
+#ifdef COUNT_SCREEN
+  out_reads = vec2(-1.0);
+#endif
+  if (out_screen.y < 0.0) return;
+  out_screen = PASS(ScreenInput(pixel, textureSize(screen_image, 0), pass_step));
+  out_screen.y = max(out_screen.y, 0.0);
+#ifdef COUNT_SCREEN
+  out_reads = vec2(counted_screen_reads, counted_screen_reach);
+#endif
+}
