@@ -212,16 +212,20 @@ ReceiverReads FilterPasses::receiver_reads() const {
           lookup_.has("gbuffer_position"), lookup_.has("gbuffer_normal")};
 }
 
+CountingSource FilterPasses::make_counting_source() const {
+  const int stored_bytes = encoded_format() ? gl::pixel_format(*encoded_format()).bytes_per_texel : 0;
+  filters::CountedLoops counted = filters::count_loops(request_.spec.body);
+  return {{{"COUNT_FETCHES", "1"},
+           {"LOOPS", fmt::format("{}", std::max(counted.loops, 1))},
+           {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))},
+           {"STORED_BITS", fmt::format("{}", 8 * stored_bytes)}},
+          std::move(counted.body)};
+}
+
 std::vector<CountedReads> FilterPasses::count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer,
                                                     const ShadowMap& map) {
-  const int stored_bytes = encoded_format() ? gl::pixel_format(*encoded_format()).bytes_per_texel : 0;
-  filters::CountedLoops counted_loops = filters::count_loops(request_.spec.body);
-  gl::Program counting = compile_lookup(shaders,
-                                        {{"COUNT_FETCHES", "1"},
-                                         {"LOOPS", fmt::format("{}", std::max(counted_loops.loops, 1))},
-                                         {"STORED_REACH_TEXELS", fmt::format("float({})", stored_reach(request_))},
-                                         {"STORED_BITS", fmt::format("{}", 8 * stored_bytes)}},
-                                        counted_loops.body);
+  const CountingSource source = make_counting_source();
+  gl::Program counting = compile_lookup(shaders, source.defines, source.body);
   const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   const gl::Texture reads("reads", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   const gl::Texture wide_reads("wide reads", GL_RG32F, gbuffer.width(), gbuffer.height());
@@ -302,7 +306,8 @@ FilterCost FilterPasses::measure_cost(ShaderLibrary& shaders, const GBuffer& gbu
   if (screen_) {
     ImageTarget drawn("screen", GL_R32F, gbuffer.width(), gbuffer.height());
     look_up(gbuffer, map, drawn);
-    cost.screen = screen_->count_reads(shaders, gbuffer, layers_.front().light);
+    cost.screen = screen_->count_reads(shaders, gbuffer, layers_.front().light, make_counting_source());
+    cost.most_turns = std::max(cost.most_turns, cost.screen.most_turns);
   }
   cost.passes = 2 * layers() + prefilter_passes() + (screen_ ? screen_->passes() : 0);
   cost.prefilter_texels =

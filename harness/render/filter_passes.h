@@ -160,6 +160,7 @@ class FilterPasses {
   gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines,
                              const std::optional<std::string>& body = std::nullopt) const;
   const ReceiverBuffer& bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer, const ShadowMap& map);
+  CountingSource make_counting_source() const;
   void count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
 };
 

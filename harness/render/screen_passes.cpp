@@ -15,7 +15,7 @@ constexpr GLuint kScreenUnit = 4;  // of lib/screen_input.glsl
 
 ScreenPasses::ScreenPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light,
                            const Defines& map_defines)
-    : request_(request), map_defines_(map_defines), passes_(compile(shaders, light, {})) {
+    : request_(request), map_defines_(map_defines), passes_(compile(shaders, light, nullptr)) {
   for (const Pass& pass : passes_) {
     const auto& uniforms = pass.program;
     if (uniforms.has("map_depth") || uniforms.has("map_compare") || uniforms.has("map_compare_nearest") ||
@@ -29,14 +29,16 @@ ScreenPasses::ScreenPasses(ShaderLibrary& shaders, const filters::FilterRequest&
 }
 
 std::vector<ScreenPasses::Pass> ScreenPasses::compile(ShaderLibrary& shaders, const LightSetup& light,
-                                                      const Defines& more) const {
+                                                      const CountingSource* counting) const {
   std::vector<Pass> compiled;
+  std::vector<gl::Piece> pieces = filter_pieces(request_);
+  if (counting) pieces.back().text = counting->body;
   for (const filters::ScreenSpec& spec : filters::list_screens(request_.spec, request_.values)) {
     Defines defines = map_defines_;
     defines.emplace_back("PASS", spec.name);
-    defines.insert(defines.end(), more.begin(), more.end());
+    if (counting) defines.insert(defines.end(), counting->defines.begin(), counting->defines.end());
     compiled.push_back({spec, shaders.compile_filter(fmt::format("{} {}", request_.spec.id, spec.name), "screen.frag",
-                                                     defines, filter_pieces(request_))});
+                                                     defines, pieces)});
     set_uniforms(compiled.back().program, request_, light);
   }
   return compiled;
@@ -82,10 +84,11 @@ void ScreenPasses::run(const GBuffer& gbuffer, ImageTarget& target, const std::o
   }
 }
 
-ScreenReads ScreenPasses::count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light) {
+ScreenReads ScreenPasses::count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light,
+                                      const CountingSource& source) {
   ScreenReads found;
-  std::vector<Pass> counting = compile(shaders, light, {{"COUNT_SCREEN", "1"}});
-  const gl::Texture reads("screen reads", GL_RG32F, gbuffer.width(), gbuffer.height());
+  std::vector<Pass> counting = compile(shaders, light, &source);
+  const gl::Texture reads("screen reads", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   gbuffer.bind();
   std::size_t from = 0;
   for (Pass& pass : counting) {
@@ -97,12 +100,13 @@ ScreenReads ScreenPasses::count_reads(ShaderLibrary& shaders, const GBuffer& gbu
       framebuffer.bind();
       draw(pass, step, images_[from].texture());
       from = 1 - from;
-      const std::vector<float> counted = reads.read_floats(2);
+      const std::vector<float> counted = reads.read_floats(4);
       double sum = 0.0, receivers = 0.0;
-      for (std::size_t i = 0; i < counted.size(); i += 2) {
+      for (std::size_t i = 0; i < counted.size(); i += 4) {
         if (counted[i] < 0.0f) continue;
         sum += static_cast<double>(counted[i]);
         receivers += 1.0;
+        found.most_turns = std::max(found.most_turns, static_cast<int>(counted[i + 2]));
         farthest = std::max(farthest, static_cast<double>(counted[i + 1]));
       }
       found.per_receiver += sum / std::max(receivers, 1.0);

@@ -9,9 +9,16 @@
 
 namespace shadowbench::render {
 
+/// What makes of a filter's GLSL what counts its reads and the turns of its loops.
+struct CountingSource {
+  Defines defines;
+  std::string body;
+};
+
 /// What a filter's screen passes read, on any machine.
 struct ScreenReads {
   double per_receiver = 0.0;          ///< pixels read for each receiver, by all steps, mean
+  int most_turns = 0;                 ///< of one of their loops, for any receiver
   std::vector<std::string> exceeded;  ///< "NAME reads 3 pixels away, and declares 2"
 };
 
@@ -33,7 +40,8 @@ class ScreenPasses {
   void run(const GBuffer& gbuffer, ImageTarget& target, const std::optional<glm::ivec2>& columns = std::nullopt);
 
   /// Requires that the lookup has drawn input(). Cost: compiles the passes once more.
-  ScreenReads count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light);
+  ScreenReads count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer, const LightSetup& light,
+                          const CountingSource& counting);
 
   int passes() const;                          ///< of all steps
   std::vector<DrawnPass> list_passes() const;  ///< in their order
@@ -50,7 +58,7 @@ class ScreenPasses {
   std::vector<ImageTarget> images_;  ///< steps take turns between two, of the G-buffer's size
   gl::FullscreenTriangle triangle_;
 
-  std::vector<Pass> compile(ShaderLibrary& shaders, const LightSetup& light, const Defines& defines) const;
+  std::vector<Pass> compile(ShaderLibrary& shaders, const LightSetup& light, const CountingSource* counting) const;
   void draw(Pass& pass, int step, const gl::Texture& from);
 };
 

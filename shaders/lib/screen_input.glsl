@@ -18,13 +18,13 @@ struct ScreenSurface {
 
 layout(binding = 4) uniform sampler2D screen_image;  // visibility, value; that is negative where there is no receiver
 
-#ifdef COUNT_SCREEN
+#ifdef COUNT_FETCHES
 int counted_screen_reads = 0;
 int counted_screen_reach = 0;
 #endif
 
 void count_screen(ivec2 offset) {
-#ifdef COUNT_SCREEN
+#ifdef COUNT_FETCHES
   ++counted_screen_reads;
   counted_screen_reach = max(counted_screen_reach, max(abs(offset.x), abs(offset.y)));
 #endif

@@ -38,6 +38,6 @@ vec2 row(ScreenInput s) {
 vec2 halve(ScreenInput s) {
   vec2 own = load_screen(s, ivec2(0));
   if (spoil == SPOIL_NOT_FINITE) own.x /= 0.0 * own.y;
-  if (spoil == SPOIL_ENDLESS) for (int i = 0; i < 2; i = i * (1 - s.step)) own.x += 1e-9 * float(i);
+  for (int i = 0; spoil == SPOIL_ENDLESS && i < 1000000; ++i) own.x += 1e-12 * float(i % 2);
   return 0.5 * own;
 }

@@ -184,6 +184,28 @@ TEST_F(Suspects, AFilterThatReadsAsFarAsItDeclares_IsNone) {
   }
 }
 
+/// Passes over the picture: their time and reads are told, and what is wrong with them is.
+TEST_F(Suspects, ScreenPasses_AreMeasured_AndJudged) {
+  const json cells = ProgramTest::measure(
+      "--size 96x54 --map-size 128 --rounds 3 --filters none,screen_box,screen_box:side=3,"
+      "screen_box:spoil=not-finite,screen_box:spoil=endless,atrous,pcss:screen=bilateral --filter-file " +
+      user_filter("screen_box.glsl") + " --filter-file " + user_filter("atrous.glsl"));
+  const char* wrong[] = {
+      nullptr, nullptr, "reads 3 pixels away, and declares a reach of 1", "pixels are not finite", "goes on after",
+      nullptr, nullptr};
+  for (std::size_t i = 0; i < std::size(wrong); ++i) {
+    SCOPED_TRACE(cells[i]["filter"].get<std::string>() + std::to_string(i));
+    EXPECT_EQ(cells[i]["status"], wrong[i] ? "suspect" : "ok");
+    if (wrong[i]) EXPECT_THAT(cells[i]["suspect_of"].get<std::vector<std::string>>(), ElementsAre(HasSubstr(wrong[i])));
+    ASSERT_EQ(cells[i]["time_ms"].contains("screen"), i > 0);
+    if (i == 0) continue;
+    EXPECT_LT(cells[i]["time_ms"]["screen"]["median"], cells[i]["time_ms"]["lookup"]["median"]);
+    EXPECT_GT(cells[i]["screen_reads"], 4.0);
+  }
+  EXPECT_EQ(cells[6]["absent"]["kernel"], "a part of the filter's kernel is on the screen, in pixels");
+  EXPECT_THAT(read("out/timings.csv"), HasSubstr("screen"));
+}
+
 /// Every built-in filter on every scene, with parameters too that change what is read.
 TEST_F(Suspects, BuiltInFilters_AreNone) {
   succeed(
