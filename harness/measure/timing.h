@@ -58,7 +58,7 @@ struct RoundTimes {
 struct TimedFilter {
   std::function<double()> prefilter;  ///< empty for filters that read depth
   std::function<double()> lookup;
-  std::function<double()> screen;  ///< empty for filters without screen passes
+  std::function<double()> screen = {};  ///< empty for filters without screen passes
 };
 
 /// Makes passes that are timed; of no function none is made.

@@ -24,6 +24,7 @@ struct TradeScope {
 /// order in which it appears. Scenes together hold only configurations that every scene and
 /// view has, and leave out what list_left_out() does. Requires that the cells outlive what is returned.
 std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>& cells);
+std::vector<TradeScope> make_trade_scopes(std::vector<records::CellRecord>&&) = delete;
 
 /// Reads an error or a cost of a configuration, as the measure combines scenes. Suspect cells have none.
 Measured measure(const Configuration& configuration, const Quantity& quantity);

@@ -7,7 +7,7 @@ import { pageOf, pick } from "./support.mjs";
 // On the second every filter is drawn once; the other kinds of map are those of few filters there.
 for (const [title, args, mostScenes] of [["OnTheRunsOwnRasteriser", kMesa, 9], ["OnAnotherImplementation", kOwn, 1]])
   test(`EveryFilterDrawsAsTheRunDid_${title}`, () => withBrowser(args, async (browser) => {
-    for (const [run, count, absent] of [["live", 28, { textureGather: 2 }], ["lamps", 4, {}], ["fits", 18, { "geometry shaders": 2 }],
+    for (const [run, count, absent] of [["live", 29, { textureGather: 2 }], ["lamps", 4, {}], ["fits", 18, { "geometry shaders": 2 }],
       ["hashed", 3, {}], ["dither", 3, {}]]) {
       const { page, messages, shoot, close } = await openLive(pageOf(run), browser);
       const requests = [], scenes = await page.locator(".live select").first().locator("option").allTextContents();

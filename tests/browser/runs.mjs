@@ -35,7 +35,7 @@ const kRuns = {
   single: ["run", "--scene", "cubes", ...kSmall, "--filters", "tent3x3"],
   mixed: ["run", "--scene", "cubes", "--size", "160x90", "--map-size", "64,128", "--rounds", "4", "--no-attribution", "--no-grids", "--filters",
     "none,pcf2x2,tent3x3,vsm,vsm:radius=1,esm:radius=1"],
-  live: ["run", "--scene", "cubes", "--scene", "lantern", "--filters", "all", ...kSmall],
+  live: ["run", "--scene", "cubes", "--scene", "lantern", "--filters", "all,pcss:screen=bilateral", ...kSmall],
   ball: ["run", "--scene", "ball", "--filters", "none,pcss,vsm", "--size", "240x135", "--map-size", "512", "--rounds", "2", ...kLean],
   lamps: ["run", "--scene", "three_lights", "--filters", "none,tent3x3,vsm,pcss", ...kSmall],
   fits: ["run", "--scene", "avenue", ...kFits.flatMap((fit) => ["--fit", fit]), "--filters", "none,vsm", "--width", "own", ...kSmall],

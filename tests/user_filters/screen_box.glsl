@@ -37,7 +37,7 @@ vec2 row(ScreenInput s) {
 // Visibility is a quarter of the mean in the end.
 vec2 halve(ScreenInput s) {
   vec2 own = load_screen(s, ivec2(0));
-  if (spoil == SPOIL_NOT_FINITE) own.x /= 0.0 * own.y;
+  if (spoil == SPOIL_NOT_FINITE) own.x = sqrt(-1.0 - own.x);
   for (int i = 0; spoil == SPOIL_ENDLESS && i < 1000000; ++i) own.x += 1e-12 * float(i % 2);
   return 0.5 * own;
 }

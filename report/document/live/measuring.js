@@ -2,6 +2,12 @@
 const kVisibility = "visibility_image"; // the sampler of the shading, which reads what the lookup wrote
 const kGoals = { comparison: 1e-5, stored: 1e-3 }; // RMSE to the run's visibility
 const kFarthestTap = 16; // texels
+const kScreen = "screen_image"; // the sampler of screen passes
+const kScreenReach = 8; // pixels that one of them is taken to read
+
+// The steps of a filter's screen passes, of those that lead to a step.
+const listScreens = (player, frames, last) =>
+  [...player.listSteps(last)].filter((index) => frames.steps[index].inputs?.some(({ sampler }) => sampler === kScreen));
 
 const compareValues = (values, plane, mask, width, { x, y, width: columns, height: rows }, leftOut) => {
   const gaps = [];
@@ -29,7 +35,8 @@ const checkFrame = ({ player, picture, frames }, plane, mask, { weight, shift, t
   const own = read();
   const { width, height } = player.textureOf(visibility);
   const [x, y, columns, rows] = frames.check.rect;
-  const inner = { x: x + 1, y: y + 1, width: columns - 2, height: rows - 2 };
+  const margin = 1 + kScreenReach * listScreens(player, frames, visibility).length;
+  const inner = { x: x + margin, y: y + margin, width: columns - 2 * margin, height: rows - 2 * margin };
   const gap = compareValues(same, plane, mask, width, inner, 4 * shift);
   const all = compareValues(own, plane, mask, width, { x: 0, y: 0, width, height }, 0);
   const isStored = frames.steps[visibility].inputs.some(({ sampler }) => /^map_(?!depth$|compare)/.test(sampler));
@@ -47,7 +54,12 @@ const stepsOf = ({ player, picture, empty, frames }) => {
   };
   const textureOf = (index) => frames.steps[index].targets[0].texture;
   const into = (indices, among) => among.filter((index) => indices.map(textureOf).includes(textureOf(index)));
-  const lookupOf = (last) => (last === null ? [] : into([last], [...player.listSteps(last)]));
+  // With the filter's screen passes, which read what the lookup or a pass before has drawn.
+  const lookupOf = (last) => {
+    if (last === null) return [];
+    const read = listScreens(player, frames, last).map((index) => player.inputOf(index, kScreen));
+    return into([last, ...read], [...player.listSteps(last)]);
+  };
   const map = into([...labelled("depth"), ...labelled("midpoint")], all);
   const lookup = lookupOf(visibility);
   const shared = [...map, ...lookup, ...labelled("gbuffer"), ...labelled("prepare_receivers")];

@@ -202,7 +202,7 @@ TEST_F(Suspects, ScreenPasses_AreMeasured_AndJudged) {
     EXPECT_LT(cells[i]["time_ms"]["screen"]["median"], cells[i]["time_ms"]["lookup"]["median"]);
     EXPECT_GT(cells[i]["screen_reads"], 4.0);
   }
-  EXPECT_EQ(cells[6]["absent"]["kernel"], "a part of the filter's kernel is on the screen, in pixels");
+  EXPECT_THAT(cells[6]["absent"].dump(), HasSubstr("a part of the filter's kernel is on the screen, in pixels"));
   EXPECT_THAT(read("out/timings.csv"), HasSubstr("screen"));
 }
 

@@ -72,10 +72,14 @@ store = "rg32f"
 steps = "levels"
 size = "full"
 anisotropy = 1
+[screen.blur]
+reach = 1
+steps = 2
 +++*/
 #include "lib/disk.glsl"
 vec4 encode(EncodeInput e) { return vec4(e.depth); }
 vec4 sum(PassInput p) { return vec4(0.0); }
+vec2 blur(ScreenInput s) { return vec2(0.0); }
 float visibility(Receiver r) { return 1.0; }
 )";
 
@@ -100,6 +104,7 @@ const std::map<std::string, std::pair<std::string, std::string>> kChanges = {
     {".disk", {"[pass.sum]", "[disk.more]\ncount = \"n\"\n[pass.sum]"}},
     {".kernel", {"kernel = {shape = \"gaussian:radius\", read = \"bilinear\"}\n", ""}},
     {".pass", {"[pass.sum]\nstore = \"rg32f\"\nsteps = \"levels\"\nsize = \"full\"\nanisotropy = 1\n", ""}},
+    {".screen", {"[screen.blur]\nreach = 1\nsteps = 2\n", ""}},
     {"param.default", {"default = 3", "default = 4"}},
     {"param.min", {"min = 0\n", "min = 1\n"}},
     {"param.max", {"max = 9", "max = 10"}},
@@ -114,6 +119,8 @@ const std::map<std::string, std::pair<std::string, std::string>> kChanges = {
     {"pass.steps", {"steps = \"levels\"", "steps = \"once\""}},
     {"pass.size", {"size = \"full\"", "size = \"half\""}},
     {"pass.anisotropy", {"anisotropy = 1", "anisotropy = 4"}},
+    {"screen.reach", {"reach = 1", "reach = 2"}},
+    {"screen.steps", {"steps = 2", "steps = 3"}},
     {"kernel.shape", {"gaussian:radius", "box:3"}},
     {"kernel.weights", {"shape = \"gaussian:radius\"", "weights = [1, 2, 1]"}},
     {"kernel.read", {"read = \"bilinear\"", "read = \"nearest\""}},

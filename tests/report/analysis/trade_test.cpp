@@ -28,13 +28,15 @@ FrontPoint make_point(double error, double cost, std::optional<std::size_t> grou
 }
 
 TEST(TradeScopes, AreEachScene_AndAllTogetherFirst) {
-  const auto scopes = make_trade_scopes({make_sweep_cell({"cubes"}), make_sweep_cell({"stack"})});
+  const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"stack"})};
+  const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(3));
   EXPECT_EQ(scopes[0].title, "all 2 scenes · 960 × 540");
   EXPECT_EQ(scopes[1].title, "cubes · view main · 960 × 540");
   EXPECT_TRUE(scopes[0].is_joint);
   EXPECT_EQ(scopes[2].title, "stack · view main · 960 × 540");
-  EXPECT_THAT(make_trade_scopes({make_sweep_cell({"cubes"})}), SizeIs(1));
+  const std::vector<records::CellRecord> one = {make_sweep_cell({"cubes"})};
+  EXPECT_THAT(make_trade_scopes(one), SizeIs(1));
 }
 
 TEST(TradeScopes, APlaceThatTheAnswerLeavesOut_IsInNoMeanOverScenes) {
@@ -57,8 +59,9 @@ TEST(TradeScopes, MapSizesShareAFront_PicturesDoNot) {
 }
 
 TEST(TradeScopes, OfAll_HoldOnlyWhatEverySceneHas) {
-  const auto scopes = make_trade_scopes(
-      {make_sweep_cell({"cubes"}), make_sweep_cell({"cubes", "vsm", 4.0}), make_sweep_cell({"stack"})});
+  const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"cubes", "vsm", 4.0}),
+                                                  make_sweep_cell({"stack"})};
+  const auto scopes = make_trade_scopes(cells);
   EXPECT_THAT(scopes[0].configurations, SizeIs(1));
 }
 
@@ -99,13 +102,15 @@ TEST(TradeMeasures, Time_IsTheFiltersOwn_NotTheWholeLookup) {
 TEST(TradeMeasures, Rmse_HasItsIntervalOverPhases) {
   records::CellRecord cell = make_sweep_cell({});
   cell.rmse_ci95 = records::Interval{0.095, 0.105};
-  const auto scopes = make_trade_scopes({cell});
+  const std::vector<records::CellRecord> cells = {cell};
+  const auto scopes = make_trade_scopes(cells);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).low, 0.095);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).high, 0.105);
 }
 
 TEST(TradeMeasures, RmseOfOnePhase_HasTheTruthsStandardError) {
-  const auto scopes = make_trade_scopes({make_sweep_cell({})});
+  const std::vector<records::CellRecord> cells = {make_sweep_cell({})};
+  const auto scopes = make_trade_scopes(cells);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).low, 0.099);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).high, 0.101);
 }
