@@ -113,6 +113,25 @@ TEST_F(Gpus, AUsersFilterHasTheFactsOfABuiltInOne_AndNearlyItsEstimate) {
   }
 }
 
+TEST_F(Gpus, WideTexelsTakeLonger_AndReadsOfModelsAreMemory) {
+  const auto cells = measure("--gpu navi21,vega10 --filters none,vsm,evsm4");
+  if (has_no_compiler()) GTEST_SKIP() << messages_;
+  const auto part = [&](const char* filter, const char* gpu, const char* name) {
+    return cells.at(filter)["gpu"][gpu]["parts_us"][name].get<double>();
+  };
+  // One fetch each, of 32, 64 and 128 bits; data/gpus has the rates.
+  EXPECT_DOUBLE_EQ(part("vsm", "navi21", "sampling"), part("none", "navi21", "sampling"));
+  EXPECT_DOUBLE_EQ(part("evsm4", "navi21", "sampling"), 2.0 * part("none", "navi21", "sampling"));
+  EXPECT_DOUBLE_EQ(part("vsm", "vega10", "sampling"), 2.0 * part("none", "vega10", "sampling"));
+  EXPECT_DOUBLE_EQ(part("evsm4", "vega10", "sampling"), 4.0 * part("none", "vega10", "sampling"));
+  EXPECT_GT(part("none", "navi21", "memory"), 0.0);
+  EXPECT_GT(part("evsm4", "navi21", "memory"), part("vsm", "navi21", "memory"));
+  for (const char* filter : {"none", "vsm", "evsm4"})
+    EXPECT_DOUBLE_EQ(part(filter, "navi21", "lookup"),
+                     std::max({part(filter, "navi21", "arithmetic"), part(filter, "navi21", "sampling"),
+                               part(filter, "navi21", "memory")}));
+}
+
 /// Of the very same frame, whatever the size of the run's pictures.
 TEST_F(Gpus, EstimatesDoNotDependOnThePicturesSize) {
   const std::string filters = "--gpu navi21 --no-attribution --filters none,tent5x5,pcss,vsm ";
@@ -126,6 +145,30 @@ TEST_F(Gpus, EstimatesDoNotDependOnThePicturesSize) {
     EXPECT_NEAR(a / b, 1.0, 0.1) << filter;
     EXPECT_EQ(cell["gpu"]["navi21"]["parts_us"]["memory"], large.at(filter)["gpu"]["navi21"]["parts_us"]["memory"]);
   }
+}
+
+/// By the triangles and texels of every cascade.
+TEST_F(Gpus, MoreCascadesCostMore) {
+  measure("--gpu navi21 --no-attribution --filters none --fit cascades:count=2 --fit cascades:count=4");
+  if (has_no_compiler()) GTEST_SKIP() << messages_;
+  const json cells = read_cells();
+  ASSERT_EQ(cells.size(), 2u);
+  const auto map_us = [&](int cell) { return cells[cell]["gpu"]["navi21"]["parts_us"]["map"].get<double>(); };
+  EXPECT_GT(map_us(0), 0.0);
+  EXPECT_GT(map_us(1), 1.5 * map_us(0));
+  EXPECT_GT(cells[1]["gpu"]["navi21"]["frame_ms"]["moving"], cells[0]["gpu"]["navi21"]["frame_ms"]["moving"]);
+}
+
+/// The pixels of a frame of 1080 rows lie about two texels of such a map apart: a lookup that reads one texel brings
+/// nearly every line that one of 25 brings. Pixels twice as far apart would bring seven tenths of them.
+TEST_F(Gpus, OfLargeMaps_NarrowLookupsBringNearlyTheSameLines) {
+  const auto cells = measure("--gpu navi21 --no-attribution --filters none,tent5x5", "", "4096 --size 96x54 ");
+  if (has_no_compiler()) GTEST_SKIP() << messages_;
+  const auto memory = [&](const char* filter) {
+    return cells.at(filter)["gpu"]["navi21"]["parts_us"]["memory"].get<double>();
+  };
+  EXPECT_GT(memory("none"), 0.9 * memory("tent5x5"));
+  EXPECT_LT(memory("none"), memory("tent5x5"));
 }
 
 TEST_F(Gpus, WithNone_NothingIsCompiled) {

@@ -196,6 +196,21 @@ TEST_F(Regress, HalfAcceptedBaseline_IsMadeWhole) {
   EXPECT_FALSE(std::filesystem::exists(folder() / half));
 }
 
+TEST_F(Regress, AcceptThatIsKilledWhileItWrites_IsMadeWholeByTheNext) {
+  draw("a", "--filters none,pcf2x2,box3x3,tent3x3,poisson");
+  const std::string accept = "'" SHADOWBENCH_PROGRAM "' regress a --baseline base --accept >/dev/null 2>&1";
+  for (const char* wait : {"0", "0.02"}) {
+    std::filesystem::remove_all(folder() / "base");
+    const std::string script = "cd '" + folder().string() + "'; " + accept +
+                               " & while [ ! -e base/baseline.toml ] && kill -0 \\$!; do :; done; sleep " + wait +
+                               "; kill -9 \\$!; wait";
+    std::system(("bash -c \"" + script + "\" 2>/dev/null").c_str());
+    EXPECT_EQ(compare("a", "--accept").exit_code, 0);
+    EXPECT_EQ(compare("a").exit_code, 0);
+    for (const auto& [name, text] : read_baseline()) EXPECT_EQ(name.find("tmp"), std::string::npos) << name;
+  }
+}
+
 TEST_F(Regress, UnreadableFile_KeepsTheCellsThatWereNotCompared_Unreadable) {
   draw("a", "--filters none,pcf2x2 --map-size 64,128");
   ASSERT_EQ(compare("a", "--accept").exit_code, 0);

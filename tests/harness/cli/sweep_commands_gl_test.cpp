@@ -200,6 +200,8 @@ TEST_F(TuneCommand, UnderAFixedFit_GoesOnWithoutWhatCannotBeTuned) {
   EXPECT_EQ(tuned["filters"][0]["fit"], tuned["fit"]);
 }
 
+/// `run` under the fit that was found has the error that is said of it, and nearly the least of a scan: that is of one
+/// of the three views that the fit was found on.
 TEST_F(TuneCommand, OfCascades_FindsSplitAndBlend) {
   const std::string same = " --scene avenue --filters none --map-size 128 --size 96x54 ";
   const Outcome outcome = succeed("tune --out out --fit cascades:count=3 --budget 20" + same);
@@ -212,6 +214,19 @@ TEST_F(TuneCommand, OfCascades_FindsSplitAndBlend) {
                                         blend["found"].get<double>());
   EXPECT_EQ(filter["fit"], found);
   EXPECT_THAT(outcome.out, HasSubstr("--fit " + found));
+  std::string fits = " --fit " + found + " --fit cascades:count=3";
+  for (const double each : {0.3, 0.7, 0.8, 0.9, 1.0})
+    if (each != split["found"].get<double>())  // or one fit is named twice
+      fits += fmt::format(" --fit cascades:count=3,split={},blend={}", each, blend["found"].get<double>());
+  succeed("run --out report --rounds 1 --phases 1 --no-attribution --pad-texels 1 --no-grids" + fits + same);
+  const json cells = read_cells("report");
+  ASSERT_GE(cells.size(), 6u);
+  for (const auto& view : filter["views"]) {
+    if (view["view"] != "as it is") continue;
+    EXPECT_EQ(view["score"]["tuned"], cells[0]["error"]["rmse"]);
+    EXPECT_EQ(view["score"]["default"], cells[1]["error"]["rmse"]);
+  }
+  for (const auto& cell : cells) EXPECT_LT(cells[0]["error"]["rmse"], 1.1 * cell["error"]["rmse"].get<double>());
 }
 
 /// The camera stands by the edge of the ground and looks along it: turned away from it, it sees next to none.
@@ -271,6 +286,15 @@ TEST_F(TuneCommand, Leak_IsThatOfRun_UnderMuchBias) {
   EXPECT_LT(artefact["leak"], 0.01);
   succeed("tune --out out --budget 1 --metric leak" + same);
   EXPECT_EQ(read_default_score(), artefact["leak"].get<double>());
+}
+
+TEST_F(TuneCommand, Acne_IsTunedOverItsMask) {
+  const Outcome outcome = tune("--filters poisson --metric acne --budget 4 --bias none");
+  const json filter = read_tuned()["filters"][0];
+  EXPECT_GT(filter["training"]["default"], 0.1);  // without bias
+  EXPECT_TRUE(filter["unseen_truth_se"].is_null());
+  tune("--filters poisson --metric acne --budget 1");
+  EXPECT_LT(read_tuned()["filters"][0]["training"]["default"], 0.02);
 }
 
 /// Nobody asked for 'fence' by name: its bars are too thin for a leak.
