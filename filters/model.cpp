@@ -30,7 +30,8 @@ const char* explain_no_kernel(const FilterSpec& spec, const ParamValues& values)
 void ScreenPicture::add(const Receiver& receiver, const ModelResult& result) {
   Pixel& pixel = pixels_[static_cast<std::size_t>(receiver.pixel.y * size_.x + receiver.pixel.x)];
   const double share = static_cast<double>(receiver.layer_share);
-  pixel.receiver = &receiver;
+  pixel.position_ws = receiver.position_ws;
+  pixel.normal_ws = receiver.normal_ws;
   pixel.share += receiver.layer_share;
   pixel.result.visibility += share * result.visibility;
   pixel.result.bound += share * result.bound;
@@ -44,8 +45,11 @@ void ScreenPicture::filter(const ScalarModel& model, const FilterSpec& spec, con
   for (const ScreenSpec& screen : list_screens(spec, values)) {
     for (int step = 0; step < screen.steps; ++step) {
       std::vector<Pixel> next = pixels_;
-      for (Pixel& pixel : next)
-        if (pixel.takes_part()) pixel.result = model.screen(*this, pixel.receiver->pixel, step, precision);
+      for (int i = 0; Pixel & pixel : next) {
+        const glm::ivec2 place(i % size_.x, i / size_.x);
+        if (pixel.takes_part()) pixel.result = model.screen(*this, place, step, precision);
+        ++i;
+      }
       pixels_ = std::move(next);
     }
   }

@@ -64,7 +64,7 @@ class Pcss {
     for (int i = -kBlurReach; i <= kBlurReach; ++i) {
       const ScreenPicture::Pixel* there = picture.find(pixel + i * axis);
       if (!there || i == 0) continue;
-      const T weight = near_on_surface<T>(*own.receiver, *there->receiver, blurred);
+      const T weight = near_on_surface<T>(own, *there, blurred);
       if (value_of(weight) > 0.0) result.excused = result.excused || there->result.excused;
       sum = sum + weight * make_uncertain<T>(static_cast<P>(there->result.visibility), there->result.bound);
       weights = weights + weight;

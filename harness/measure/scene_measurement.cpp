@@ -183,9 +183,7 @@ class SceneBench {
   images::Image bound_rounding(const filters::ScalarModel& model, const render::FilterPasses& filter) {
     images::Image image(rig_.options.width, rig_.options.height, 1);
     const filters::FilterRequest& request = filter.request();
-    const bool has_screen = model.screen && filter.has_screen();
-    filters::ScreenPicture picture(has_screen ? rig_.options.width : 0, has_screen ? rig_.options.height : 0);
-    std::vector<std::vector<filters::Receiver>> layers;
+    auto picture = filters::ScreenPicture::make(model, request.spec, request.values, image.width, image.height);
     for (const render::LightSetup& layer : filter.light()) {
       const filters::DepthMap map = light_.map.read(layer.frustum.layer);
       const auto tracked = model.prepare({.spec = request.spec,
@@ -195,23 +193,21 @@ class SceneBench {
                                           .seed = rig_.options.seed,
                                           .plane_max_tangent = rig_.options.bias.plane_max_tangent()},
                                          filters::Precision::kTracked);
-      const std::vector<filters::Receiver>& receivers =
-          layers.emplace_back(render::read_receivers(rig_.renderer.shaders, gbuffer_, layer));
+      const auto receivers = render::read_receivers(rig_.renderer.shaders, gbuffer_, layer);
       visit_in_parallel(receivers.size(), [&](std::size_t i) {
         const filters::ModelResult result = tracked->at(receivers[i]);
-        if (has_screen) picture.add(receivers[i], result);
+        if (picture) picture->add(receivers[i], result);
         const float of_share = receivers[i].layer_share < 1.0f ? 0x1p-23f : 0.0f;
         const float bound = result.bound < 1.0 ? static_cast<float>(result.bound) + of_share : 1.0f;
         float& pixel = image.texels[find_pixel(receivers[i], rig_.options.width, rig_.options.height)];
         pixel = result.excused ? images::kMayFlip : pixel + receivers[i].layer_share * bound;
       });
     }
-    if (!has_screen) return image;
-    picture.filter(model, request.spec, request.values, filters::Precision::kTracked);
-    for (const filters::ScreenPicture::Pixel& pixel : picture.pixels())
-      if (pixel.takes_part())
-        image.texels[find_pixel(*pixel.receiver, rig_.options.width, rig_.options.height)] =
-            pixel.result.excused ? images::kMayFlip : static_cast<float>(std::min(pixel.result.bound, 1.0));
+    if (!picture) return image;
+    picture->filter(model, request.spec, request.values, filters::Precision::kTracked);
+    picture->visit_from_top([&](std::size_t i, const filters::ModelResult& result) {
+      image.texels[i] = result.excused ? images::kMayFlip : static_cast<float>(std::min(result.bound, 1.0));
+    });
     return image;
   }
 

@@ -189,8 +189,7 @@ ModelImages evaluate_model(const filters::FilterRequest& request, const std::vec
   images.model.assign(pixels, 1.0);
   if (has_disks) images.closer.assign(pixels, 1.0);
   std::atomic<std::int64_t> excused = 0;
-  const bool has_screen = model->screen && !filters::list_screens(request.spec, request.values).empty();
-  filters::ScreenPicture picture(has_screen ? view.width : 0, has_screen ? view.height : 0);
+  auto picture = filters::ScreenPicture::make(*model, request.spec, request.values, view.width, view.height);
   for (const ModelLayer& layer : layers) {
     const filters::ModelInput input{.spec = request.spec,
                                     .values = request.values,
@@ -207,19 +206,18 @@ ModelImages evaluate_model(const filters::FilterRequest& request, const std::vec
       if (has_disks)
         images.disk_radii_texels.back()[pixel] =
             std::round(kRadiiPerTexel * static_cast<float>(result.disk_radius_texels)) / kRadiiPerTexel;
-      if (has_screen) picture.add(receiver, result);
+      if (picture) picture->add(receiver, result);
       if (result.excused) ++excused;
     });
     if (has_disks) compare_disks(images, layer, view);
   }
-  if (has_screen) {
-    picture.filter(*model, request.spec, request.values, filters::Precision::kDouble);
+  if (picture) {
+    picture->filter(*model, request.spec, request.values, filters::Precision::kDouble);
     excused = 0;
-    for (const filters::ScreenPicture::Pixel& pixel : picture.pixels()) {
-      if (!pixel.takes_part()) continue;
-      images.model[find_pixel(*pixel.receiver, view.width, view.height)] = pixel.result.visibility;
-      if (pixel.result.excused) ++excused;
-    }
+    picture->visit_from_top([&](std::size_t i, const filters::ModelResult& result) {
+      images.model[i] = result.visibility;
+      if (result.excused) ++excused;
+    });
   }
   images.excused = excused;
   return images;

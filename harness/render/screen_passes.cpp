@@ -16,10 +16,10 @@ constexpr GLuint kScreenUnit = 4;  // of lib/screen_input.glsl
 ScreenPasses::ScreenPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light,
                            const Defines& map_defines)
     : request_(request), map_defines_(map_defines), passes_(compile(shaders, light, nullptr)) {
+  std::vector<std::string> maps = {"map_depth", "map_compare", "map_compare_nearest", "map_stored"};
+  for (const filters::PassSpec& own : request.spec.passes) maps.push_back("map_" + own.name);
   for (const Pass& pass : passes_) {
-    const auto& uniforms = pass.program;
-    if (uniforms.has("map_depth") || uniforms.has("map_compare") || uniforms.has("map_compare_nearest") ||
-        uniforms.has("map_stored"))
+    if (std::ranges::any_of(maps, [&](const std::string& map) { return pass.program.has(map); }))
       throw Error(ErrorKind::kFilter,
                   fmt::format("the screen pass '{}' reads the shadow map: only visibility() may; hand on what it finds "
                               "as screen_value",

@@ -89,17 +89,20 @@ records::TextTable make_cost_table(const analysis::CellGroup& group, const recor
                   fmt::format("moving light: map, prefilter, filter, {}, median [95 %]", unit),
                   fmt::format("static light: filter alone, {}, median [95 %]", unit),
                   fmt::format("lookup, {}, median [quartiles]", unit),
-                  fmt::format("of it on the screen, {}", unit),
                   fmt::format("prefilter, {}", unit),
                   fmt::format("map, {}", unit)};
+  const auto has_screen = [](const records::CellRecord& cell) { return cell.time_ms.screen.has_value(); };
+  const bool shows_screen = std::ranges::any_of(group.cells, has_screen);
+  if (shows_screen) table.header.push_back(fmt::format("of the lookup on the screen, {}", unit));
   add_titles(table.header, costs);
   table.header.emplace_back("status");
   for (const records::CellRecord& cell : group.cells) {
     auto& row = table.rows.emplace_back(std::vector<std::string>{
         cell.filter, cell.params.empty() ? records::kNothing : records::describe_params(cell.params),
         records::describe_kernel(cell.kernel), format_own(cell.time_ms.moving), format_own(cell.time_ms.static_light),
-        format_quartiles(cell.time_ms.lookup), format_quartiles(cell.time_ms.screen),
-        format_quartiles(cell.time_ms.prefilter), format_quartiles(cell.time_ms.map)});
+        format_quartiles(cell.time_ms.lookup), format_quartiles(cell.time_ms.prefilter),
+        format_quartiles(cell.time_ms.map)});
+    if (shows_screen) row.push_back(format_quartiles(cell.time_ms.screen));
     add_values(row, costs, cell);
     row.push_back(records::describe_status(cell));
   }
