@@ -13,9 +13,9 @@
 
 namespace shadowbench::stress {
 
-FilterBench::FilterBench(const AxisInputs& inputs, filters::FilterRequest request)
+FilterBench::FilterBench(const AxisInputs& inputs, filters::FilterRequest request, bool is_picture)
     : shaders_(inputs.renderer->shaders), request_(std::move(request)) {
-  request_.spec.screens.clear();  // receivers side by side are no picture
+  if (!is_picture) request_.spec.screens.clear();
 }
 
 void FilterBench::resize(const BenchSize& size) {
@@ -57,20 +57,7 @@ scene::LightFrustum make_axis_frustum(double width_ws, int map_texels) {
 
 namespace {
 
-constexpr glm::vec3 kFacingLight{0.0f, 0.0f, -1.0f};
 constexpr double kNearlyLit = 1e-3;  // all is lit, or dark: every receiver is this near to it
-
-filters::Receiver make_receiver(const SyntheticScene& scene, std::size_t i) {
-  filters::Receiver r;
-  r.position_ws = scene.receivers[i];
-  r.normal_ws = kFacingLight;
-  r.uv = {r.position_ws.x, r.position_ws.y};
-  r.depth = r.depth_unbiased = r.position_ws.z;
-  r.texel_size_ws = 1.0f / static_cast<float>(scene.size);
-  r.view_depth = 1.0f;
-  r.pixel = {static_cast<int>(i), 0};
-  return r;
-}
 
 bool is_all(const std::vector<double>& values, double of) {
   return std::ranges::all_of(
@@ -91,6 +78,18 @@ double find_largest_fall(const std::vector<double>& values, std::size_t run) {
 }
 
 }  // namespace
+
+filters::Receiver make_receiver(const SyntheticScene& scene, std::size_t i) {
+  filters::Receiver r;
+  r.position_ws = scene.receivers[i];
+  r.normal_ws = kFacingLight;
+  r.uv = {r.position_ws.x, r.position_ws.y};
+  r.depth = r.depth_unbiased = r.position_ws.z;
+  r.texel_size_ws = 1.0f / static_cast<float>(scene.size);
+  r.view_depth = 1.0f;
+  r.pixel = {static_cast<int>(i), 0};
+  return r;
+}
 
 std::vector<float> make_split_depths(int size, float left, float right) {
   std::vector<float> depths(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), right);

@@ -26,8 +26,9 @@ struct BenchSize {
 /// One filter with the shadow map that it reads, the G-buffer of its receivers and the picture that it writes.
 class FilterBench {
  public:
-  /// Requires inputs.renderer, which outlives the bench. Nothing is compiled or allocated before resize().
-  FilterBench(const AxisInputs& inputs, filters::FilterRequest request);
+  /// Requires inputs.renderer, which outlives the bench. Nothing is compiled or allocated before resize(). Screen
+  /// passes run where the receivers are a picture.
+  FilterBench(const AxisInputs& inputs, filters::FilterRequest request, bool is_picture = false);
 
   /// Allocates map, G-buffer and picture; keeps those that have this size.
   /// Throws Error as render::ShadowMap.
@@ -79,6 +80,12 @@ struct SyntheticScene {
   /// The uv of a texel's centre.
   float uv(int texel) const { return (static_cast<float>(texel) + 0.5f) / static_cast<float>(size); }
 };
+
+/// The normal of such receivers.
+inline constexpr glm::vec3 kFacingLight{0.0f, 0.0f, -1.0f};
+
+/// The i-th receiver as a model sees it, for a light without size.
+filters::Receiver make_receiver(const SyntheticScene& scene, std::size_t i);
 
 /// The depths of a map whose left half, the middle column included, has one depth and whose right half another.
 std::vector<float> make_split_depths(int size, float left, float right);

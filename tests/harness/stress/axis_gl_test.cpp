@@ -54,6 +54,15 @@ Case find_case(const AxisInputs& inputs, const std::string& axis, const std::str
   return {};
 }
 
+TEST(PictureSize, PassThatIsNarrowerThanAPixel_ChangesNothing_AndAWiderOneTakesNoise) {
+  const AxisInputs inputs = make_gl_inputs("pcss:taps=4,search_taps=4");
+  const Axis axis = choose_axes("picture-size")[0];
+  expect_theories_met(axis, inputs, Level::kGl, false);
+  const Case item = axis.make_cases(inputs).at(0);
+  EXPECT_NEAR(item.observe(7.0).measured.value(), 1.0, 1e-4);
+  EXPECT_LT(item.observe(256.0).measured.value(), 0.3);
+}
+
 /// Every case of this axis that runs on this GL keeps to its theory.
 TEST(MapSize, GlCases_MeetTheirTheories) {
   Axis axis = choose_axes("map-size")[0];
