@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/files.h"
+#include "harness/engines/external_images.h"
 #include "report/images/picture_io.h"
 #include "tests/test_files.h"
 
@@ -376,6 +378,100 @@ TEST(Alignment, WhatCannotBeCompared_IsAnError) {
   Image nothing = black;
   std::ranges::fill(nothing.texels, std::numeric_limits<float>::infinity());
   EXPECT_THAT(refusal_of({{}, {}, nothing, {}, "test", {}, {}}), HasSubstr("no receiver has a visibility"));
+}
+
+// Pictures of other renderers, from files that the test writes.
+
+images::Image make_grey(float value) {
+  images::Image image(4, 4, 3);
+  std::ranges::fill(image.texels, value);
+  return image;
+}
+
+/// A file that is named for two layers gives each its own part, whatever its first part is.
+TEST(ExternalImages, AFileOfSeveralParts_GivesEachLayerItsOwn) {
+  const ScratchFolder folder(make_temporary_folder_path(std::filesystem::temp_directory_path() / "layers", "test"));
+  std::filesystem::create_directories(folder.path());
+  const std::string file = (folder.path() / "both.exr").string();
+  images::write_exr(file, {{"unlit", {"R", "G", "B"}, make_grey(0.25f)}, {"lit", {"R", "G", "B"}, make_grey(0.75f)}},
+                    {});
+  ExternalFiles files;
+  files.lit = files.unlit = file;
+  const ExternalImages read = read_external_images(files);
+  EXPECT_EQ(read.lit.value().texels.front(), 0.75f);
+  EXPECT_EQ(read.unlit.value().texels.front(), 0.25f);
+}
+
+TEST(ExternalImages, AFileOfOnePart_IsTheLayerThatItIsNamedFor) {
+  const ScratchFolder folder(make_temporary_folder_path(std::filesystem::temp_directory_path() / "layers", "test"));
+  std::filesystem::create_directories(folder.path());
+  const std::string lit = (folder.path() / "a.exr").string(), unlit = (folder.path() / "b.exr").string();
+  images::write_exr(lit, {{"beauty", {"R", "G", "B"}, make_grey(0.5f)}}, {});
+  images::write_exr(unlit, {{"beauty", {"R", "G", "B"}, make_grey(0.125f)}}, {});
+  ExternalFiles files;
+  files.lit = lit;
+  files.unlit = unlit;
+  const ExternalImages read = read_external_images(files);
+  EXPECT_EQ(read.lit.value().texels.front(), 0.5f);
+  EXPECT_EQ(read.unlit.value().texels.front(), 0.125f);
+}
+
+constexpr int kSize = 8;
+const glm::vec3 kUp(0.0f, 1.0f, 0.0f);
+
+/// A map from straight above over the square 0 .. 8 of the floor: u along x, v against z, depth 0 at y = 8 and 1 at 0.
+OwnMap make_map(bool reversed = false) {
+  OwnMap map;
+  map.depth = images::Image(kSize, kSize, 1);
+  map.map_from_world = glm::dmat4(0.0);
+  map.map_from_world[0][0] = 1.0 / kSize;
+  map.map_from_world[2][1] = -1.0 / kSize;
+  map.map_from_world[3][1] = 1.0;
+  map.map_from_world[1][2] = reversed ? 0.125 : -0.125;
+  map.map_from_world[3][2] = reversed ? 0.0 : 1.0;
+  map.map_from_world[3][3] = 1.0;
+  const float floor = reversed ? 0.0f : 1.0f, roof = reversed ? 0.25f : 0.75f;
+  for (int row = 0; row < kSize; ++row)
+    for (int column = 0; column < kSize; ++column) *map.depth.at(column, row) = column < 3 && row < 2 ? roof : floor;
+  return map;
+}
+
+truth::ReceiverImage make_receivers(const std::vector<truth::ReceiverPoint>& points) {
+  truth::ReceiverImage image;
+  image.width = static_cast<int>(points.size());
+  image.height = 1;
+  image.points = points;
+  return image;
+}
+
+std::vector<double> look_up_from_above(const OwnMap& map, const std::vector<truth::ReceiverPoint>& points) {
+  return look_up(map, make_receivers(points), std::vector<glm::vec3>(points.size(), kUp));
+}
+
+TEST(OwnMap, ReceiversAreLookedUpInTheirTexel) {
+  // Under the roof, beside it along x and along z, and beyond the map; the first row of the map is z = 0.
+  const std::vector<truth::ReceiverPoint> points = {{{2.9f, 0.0f, 1.9f}, kUp, true}, {{3.1f, 0.0f, 1.9f}, kUp, true},
+                                                    {{2.9f, 0.0f, 2.1f}, kUp, true}, {{9.0f, 0.0f, 1.0f}, kUp, true},
+                                                    {{2.0f, 2.0f, 1.0f}, kUp, true}, {{2.9f, 0.0f, 1.9f}, kUp, false}};
+  const std::vector<double> expected = {0.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  EXPECT_EQ(look_up_from_above(make_map(), points), expected);
+  EXPECT_EQ(look_up_from_above(make_map(true), points), expected) << "a reversed map";
+}
+
+TEST(OwnMap, APlaneHasNoAcne_AndNoMoreBiasThanThat) {
+  OwnMap map = make_map();
+  // A slope that rises by one metre over each along x: a texel holds the depth of its middle.
+  for (int row = 0; row < kSize; ++row)
+    for (int column = 0; column < kSize; ++column)
+      *map.depth.at(column, row) = static_cast<float>(1.0 - 0.125 * (column + 0.5));
+  const glm::vec3 normal = glm::normalize(glm::vec3(-1.0f, 1.0f, 0.0f));
+  std::vector<truth::ReceiverPoint> on, below;
+  for (float x = 0.05f; x < 8.0f; x += 0.1f) {
+    on.push_back({{x, x, 4.0f}, normal, true});
+    below.push_back({{x, x - 1.05f, 4.0f}, normal, true});
+  }
+  EXPECT_EQ(look_up_from_above(map, on), std::vector<double>(on.size(), 1.0));
+  EXPECT_EQ(look_up_from_above(map, below), std::vector<double>(on.size(), 0.0));
 }
 
 }  // namespace

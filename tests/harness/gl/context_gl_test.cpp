@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -11,18 +12,18 @@
 #include "tests/harness/gl/gl_fixture.h"
 #include "tests/test_files.h"
 
-#ifdef __SANITIZE_ADDRESS__
-/// Mesa unloads its driver with the last GLX context, and no leak could be traced to the driver, nor suppressed, after
-/// that.
-extern "C" int dlclose(void* /*library*/) { return 0; }
-#endif
-
 namespace shadowbench::gl {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+
+#ifdef __SANITIZE_ADDRESS__
+/// Mesa unloads its driver with the last GLX context, and no leak could be traced to the driver, nor suppressed, after
+/// that.
+extern "C" int dlclose(void* /*library*/) { return 0; }
+#endif
 
 // Draws and reads back: what a context is for.
 void expect_it_draws(Context& context) {
@@ -181,6 +182,56 @@ TEST(Context, DriverThatMesaLacks_IsRefusedByName) {
   unsetenv("GALLIUM_DRIVER");
   EXPECT_EQ(error.kind(), ErrorKind::kContext);
   EXPECT_THAT(error.message(), HasSubstr("GALLIUM_DRIVER=nosuch"));
+}
+
+// What NUMBERS.md says of llvmpipe, found again.
+TEST_F(GlTest, Measurement_OfLlvmpipe_IsWhatIsKnownOfIt) {
+  for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
+    const WeightPrecision pcf = measure_pcf_weights(context(), format);
+    EXPECT_EQ(pcf.bits, WeightPrecision::kMaxBits);
+    EXPECT_EQ(pcf.max_error, 0.0);
+  }
+  const GlSurvey measured = survey_gl(context());
+  EXPECT_TRUE(measured.r32f.exact());
+  EXPECT_TRUE(measured.rg32f.exact());
+  EXPECT_GT(measured.exp_ulp, 1.0);
+  EXPECT_LT(measured.exp_ulp, 100.0);
+}
+
+TEST_F(GlTest, TimerQuery_OfLlvmpipe_IsNotBelieved) {
+  const TimerCheck check = check_timer(context());
+  EXPECT_GT(check.wall_ms, 1.0);
+  EXPECT_LT(check.agreement, 0.9);
+  EXPECT_EQ(choose_timer(context()), TimerKind::kWallClock);
+}
+
+TEST_F(GlTest, WallTime_GrowsWithTheWork) {
+  SurveyShader probe("survey_load.frag", {256, 256});
+  const auto time = [&](int iterations) {
+    probe.program().set("u_iterations", iterations);
+    double best = time_ms(TimerKind::kWallClock, [&] { probe.draw(); });
+    for (int i = 0; i < 4; ++i) best = std::min(best, time_ms(TimerKind::kWallClock, [&] { probe.draw(); }));
+    return best;
+  };
+  EXPECT_GT(time(400), 4.0 * time(20));
+}
+
+TEST_F(GlTest, WallTime_LeavesOutWhatWasQueuedBefore) {
+  SurveyShader probe("survey_load.frag", {512, 512});
+  probe.program().set("u_iterations", 400);
+  const auto time_nothing = [&] {
+    probe.draw();
+    return time_ms(TimerKind::kWallClock, [] {});
+  };
+  probe.draw();
+  const double one_draw = time_ms(TimerKind::kWallClock, [&] { probe.draw(); });
+  EXPECT_LT(std::min({time_nothing(), time_nothing(), time_nothing()}), 0.2 * one_draw);
+}
+
+TEST_F(GlTest, QueryTime_IsPositive) {
+  SurveyShader probe("survey_load.frag", {256, 256});
+  probe.program().set("u_iterations", 100);
+  EXPECT_GT(time_ms(TimerKind::kQuery, [&] { probe.draw(); }), 0.0);
 }
 
 }  // namespace

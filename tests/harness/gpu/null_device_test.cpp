@@ -1,26 +1,32 @@
-// What RADV says of shaders whose machine code is known to differ in one thing. Skipped, with the reason, where there
-// is no RADV.
-
 #include "harness/gpu/null_device.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "base/error.h"
+#include "base/files.h"
+#include "harness/gpu/facts_request.h"
 #include "harness/gpu/gpu.h"
+#include "harness/gpu/machine_code.h"
 
 namespace shadowbench::gpu {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
+
+// What RADV says of shaders whose machine code is known to differ in one thing. Skipped, with the reason, where there
+// is no RADV.
 
 /// Whether a process lives through asking the driver for a family: RADV ends those that ask for one that it has not.
 bool is_known(const std::string& family) {
@@ -152,6 +158,132 @@ TEST(NullDeviceDeathTest, AFamilyThatTheDriverDoesNotKnow) {
   };
   EXPECT_EXIT(make(), ::testing::KilledBySignal(SIGABRT), "NAVI99");
 }
+
+// The files between a run and the process that compiles for it.
+
+class FactsRequests : public ::testing::Test {
+ protected:
+  FactsRequests() { std::filesystem::create_directories(folder_.path()); }
+
+  std::filesystem::path file(const char* name) const { return folder_.path() / name; }
+
+  FactsRequest request() const {
+    const auto shader = [](const std::string& code) {
+      return PassSource{{"#version 450 core\nlayout(location = 0) out float r;\nvoid main() { " + code + " }\n",
+                         {"(program)", "mine.glsl"}},
+                        "r32f"};
+    };
+    return {"NAVI21",
+            file("cache"),
+            {shader("r = exp(gl_FragCoord.x) * gl_FragCoord.y;"), shader("r = nothing;"), shader("r = 1.0;")}};
+  }
+
+  /// What answers the request; skips the test where there is no RADV.
+  std::vector<FactsAnswer> answer() {
+    std::filesystem::remove(file("answers"));
+    write_request(file("request"), request());
+    answer_request(file("request"), file("answers"));
+    return read_answers(file("answers"));
+  }
+
+  ScratchFolder folder_{std::filesystem::temp_directory_path() / ("shadowbench.facts." + std::to_string(getpid()))};
+};
+
+TEST_F(FactsRequests, AreAnsweredInTheirOrder_AndKept) {
+  std::vector<FactsAnswer> first;
+  try {
+    first = answer();
+  } catch (const Error& error) {
+    GTEST_SKIP() << error.what();
+  }
+  ASSERT_EQ(first.size(), 3u);
+  EXPECT_EQ(first[0].refused, "");
+  EXPECT_GT(first[0].facts.instructions, first[2].facts.instructions);
+  EXPECT_THAT(first[1].refused, HasSubstr("'nothing'"));
+  // What was kept is taken: a number that nobody would compile comes back; what was damaged is made again.
+  std::vector<std::filesystem::path> kept;
+  for (const auto& entry : std::filesystem::directory_iterator(file("cache") / "gpu")) kept.push_back(entry.path());
+  ASSERT_EQ(kept.size(), 2u);
+  for (const auto& each : kept) {
+    std::ifstream stream(each);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::size_t at = text.find("\"instructions\":") + 15;
+    std::ofstream(each) << text.substr(0, at) << "98765" << text.substr(text.find_first_of(",}", at));
+  }
+  EXPECT_EQ(answer()[0].facts.instructions, 98765);
+  for (const auto& each : kept) std::ofstream(each) << "{\"instructions\": \"many\"}";
+  EXPECT_EQ(answer()[0].facts, first[0].facts);
+}
+
+TEST_F(FactsRequests, AnAnswerThatBreaksOff_EndsTheList) {
+  std::ofstream(file("answers")) << "{\"refused\":\"a\"}\n{\"refused\":\"b\"}\n{\"refu";
+  EXPECT_EQ(read_answers(file("answers")).size(), 2u);
+  EXPECT_TRUE(read_answers(file("nowhere")).empty());
+}
+
+TEST_F(FactsRequests, ARequestThatIsNone_IsRefused) {
+  std::ofstream(file("request")) << "{}";
+  EXPECT_THROW(answer_request(file("request"), file("answers")), Error);
+}
+
+// How textures are read, and loops, in a listing of machine code.
+
+records::ShaderFacts count(const char* listing) {
+  records::ShaderFacts facts;
+  count_reads(listing, facts);
+  return facts;
+}
+
+TEST(MachineCode, ReadsAreOfTheirKind) {
+  const records::ShaderFacts facts = count(
+      "BB0:\n"
+      "\timage_load v[0:3], v0, s[8:15] dmask:0xf unorm              ; f0001f00 00020000\n"
+      "\timage_load_mip v[0:3], v[0:2], s[8:15] dmask:0xf            ; f0001f00 00020000\n"
+      "\timage_sample v0, v[2:3], s[8:15], s[16:19] dmask:0x1         ; f0a00100 00820002\n"
+      "\timage_sample_lz v0, v[2:3], s[8:15], s[16:19] dmask:0x1      ; f0a00100 00820002\n"
+      "\timage_sample_l v0, v[2:3], s[8:15], s[16:19] dmask:0x1       ; f0a00100 00820002\n"
+      "\timage_sample_c v0, v[2:3], s[8:15], s[16:19] dmask:0x1       ; f0a00100 00820002\n"
+      "\timage_sample_c_lz_o v0, v[2:3], s[8:15], s[16:19] dmask:0x1  ; f0a00100 00820002\n"
+      "\timage_gather4_c_lz v[0:3], v[2:4], s[8:15], s[16:19]         ; f0a00100 00820002\n"
+      "\timage_gather4_lz v[0:3], v[2:4], s[8:15], s[16:19]           ; f0a00100 00820002\n"
+      "\timage_gather4_cl v[0:3], v[2:4], s[8:15], s[16:19]           ; f0a00100 00820002\n"
+      "\tbuffer_load_dword v0, off, s[0:3], 0                         ; e0500000 80000000\n"
+      "\ts_endpgm                                                     ; bf810000\n");
+  EXPECT_EQ(facts.loads, 2);
+  EXPECT_EQ(facts.samples, 3);
+  EXPECT_EQ(facts.compares, 2);
+  EXPECT_EQ(facts.gathers, 3);
+  EXPECT_EQ(facts.reads(), 10);
+  EXPECT_EQ(facts.loops, 0);
+}
+
+TEST(MachineCode, ALoopIsABlockThatBranchesLeadBackTo) {
+  const records::ShaderFacts facts = count(
+      "BB0:\n\ts_cbranch_execz BB6   ; bf880013\n"
+      "BB1:\n\tv_add_f32 v0, v1, v2  ; 00\n"
+      "BB2:\n\ts_cbranch_scc1 BB1    ; bf85\n"
+      "BB3:\n\ts_branch BB1          ; bf82\n"
+      "BB4:\n\ts_cbranch_vccnz BB4   ; bf87\n"
+      "BB6:\n\ts_endpgm              ; bf81\n");
+  EXPECT_EQ(facts.loops, 2);  // two branches lead back to BB1, one to BB4, and one forward
+}
+
+TEST(MachineCode, TheCompilersLastStep_HasResultsFirstAndNamesTheHeadsOfLoops) {
+  const records::ShaderFacts facts = count(
+      "After Spilling:\nACO shader stage: fragment_fs\nBB0\n"
+      "/* logical preds: / linear preds: / kind: uniform, top-level, loop-preheader, */\n"
+      "\t v1: %12 = image_sample_c (kill)%5, (kill)%7,  v1: undef, (kill)%37 1d\n"
+      "\t s2: %40 = p_branch BB1\nBB1\n"
+      "/* logical preds: BB0, BB2, / linear preds: BB0, BB2, / kind: uniform, loop-header, */\n"
+      "\t v4: %20,  v1: %21 = image_load %5, %6 2d\n"
+      "\ts_cbranch_scc1 BB1\n"
+      "\ts_endpgm\n");
+  EXPECT_EQ(facts.compares, 1);
+  EXPECT_EQ(facts.loads, 1);
+  EXPECT_EQ(facts.loops, 1);
+}
+
+TEST(MachineCode, NothingIsNothing) { EXPECT_EQ(count(""), records::ShaderFacts()); }
 
 }  // namespace
 }  // namespace shadowbench::gpu

@@ -1,9 +1,12 @@
 #include "harness/measure/scene_truth.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "harness/measure/scene_measurement.h"
+#include "harness/measure/view_receivers.h"
 #include "harness/scene/mesh_tools.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
@@ -126,6 +129,86 @@ TEST(MeanInterval, IsStudents) {
   EXPECT_DOUBLE_EQ(interval->mean, 2.5);
   EXPECT_NEAR(interval->high - 2.5, 3.8960 * std::sqrt(5.0 / 3.0 / 4.0), 1e-4);  // t of 3 degrees, 98.5 %
   EXPECT_NEAR(2.5 - interval->low, interval->high - 2.5, 1e-12);
+}
+
+// A filter whose visibility is the same everywhere is suspect, by a truth made by hand.
+
+/// Checks a constant image of 400 receivers, half of them blocked; the others see `area` of the light, and `ratio` of
+/// what is above their own plane.
+records::CellStatus judge(float area, float ratio) {
+  SceneTruth truth;
+  truth.mask.assign(400, 1);
+  truth.area = truth.ratio = images::Image(20, 20, 1);
+  std::fill_n(truth.area.texels.begin(), 200, area);
+  std::fill_n(truth.ratio.texels.begin(), 200, ratio);
+  MeasuredCell cell;
+  cell.visibility = images::Image(20, 20, 1);
+  check_against_truth(cell, truth);
+  return cell.record.status;
+}
+
+TEST(AConstant, IsSuspect_WhereReceiversAreWhollyLit) {
+  EXPECT_EQ(judge(1.0f, 1.0f), records::CellStatus::kSuspect);
+  EXPECT_EQ(judge(0.7f, 1.0f), records::CellStatus::kSuspect) << "their own plane hides the rest of the light";
+  EXPECT_EQ(judge(0.7f, 0.9f), records::CellStatus::kOk) << "a penumbra";
+}
+
+// Scalar models over a view: rows are turned, excused receivers are counted.
+
+constexpr int kImageWidth = 3, kImageHeight = 4;
+
+filters::Receiver make_receiver(int x, int y, float depth) {
+  filters::Receiver r;
+  r.uv = {0.55f, 0.45f};
+  r.depth = r.depth_unbiased = depth;
+  r.pixel = {x, y};
+  return r;
+}
+
+using Receivers = std::vector<filters::Receiver>;
+
+ModelLayer make_grey_layer(const Receivers& receivers) { return {{4, std::vector<float>(16, 0.5f)}, receivers}; }
+
+constexpr ModelView kView{kImageWidth, kImageHeight};
+
+ModelImages evaluate(const std::vector<ModelLayer>& layers) {
+  static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  return evaluate_model(catalogue.parse_requests("none").front(), layers, kView);
+}
+
+std::vector<double> compare(const std::vector<ModelLayer>& layers) {
+  return compare_kernel(filters::Kernel::make_point(filters::Reconstruction::kNearest), layers, kView);
+}
+
+TEST(ModelImages, HaveTheirTopRowFirst_AndAreLitWhereThereIsNoReceiver) {
+  // GL counts rows from below: (2, 0) is the last pixel of the image, (0, 3) its first.
+  const std::vector<filters::Receiver> blocked = {make_receiver(2, 0, 0.75f), make_receiver(0, 3, 0.75f),
+                                                  make_receiver(1, 2, 0.25f)};
+  const ModelImages images = evaluate({make_grey_layer(blocked)});
+  std::vector<double> expected(kImageWidth * kImageHeight, 1.0);
+  expected.front() = expected.back() = 0.0;
+  EXPECT_EQ(images.model, expected);
+  EXPECT_EQ(compare({make_grey_layer(blocked)}), expected);
+  EXPECT_EQ(images.excused, 0);
+}
+
+TEST(ModelImages, CountWhatIsExcused) {
+  const std::vector<filters::Receiver> receivers = {make_receiver(0, 0, 0.5f), make_receiver(1, 0, 0.25f),
+                                                    make_receiver(2, 0, 0.5f)};
+  EXPECT_EQ(evaluate({make_grey_layer(receivers)}).excused, 2) << "ties";
+}
+
+TEST(ModelImages, AddWhatLayersMakeOfTheirShares) {
+  const auto share = [](float of, float depth) {
+    filters::Receiver r = make_receiver(1, 1, depth);
+    r.layer_share = of;
+    return make_grey_layer({r});
+  };
+  constexpr std::size_t kPixel = 2 * kImageWidth + 1;
+  const std::vector<ModelLayer> layers = {share(0.25f, 0.75f), share(0.75f, 0.25f)};
+  EXPECT_EQ(evaluate(layers).model[kPixel], 0.75);
+  EXPECT_EQ(compare(layers)[kPixel], 0.75);
+  EXPECT_EQ(evaluate({share(0.25f, 0.75f), share(0.75f, 0.75f)}).model[kPixel], 0.0);
 }
 
 }  // namespace

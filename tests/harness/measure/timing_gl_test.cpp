@@ -1,13 +1,23 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "filters/front_matter.h"
+#include "harness/measure/accumulation.h"
 #include "harness/measure/scene_assets.h"
+#include "harness/measure/scene_measurement.h"
+#include "harness/measure/stability_meter.h"
 #include "harness/measure/timing.h"
+#include "harness/run/run_plan.h"
 #include "reference/truth/cached_tracer.h"
 #include "tests/harness/render/bench_fixture.h"
 
 namespace shadowbench::test {
 namespace {
+
+using namespace measure;
 
 constexpr int kMapSize = 512;
 
@@ -110,6 +120,259 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
   EXPECT_TRUE(times.filters[0].prefilter.empty());
   // The lookup is most of the pass; a clock that times the queueing would read about 1.
   EXPECT_GT(ratio.median, 1.3);
+}
+
+// Filters that are drawn frame by frame, and what accumulating the frames makes of them.
+
+constexpr int kAccumulated = 32;
+
+/// The ball, small, with all that a task has.
+class AccumulationTest : public ::testing::Test {
+ protected:
+  AccumulationTest()
+      : scene_(test::load_builtin("ball")),
+        renderer_(make_renderer(gl::Backend::kAuto, options_.resources)),
+        cache_({}, [](const std::string&) {}),
+        assets_(renderer_, options_, scene_, cache_, 5.0),
+        rig_{renderer_, options_, task_, assets_} {}
+
+  static filters::FilterRequest request(const std::string& text) {
+    return test::catalogue().parse_requests(text).front();
+  }
+
+  records::AccumulationRecord measure(AccumulationMeter& meter, const std::string& filter) {
+    AccumulatedImages images;
+    return meter.measure(request(filter), images).value();
+  }
+
+  static const records::ResolveRecord& find(const records::AccumulationRecord& record, const std::string& rule) {
+    return *std::ranges::find_if(
+        record.resolves, [&](const auto& each) { return each.rule == rule && !each.jitter; });
+  }
+
+  options::RunOptions options_ = [] {
+    options::RunOptions options;
+    options.resources = options::find_resources();
+    options.width = 160;
+    options.height = 90;
+    options.frames = kAccumulated;
+    return options;
+  }();
+  scene::Scene scene_;
+  Renderer renderer_;
+  truth::TruthCache cache_;
+  SceneAssets assets_;
+  SceneTask task_{&scene_, &scene_.cameras.front(), 256, {}};
+  TaskRig rig_;
+};
+
+TEST(Jitter, TakesEightPlacesInTurn_WithinAPixel) {
+  glm::dvec2 sum(0.0);
+  for (int i = 0; i < kJitters; ++i) {
+    const glm::dvec2 place = find_jitter(i);
+    EXPECT_LT(std::max(std::abs(place.x), std::abs(place.y)), 0.5);
+    EXPECT_EQ(place, find_jitter(i + kJitters));
+    for (int k = 0; k < i; ++k) EXPECT_NE(place, find_jitter(k));
+    sum += place / static_cast<double>(kJitters);
+  }
+  EXPECT_LT(glm::length(sum), 0.1);
+}
+
+TEST_F(AccumulationTest, FilterWithoutNoise_FramesEqualOne_ToTheBit) {
+  const LightMap& map = assets_.light_map(*task_.camera, task_.map_size);
+  const render::GBuffer& gbuffer = assets_.gbuffer(*task_.camera);
+  for (const char* filter : {"pcf2x2", "vsm", "poisson:rotation=none"}) {
+    FrameDrawing drawing(rig_, request(filter));
+    std::vector<render::ResolvePass> resolves = make_resolves(rig_);
+    drawing.draw({0, scene_.light, map, gbuffer}, resolves);
+    std::vector<images::Image> first;
+    for (const auto& resolve : resolves) first.push_back(render::read_image(resolve.texture(), 1));
+    for (std::uint32_t i = 1; i < kAccumulated; ++i) drawing.draw({i, scene_.light, map, gbuffer}, resolves);
+    for (std::size_t i = 0; i < resolves.size(); ++i)
+      EXPECT_EQ(render::read_image(resolves[i].texture(), 1).texels, first[i].texels)
+          << filter << ", " << list_resolve_rules()[i].name;
+  }
+}
+
+/// Of the plain mean: an exponential one has a floor.
+TEST_F(AccumulationTest, NoiseOfAMean_FallsWithTheRootOfFrames_AndFasterWithBlueNoise) {
+  AccumulationMeter meter(rig_);
+  const records::AccumulationRecord white = measure(meter, "poisson:taps=4,rotation=per-pixel");
+  const std::vector<double>& falling = *find(white, "mean").noise;
+  for (const std::size_t n : {2, 4, 8, 16, 32}) {
+    const double root =
+        falling[0] * std::sqrt(1.0 / static_cast<double>(n) + 1.0 / 256.0);  // with the noise of 256 frames
+    std::printf("white noise: %zu frames %.5f, 1/sqrt %.5f\n", n, falling[n - 1], root);
+    EXPECT_NEAR(falling[n - 1], root, 0.08 * root) << n;
+  }
+  for (const char* rotation : {"blue-noise", "interleaved-gradient"}) {
+    const records::AccumulationRecord other = measure(meter, std::string("poisson:taps=4,rotation=") + rotation);
+    const std::vector<double>& noise = *find(other, "mean").noise;
+    std::printf("%s: 8 frames %.5f, 32 frames %.5f of one's %.5f\n", rotation, noise[7], noise[31], noise[0]);
+    EXPECT_LT(noise[7], 0.6 * falling[7]);
+    EXPECT_LT(noise[31], 0.5 * falling[31]);
+  }
+  const std::vector<double>& floor = *find(white, "exponential").noise;
+  EXPECT_NEAR(floor.back() / falling[0], std::sqrt(0.1 / 1.9), 0.04) << "the sum of squared weights, 0.1 / (2 - 0.1)";
+}
+
+TEST_F(AccumulationTest, Ghosts_FadeByTheWeight_AndSoonerWithClamping) {
+  const GhostBench ghosts = make_ghost_bench(rig_);
+  ASSERT_EQ(ghosts.motions.size(), 3u) << ghosts.absent;
+  FrameDrawing drawing(rig_, request("none"));
+  std::vector<images::Image> images;
+  for (const records::GhostRecord& ghost : measure_ghosts(rig_, ghosts, drawing, images)) {
+    if (!ghost.at_stop || ghost.rule != "exponential") continue;
+    SCOPED_TRACE(ghost.texels);
+    EXPECT_GT(*ghost.at_stop, 0.3);
+    EXPECT_NEAR(*ghost.frames_until, std::ceil(std::log(records::kGhostLimit / *ghost.at_stop) / std::log(0.9)), 1);
+  }
+  const auto records = measure_ghosts(rig_, ghosts, drawing, images);
+  EXPECT_LT(records[5].frames_until.value(), 4) << "16 texels a frame, clamped";
+  EXPECT_EQ(images.size(), 2u);
+}
+
+/// A light that stands overhead moves no shadow when it turns about the vertical.
+TEST_F(AccumulationTest, LightOverhead_HasNoGhosts) {
+  scene_.light = scene::place_in_sky(scene_.light, {0.0, 90.0});
+  EXPECT_THAT(make_ghost_bench(rig_).absent, ::testing::HasSubstr("no shadow in view moves"));
+}
+
+// What a run calls flicker.
+
+/// The flicker of `none`, as a run notes it.
+double measure_flicker(const std::string& scene_name, const std::string& fit, bool snap) {
+  options::RunOptions options;
+  options.width = 160;
+  options.height = 90;
+  options.fit = scene::parse_fit_rule(fit);
+  options.snap = snap;
+  options.rounds = options::RoundLimits::exactly(1);
+  const scene::Scene scene = load_builtin(scene_name);
+  measure::Renderer renderer = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
+  truth::TruthCache cache({}, [](const std::string&) {});
+  measure::SceneAssets assets(renderer, options, scene, cache, 4.0);
+  const scene::Camera& camera = scene.cameras.front();
+  const measure::SceneTask task{&scene, &camera, 512, catalogue().parse_requests("none")};
+  options.reference = task.filters.front();
+  measure::MeasuredCell cell = std::move(measure::measure_scene({renderer, options, task, assets}).cells.front());
+  measure::score(cell.record, {cell.visibility, cell.phases, cell.stepped, cell.picture}, assets.truth(camera));
+  return cell.record.error.flicker.value();
+}
+
+TEST(Flicker, OfASnappedMapUnderAStandingSun_IsNothingToTheBit) {
+  for (const char* fit : {"cascades:count=4,split=logarithmic", "view"}) {
+    EXPECT_EQ(measure_flicker("avenue", fit, true), 0.0) << fit;
+    EXPECT_GT(measure_flicker("avenue", fit, false), 0.02) << fit;
+  }
+}
+
+TEST(Flicker, OfAMapThatNoCameraMoves_IsThatUnderATurningLight) {
+  EXPECT_GT(measure_flicker("avenue", "tight", true), 0.02);
+  EXPECT_EQ(measure_flicker("lamp", "view", false), measure_flicker("lamp", "tight", false));
+}
+
+// Where the numbers of real maps break, and that the defaults of every filter stay clear of it on every built-in scene.
+
+/// Draws cells with stability, without timing or truth to speak of.
+std::vector<measure::MeasuredCell> measure(const std::string& scene_name, const std::string& filters,
+                                           int map_size = 512, int width = 240, int height = 135) {
+  static measure::Renderer renderer = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
+  renderer.context->make_current();
+  const scene::Scene scene = load_builtin(scene_name);
+  options::RunOptions options;
+  options.resources = options::find_resources();
+  options.filters = catalogue().parse_requests(filters);
+  options.width = width;
+  options.height = height;
+  options.rounds = options::RoundLimits::exactly(1);
+  options.phases = 1;  // numbers are looked at in the first of them alone
+  options.reference = catalogue().parse_requests("none").front();
+  options.truth = false;
+  options.stability = true;
+  truth::TruthCache cache({}, [](const std::string&) {});
+  measure::SceneAssets assets(renderer, options, scene, cache, measure::largest_padding_texels(options.filters));
+  const measure::SceneTask task{&scene, &scene.cameras.front(), map_size, options.filters};
+  return measure::measure_scene({renderer, options, task, assets}).cells;
+}
+
+class Defaults : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Defaults, NothingBreaks) {
+  for (const measure::MeasuredCell& cell : measure(GetParam(), "")) {
+    SCOPED_TRACE(cell.label);
+    EXPECT_TRUE(std::all_of(cell.visibility.texels.begin(), cell.visibility.texels.end(),
+                            [](float v) { return std::isfinite(v); }));
+    EXPECT_EQ(cell.record.nan, 0);
+    EXPECT_TRUE(cell.record.warnings.empty()) << cell.record.warnings.front();
+    const records::StabilityRecord& s = cell.record.stability;
+    EXPECT_EQ(s.overflow_texels.value_or(0), 0);
+    EXPECT_EQ(s.nan_texels.value_or(0), 0);
+    EXPECT_EQ(s.bound_violations.value_or(0), 0);
+    EXPECT_EQ(s.bound_exact_violations.value_or(0), 0);
+    if (s.negative_variance_texels) {
+      std::printf(
+          "%s %s: %lld of %d texels with a variance below 0, the lowest %.3g; shortfall of the bound %.3g, 16 bits "
+          "change %.3g\n",
+          GetParam().c_str(), cell.label.c_str(), static_cast<long long>(*s.negative_variance_texels), 512 * 512,
+          *s.lowest_variance, s.bound_shortfall_max.value_or(0.0), s.half_difference_max.value_or(0.0));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Defaults, ::testing::ValuesIn(builtin_scenes()));
+
+/// The famous limits, on a map that the GL made: 11.09 in 16 bits and 88.72 in 32, over the largest depth, which is 1.
+TEST(Stability, SafeExponents_AreTheTheoreticalOnes) {
+  const auto cells = measure("cubes", "esm:c=2000,store=r16f,esm:c=8,store=r16f,esm:c=2000,esm:c=40,combine=log", 128);
+  ASSERT_EQ(cells.size(), 4u);
+  for (const std::size_t half : {0u, 1u}) EXPECT_NEAR(*cells[half].record.stability.safe_exponent, 11.09, 0.01 * 11.09);
+  EXPECT_NEAR(*cells[2].record.stability.safe_exponent, 88.72, 0.001 * 88.72);
+  EXPECT_FALSE(cells[3].record.stability.safe_exponent) << "logarithms do not overflow";
+  EXPECT_GT(cells[0].record.stability.overflow_texels, 0);
+  EXPECT_FALSE(cells[0].record.stability.headroom);
+  EXPECT_NEAR(*cells[1].record.stability.headroom, 11.09 - 8.0, 0.01);
+  EXPECT_EQ(cells[1].record.stability.overflow_texels, 0);
+}
+
+/// Counts and pictures say the same.
+TEST(Stability, Images_HoldWhatIsCounted) {
+  const auto cells = measure("stack", "vsm:store=rg16f,esm:c=20,store=r16f", 256);
+  const auto count = [](const images::Image& image, auto&& is) {
+    return std::count_if(image.texels.begin(), image.texels.end(), is);
+  };
+  const records::StabilityRecord &vsm = cells[0].record.stability, &esm = cells[1].record.stability;
+  EXPECT_GT(vsm.negative_variance_texels, 0);
+  EXPECT_EQ(count(
+                cells[0].stability.variance, [](float v) { return v < 0.0f; }),
+            *vsm.negative_variance_texels);
+  EXPECT_EQ(count(cells[1].stability.headroom, [](float v) { return std::isinf(v) && v < 0.0f; }),
+            *esm.overflow_texels);
+  EXPECT_TRUE(cells[1].stability.variance.empty());
+  EXPECT_GT(*esm.bound_violations, 0) << "an overflow is no rounding";
+  EXPECT_GT(vsm.half_difference_max, 0.01);
+  EXPECT_GT(count(cells[0].stability.half_difference, [](float v) { return std::abs(v) > 0.01f; }), 0);
+}
+
+/// The same whichever of the two stores the cell itself has.
+TEST(Stability, HalfDifference_IsHalfLessSingle) {
+  const auto cells = measure("stack", "vsm:store=rg16f,vsm:store=rg32f", 256);
+  EXPECT_EQ(cells[0].record.stability.half_difference_max, cells[1].record.stability.half_difference_max);
+  EXPECT_EQ(cells[0].stability.half_difference.texels, cells[1].stability.half_difference.texels);
+  std::vector<float> difference = cells[0].visibility.texels;
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= cells[1].visibility.texels[i];
+  EXPECT_EQ(cells[0].stability.half_difference.texels, difference);
+}
+
+/// Light-bleeding reduction gives the bound up, and says so; a filter that promises it still is held to it.
+TEST(Stability, ReducedBleeding_IsNoBound) {
+  const auto cells = measure("stack", "vsm,vsm:bleed_reduction=0,pcf2x2", 512);
+  EXPECT_FALSE(cells[0].record.stability.bound_violations);
+  EXPECT_EQ(cells[0].record.absent.at("stability.bound_violations"),
+            "the filter is a bound with bleed_reduction=0 only");
+  EXPECT_EQ(cells[1].record.stability.bound_violations, 0);
+  EXPECT_FALSE(cells[2].record.stability.bound_violations);
+  EXPECT_EQ(cells[2].record.absent.count("stability.bound_violations"), 1u);
 }
 
 }  // namespace

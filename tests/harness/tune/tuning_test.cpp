@@ -1,17 +1,27 @@
 #include "harness/tune/tuning.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
+#include "base/error.h"
 #include "harness/options/options.h"
+#include "harness/scene/complete.h"
+#include "harness/scene/load.h"
 #include "harness/tune/tune_filters.h"
+#include "harness/tune/tune_scene.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::tune {
 namespace {
+
+using ::testing::HasSubstr;
 
 SearchedParam make_param(double min, double max, double default_value, bool integer = false) {
   return {"p", min, max, default_value, integer};
@@ -241,6 +251,213 @@ TEST(SearchedParams, OfCascades_AreWhatTheUserDidNotSet) {
   EXPECT_EQ(names("cascades", {}), "split blend ");
   EXPECT_EQ(names("cascades:count=3,split=0.8", {"count", "split"}), "blend ");
   EXPECT_EQ(names("cascades:splits=5/20", {"splits"}), "blend ");
+}
+
+scene::Scene load_scene(const std::string& name) {
+  return scene::load(name, {.scenes_folder = options::find_resources().scenes});
+}
+
+void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) {
+  EXPECT_LT(glm::length(a - b), tolerance);
+}
+
+TEST(TuneViews, UnseenOnes_AreNoneOfTheTrainingOnes) {
+  std::set<std::tuple<double, double>> views;
+  int training = 0;
+  bool other_light = false;
+  for (const TuneView& view : tune_views()) {
+    EXPECT_TRUE(views.emplace(view.camera_turn_deg, view.light_turn_deg).second) << view.name();
+    training += view.training ? 1 : 0;
+    other_light = other_light || (!view.training && view.light_turn_deg != 0.0);
+  }
+  EXPECT_GE(training, 3);
+  EXPECT_GT(static_cast<int>(views.size()), training);
+  EXPECT_TRUE(other_light);
+}
+
+TEST(TuneViews, Words_NameEveryView) {
+  EXPECT_EQ(describe_tune_views(true), "camera -20, as it is, camera +20");
+  EXPECT_EQ(describe_tune_views(false), "camera -30, camera -10, camera +10, camera +30, light -15, light +15");
+}
+
+TEST(TurnCamera, KeepsHeightAndDistance_AndStillLooksAtThePivot) {
+  for (const char* name : {"cubes", "stack", "fence", "ball", "steps"}) {
+    SCOPED_TRACE(name);
+    const scene::Scene scene = load_scene(name);
+    const scene::Camera& camera = scene.cameras.front();
+    const glm::vec3 pivot = find_pivot(scene, camera);
+    const float distance = glm::length(pivot - camera.position_ws);
+    expect_near(camera.position_ws + distance * camera.forward_ws, pivot, 1e-4f);
+    for (const double degrees : {-30.0, 20.0, 90.0}) {
+      const scene::Camera turned = turn_camera(camera, pivot, degrees);
+      EXPECT_FLOAT_EQ(turned.position_ws.y, camera.position_ws.y);
+      expect_near(turned.position_ws + distance * turned.forward_ws, pivot, 1e-4f);
+      EXPECT_NEAR(glm::dot(turned.forward_ws, turned.up_ws), glm::dot(camera.forward_ws, camera.up_ws), 1e-5f);
+    }
+  }
+}
+
+TEST(TurnCamera, TurnsAsAnAzimuthGrows) {
+  scene::Camera camera;
+  camera.position_ws = {0.0f, 2.0f, 5.0f};
+  camera.forward_ws = {0.0f, 0.0f, -1.0f};
+  const scene::Camera turned = turn_camera(camera, {0.0f, 1.0f, 0.0f}, 90.0);
+  expect_near(turned.position_ws, {5.0f, 2.0f, 0.0f});
+  expect_near(turned.forward_ws, {-1.0f, 0.0f, 0.0f});
+}
+
+TEST(FindPivot, WithTheSceneBehindTheCamera_IsItsMiddle) {
+  scene::Scene scene = load_scene("cubes");
+  scene::Camera camera = scene.cameras.front();
+  camera.forward_ws = -camera.forward_ws;
+  const scene::Bounds bounds = scene.bounds();
+  expect_near(find_pivot(scene, camera), 0.5f * (bounds.min + bounds.max));
+}
+
+TEST(FindPivot, OfACameraWithinTheScene_IsItsOwnPlace) {
+  const scene::Scene scene = load_scene("avenue");
+  const scene::Camera& camera = scene.cameras.front();
+  expect_near(find_pivot(scene, camera), camera.position_ws);
+}
+
+TEST(MakeTuneScene, TurnsTheLightInAzimuth_AndNamesItsCameras) {
+  scene::Scene scene = load_scene("cubes");
+  scene.light.kind = scene::Sun{glm::vec3(scene::light_direction(70.0, 40.0))};
+  const scene::Scene turned = turn_scene(scene, {{10.0, 15.0, false}, {0.0, 15.0, false}});
+  expect_near(-scene::to_light(turned.light, {}), glm::vec3(scene::light_direction(85.0, 40.0)));
+  ASSERT_EQ(turned.cameras.size(), 2u);
+  EXPECT_EQ(turned.cameras[0].name, "camera +10 light +15");
+  expect_near(turned.cameras[1].position_ws, scene.cameras.front().position_ws);
+  EXPECT_EQ(turned.meshes.size(), scene.meshes.size());
+}
+
+/// The view as it is, is the scene's own to the bit: its truth is that of 'run'.
+TEST(MakeTuneScene, WithoutATurn_ChangesNothing) {
+  const scene::Scene scene = load_scene("fence");
+  const scene::Scene same = turn_scene(scene, {{0.0, 0.0, true}});
+  EXPECT_EQ(same.cameras.front().position_ws, scene.cameras.front().position_ws);
+  EXPECT_EQ(same.cameras.front().forward_ws, scene.cameras.front().forward_ws);
+  EXPECT_EQ(scene::to_light(same.light, {}), scene::to_light(scene.light, {}));
+}
+
+class TunedParameters : public ::testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& text) const { return folder_.write("tuned.json", text); }
+
+  /// A file with these entries as its filters.
+  std::filesystem::path write_filters(const std::string& filters) const {
+    return write(R"({"schema_version": 2, "metric": "rmse", "map_size": 1024, "filters": [)" + filters + "]}");
+  }
+
+  /// The values of the first request after the file was applied.
+  filters::FilterRequest apply(const std::string& requests, const std::filesystem::path& file) {
+    auto parsed = catalogue_.parse_requests(requests);
+    notes_ = apply_tuned(parsed, catalogue_, file, {1024}, {{}});
+    return parsed.front();
+  }
+
+  void expect_refusal(const std::filesystem::path& file, const std::string& words) {
+    const Error error = error_of([&] { apply("vsm", file); });
+    EXPECT_EQ(error.kind(), ErrorKind::kInput) << words;
+    EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr(words), HasSubstr("tuned.json")));
+  }
+
+  TestFolder folder_;
+  filters::Catalogue catalogue_{options::find_resources().filters};
+  std::vector<std::string> notes_;
+};
+
+TEST_F(TunedParameters, AreTaken_AndShownByTheLabel) {
+  const auto file = write_filters(
+      R"({"id": "vsm", "fit": "tight", "params": {"radius": 2, "min_variance": 1e-6, "store": "rg32f"}})");
+  const filters::FilterRequest request = apply("vsm", file);
+  EXPECT_EQ(filters::number(request.values, "radius"), 2.0);
+  EXPECT_EQ(filters::number(request.values, "min_variance"), 1e-6);
+  EXPECT_EQ(filters::number(request.values, "bleed_reduction"), 0.3);  // not in the file
+  EXPECT_EQ(request.label(), "vsm (min_variance=1e-06, radius=2)");
+  EXPECT_TRUE(notes_.empty());
+}
+
+TEST_F(TunedParameters, YieldToTheCommandLine) {
+  const filters::FilterRequest request = apply(
+      "vsm:radius=9", write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2, "min_variance": 1e-6}})"));
+  EXPECT_EQ(filters::number(request.values, "radius"), 9.0);
+  EXPECT_EQ(filters::number(request.values, "min_variance"), 1e-6);
+}
+
+TEST_F(TunedParameters, TakeThePlaceOfAWidthsRadius) {
+  const filters::FilterRequest request =
+      apply("vsm:width=medium", write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2}})"));
+  EXPECT_EQ(filters::number(request.values, "radius"), 2.0);
+  EXPECT_EQ(request.label(), "vsm (radius=2)");
+}
+
+TEST_F(TunedParameters, LeaveAPresetTheParametersOfItsEngine) {
+  const auto file = write_filters(R"({"id": "poisson", "fit": "tight", "params": {"bail": "agree"}})");
+  EXPECT_EQ(apply("@godot", file).values, catalogue_.parse_requests("@godot").front().values);
+  EXPECT_TRUE(notes_.empty());
+  EXPECT_EQ(filters::text_or(apply("poisson", file).values, "bail", ""), "agree");
+}
+
+TEST_F(TunedParameters, OfOtherFilters_LeaveTheDefaults_WithANote) {
+  const filters::FilterRequest request =
+      apply("esm,none", write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2}})"));
+  EXPECT_EQ(request.values, filters::default_values(request.spec));
+  ASSERT_EQ(notes_.size(), 1u);  // 'none' has no parameters: nothing to say
+  EXPECT_THAT(notes_.front(), HasSubstr("no parameters for esm"));
+}
+
+TEST_F(TunedParameters, OfAnotherMapSize_AreTakenWithANote) {
+  auto requests = catalogue_.parse_requests("vsm");
+  const auto notes =
+      apply_tuned(requests, catalogue_, write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2}})"),
+                  {512, 1024}, {{}});
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_THAT(notes.front(), HasSubstr("1024 texels, this run draws 512"));
+}
+
+TEST_F(TunedParameters, OfAnotherFit_AreTakenWithANote) {
+  auto requests = catalogue_.parse_requests("vsm");
+  const auto file = write_filters(R"({"id": "vsm", "params": {"radius": 2}, "fit": "view"})");
+  EXPECT_THAT(
+      apply_tuned(requests, catalogue_, file, {1024}, {{}}),
+      ::testing::ElementsAre(HasSubstr("tuned for vsm (radius=2) under --fit view, which this run does not draw")));
+  EXPECT_THAT(apply_tuned(requests, catalogue_, file, {1024}, {{}, {scene::FitMode::kView, {}}}), ::testing::IsEmpty());
+}
+
+TEST_F(TunedParameters, BadFiles_AreRefusedWithTheField) {
+  expect_refusal(folder_.path() / "no" / "tuned.json", "cannot be read");
+  expect_refusal(write(""), "not JSON");
+  expect_refusal(write(R"({"schema_version": 2, "met)"), "cut off");
+  expect_refusal(write("[]"), "'schema_version' is missing");
+  expect_refusal(write("{}"), "'schema_version' is missing");
+  expect_refusal(write(R"({"schema_version": 1})"), "schema_version is 1, and this program reads 2");
+  expect_refusal(write(R"({"schema_version": 2, "metric": "rmse", "map_size": "big", "filters": []})"),
+                 "'map_size' holds \"big\"");
+  expect_refusal(write(R"({"schema_version": 2, "metric": "rmse", "map_size": 64, "filters": {}})"),
+                 "'filters' must be a list");
+  expect_refusal(write_filters(R"({"id": "vsn", "fit": "tight", "params": {}})"),
+                 "filters[0].id: unknown filter 'vsn'; did you mean 'vsm'?");
+  expect_refusal(write_filters(R"({"id": "vsm"})"), "'filters[0].params' is missing");
+  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radios": 2}})"),
+                 "filters[0].params.radios: filter 'vsm' has no parameter 'radios'; did you mean 'radius'?");
+  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 65}})"),
+                 "filters[0].params.radius: vsm:radius=65 is out of range");
+  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2.5}})"),
+                 "must be a whole number");
+  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": "wide"}})"),
+                 "filters[0].params.radius: vsm:radius='wide' is not a finite number");
+  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": [2]}})"),
+                 "'filters[0].params' holds {\"radius\":[2]}");
+  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"store": "rgb"}})"),
+                 "filters[0].params.store");
+  expect_refusal(
+      write_filters(R"({"id": "vsm", "fit": "tight", "params": {}}, {"id": "vsm", "fit": "tight", "params": {}})"),
+      "filters[1].id names 'vsm' a second time");
+  expect_refusal(
+      write_filters(
+          R"({"id": "none", "fit": "tight", "params": {}}, {"id": "esm", "fit": "tight", "params": {"c": 0}})"),
+      "filters[1].params.c");  // though not requested
 }
 
 }  // namespace

@@ -5,12 +5,24 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
+#include <set>
 #include <span>
+#include <string>
 #include <vector>
+
+#include "reference/metrics/artefacts.h"
+#include "reference/metrics/flip.h"
+#include "reference/metrics/metric_table.h"
 
 namespace shadowbench::metrics {
 namespace {
+
+using ::testing::Contains;
+using ::testing::DoubleNear;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
 
 TEST(ErrorStats, OfFourPixels_AreWhatTheirDefinitionsGive) {
   const std::vector<float> image = {0.5f, 1.0f, 0.0f, 0.25f, 0.9f}, truth = {0.0f, 1.0f, 0.5f, 0.0f, 0.0f};
@@ -166,8 +178,6 @@ TEST(Attribution, LeavesOutWhatIsNotFinite) {
   EXPECT_EQ(result.parts[0][0], 0.0f);
 }
 
-using ::testing::DoubleNear;
-
 TEST(Flicker, ChangeBetweenPlacesOfTheGrid_IsOverAllPairs) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<float> a = {0.0f, 0.5f, 1.0f, 0.0f}, b = {0.3f, 0.5f, 0.0f, nan}, c = {0.6f, 0.5f, 0.0f, 0.0f};
@@ -281,6 +291,144 @@ TEST(ZTest, SumsAddVariances_AndDegreesOfFreedom) {
   EXPECT_NEAR(sum.degrees_of_freedom, 960.0, 1e-9);
   const std::vector<NoisyDifference> one_counts = {{0.0, 1.0, 15.0}, {0.0, 1e-9, 15.0}};
   EXPECT_NEAR(add_differences(one_counts).degrees_of_freedom, 15.0, 1e-6);
+}
+
+LinearPicture make_uniform(const glm::vec3& color, int width = 40, int height = 30) {
+  return {width, height, std::vector<glm::vec3>(static_cast<std::size_t>(width * height), color)};
+}
+
+LinearPicture make_noise(unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<float> draw(0.0f, 1.0f);
+  LinearPicture picture = make_uniform({0.0f, 0.0f, 0.0f});
+  for (glm::vec3& pixel : picture.pixels) pixel = {draw(generator), draw(generator), draw(generator)};
+  return picture;
+}
+
+std::vector<float> measure_flip(const LinearPicture& a, const LinearPicture& b,
+                                double pixels_per_degree = kDefaultPixelsPerDegree) {
+  return metrics::measure_flip(view_for_flip(a, pixels_per_degree), view_for_flip(b, pixels_per_degree));
+}
+
+double mean(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+TEST(Flip, EqualPictures_AreZero) {
+  for (const float value : measure_flip(make_noise(1), make_noise(1))) EXPECT_EQ(value, 0.0f);
+}
+
+TEST(Flip, IsSymmetric_AndWithinZeroAndOne) {
+  const std::vector<float> ab = measure_flip(make_noise(1), make_noise(2)),
+                           ba = measure_flip(make_noise(2), make_noise(1));
+  EXPECT_EQ(ab, ba);
+  for (const float value : ab) {
+    EXPECT_GE(value, 0.0f);
+    EXPECT_LE(value, 1.0f);
+  }
+}
+
+TEST(Flip, BlackAgainstWhite_IsWhatTheFormulaGivesByHand) {
+  // Lightness differs by 100, chroma by 0: the difference is 100^0.7 = 25.119. The largest, green against blue, follows
+  // from CIELAB: green (87.735, -86.183, 83.180), blue (32.297, 79.188, -107.860); Hunt: green (-75.613, 72.978), blue
+  // (25.575, -34.836); HyAB = 55.438 + sqrt(101.188^2 + 107.814^2) = 203.30; ^0.7 = 41.276. The knee lies at 16.511, so
+  // the value is 0.95 + 0.05 (25.119 - 16.511) / (41.276 - 16.511) = 0.96738. Uniform pictures have no features.
+  for (const float value : measure_flip(make_uniform(glm::vec3(0.0f)), make_uniform(glm::vec3(1.0f))))
+    EXPECT_NEAR(value, 0.96738f, 2e-4f);
+}
+
+TEST(Flip, GreenAgainstBlue_IsOne) {
+  for (const float value : measure_flip(make_uniform({0.0f, 1.0f, 0.0f}), make_uniform({0.0f, 0.0f, 1.0f})))
+    EXPECT_NEAR(value, 1.0f, 1e-5f);
+}
+
+TEST(Flip, CloseGreys_AreBelowTheKnee) {
+  // Linear 0.2 and 0.21: L* 51.837 and 52.952, difference 1.1146^0.7 = 1.0789; 0.95 / 16.511 of it is 0.06208.
+  const double value = mean(measure_flip(make_uniform(glm::vec3(0.2f)), make_uniform(glm::vec3(0.21f))));
+  EXPECT_NEAR(value, 0.06208, 3e-4);
+}
+
+TEST(Flip, AnEdgeThatMoved_IsSeenMoreThanTheSameColourWithoutEdge) {
+  LinearPicture a = make_uniform(glm::vec3(0.1f), 60, 40), b = a, flat = a;
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 60; ++x) {
+      const auto i = static_cast<std::size_t>(y * 60 + x);
+      if (x > 30) a.pixels[i] = glm::vec3(0.3f);
+      if (x > 34) b.pixels[i] = glm::vec3(0.3f);
+      flat.pixels[i] = glm::vec3(0.3f);
+    }
+  }
+  const std::vector<float> moved = measure_flip(a, b);
+  const std::vector<float> uniform = measure_flip(make_uniform(glm::vec3(0.1f), 60, 40), flat);
+  EXPECT_GT(moved[20 * 60 + 32], uniform[20 * 60 + 32]);
+  EXPECT_LT(moved[20 * 60 + 2], 1e-3f);
+}
+
+TEST(Flip, FartherAway_FineNoiseIsSeenLess) {
+  EXPECT_LT(mean(measure_flip(make_noise(1), make_noise(2), 134.0)),
+            mean(measure_flip(make_noise(1), make_noise(2), 67.0)));
+}
+
+TEST(MetricTable, EveryMetric_IsDescribedOnce) {
+  std::set<std::string_view> paths;
+  for (const Metric& metric : metric_table()) {
+    EXPECT_TRUE(paths.insert(metric.path).second) << metric.path;
+    EXPECT_FALSE(metric.unit.empty()) << metric.path;
+    EXPECT_FALSE(metric.definition.empty()) << metric.path;
+    EXPECT_EQ(metric.statistic != nullptr, metric.source == MetricSource::kValues) << metric.path;
+    EXPECT_EQ(std::string(metric.path).substr(metric.path.size() - metric.name().size()), metric.name());
+    EXPECT_FALSE(metric.title.empty()) << metric.path;
+    EXPECT_TRUE(metric.limit.empty() || metric.direction == MetricDirection::kLess) << metric.path;
+  }
+}
+
+TEST(MetricTable, EveryRow_HasAMemberOfItsOwn) {
+  MetricValues values;
+  std::set<const void*> members;
+  for (const Metric& metric : metric_table()) {
+    visit_metric(
+        metric, values,
+        [&](const std::string& path, auto& value) {
+          EXPECT_TRUE(members.insert(&value).second) << path;
+          EXPECT_FALSE(metric.read(values)) << path;
+          value = 3;
+          EXPECT_EQ(metric.read(values), 3.0) << path;
+        });
+  }
+  EXPECT_EQ(sizeof(MetricValues) / sizeof(std::optional<double>), members.size()) << "a member has no row";
+}
+
+TEST(MetricTable, TwoPictures_GiveTheErrorsThatNeedNoRays) {
+  std::vector<std::string> names;
+  for (const Metric& metric : picture_metrics()) names.emplace_back(metric.name());
+  EXPECT_THAT(names, IsSupersetOf({"rmse", "mae", "p95", "max", "mean", "flip"}));
+  EXPECT_THAT(names, Not(Contains("kernel_rmse")));
+}
+
+TEST(MetricTable, Statistics_AreTheOnesOfTheirNames) {
+  EXPECT_EQ(find_metric("error.rmse").statistic, &ErrorStats::rmse);
+  EXPECT_EQ(find_metric("error.mae").statistic, &ErrorStats::mae);
+  EXPECT_EQ(find_metric("error.p95").statistic, &ErrorStats::p95);
+  EXPECT_EQ(find_metric("error.max").statistic, &ErrorStats::max);
+  EXPECT_EQ(find_metric("error.mean").statistic, &ErrorStats::mean);
+}
+
+/// The definitions state the limits that artefacts are counted with.
+TEST(MetricTable, ArtefactLimits_AreTheOnesInUse) {
+  const std::pair<std::string_view, double> limits[] = {{"artefact.acne", kArtefactLimits.acne_below},
+                                                        {"artefact.acne", kArtefactLimits.guard_texels},
+                                                        {"artefact.leak", kArtefactLimits.leak_above},
+                                                        {"artefact.leak", kArtefactLimits.contact_texels},
+                                                        {"artefact.contact_gap", kArtefactLimits.contact_gap_above},
+                                                        {"artefact.contact_gap", kArtefactLimits.contact_texels},
+                                                        {"artefact.noise", kArtefactLimits.noise_above}};
+  for (const auto& [path, limit] : limits) {
+    std::string number = std::to_string(limit);
+    number.erase(number.find_last_not_of('0') + 1);
+    if (number.back() == '.') number.pop_back();
+    for (const Metric& metric : metric_table())
+      if (metric.path == path) EXPECT_THAT(std::string(metric.definition), ::testing::HasSubstr(" " + number)) << path;
+  }
 }
 
 }  // namespace

@@ -2,19 +2,31 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
+#include "reference/metrics/error_stats.h"
+#include "report/analysis/advice_words.h"
 #include "report/analysis/cells.h"
+#include "report/analysis/gpu_costs.h"
+#include "report/analysis/measures.h"
 #include "report/analysis/trade.h"
 #include "report/records/format.h"
+#include "report/records/records.h"
+#include "tests/report/analysis/trade_cells.h"
 #include "tests/report/records/synthetic.h"
 #include "trade_cells.h"
 
 namespace shadowbench::analysis {
-using namespace records;
 namespace {
 
+using namespace records;
+using records::CellRecord;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 TEST(Summary, Numbers_HaveThreeDigits) {
   EXPECT_EQ(records::format_number(0.05124), "0.0512");
@@ -81,8 +93,6 @@ TEST(Summary, WorkLine_CountsTruthsTracedAndReadFromTheCache) {
 
 namespace {
 
-using ::testing::SizeIs;
-
 records::CellRecord make_light_cell(const SweepCell& from, double asked) {
   records::CellRecord cell = make_sweep_cell(from);
   cell.kernel.width_class = "light";
@@ -116,12 +126,7 @@ TEST(LightWidths, OneFilter_IsOneConfigurationOnAllScenes) {
 
 }  // namespace
 
-using namespace records;
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 records::CellRecord make_stable_cell() {
   records::CellRecord cell = make_cell("cubes", "odd", 4.0);
@@ -171,6 +176,189 @@ TEST(StabilityWords, EveryTrouble_HasItsSentence) {
                                   HasSubstr("at 8 in exact arithmetic")));
 }
 
-}  // namespace
+TEST(FindDominatingPart, IsTheOnlyOneAboveHalf) {
+  EXPECT_EQ(find_dominating_part({0.0, 0.51, 0.0, 0.49}), 1u);
+  EXPECT_EQ(find_dominating_part({0.0, 0.5, 0.5, 0.0}), std::nullopt);
+  EXPECT_EQ(find_dominating_part({0.0, 0.9, 0.8, -0.7}), std::nullopt);
+  EXPECT_EQ(find_dominating_part({-0.3, -0.3, 0.2, 1.4}), 3u);
+}
 
+TEST(RmseReach, IsHalfTheIntervalOrTheTruthsStandardError) {
+  records::CellRecord cell = make_attributed_cell("vsm", 0.04, {0.0, 0.7, 0.1, 0.2});
+  EXPECT_EQ(find_rmse_reach(cell), *cell.truth.se);
+  cell.rmse_ci95 = records::Interval{0.03, 0.05};
+  EXPECT_DOUBLE_EQ(find_rmse_reach(cell), 0.01);
+}
+
+TEST(LostInTruth, IsAnErrorThatTheTruthsOwnExplains) {
+  EXPECT_TRUE(is_lost_in_truth(make_attributed_cell("vsm", 0.001, {0.0, 0.7, 0.1, 0.2})));
+  EXPECT_FALSE(is_lost_in_truth(make_attributed_cell("vsm", 0.04, {0.0, 0.7, 0.1, 0.2})));
+  EXPECT_FALSE(is_lost_in_truth(make_cell("cubes", "vsm", 4.0)));
+}
+
+// Cells that several kinds of machine measured: their times are not compared.
+
+TEST(MixedMachines, OneKind_CellsCompareAsTheyAre) {
+  std::vector<records::CellRecord> cells = make_mixed_cells();
+  for (records::CellRecord& cell : cells) cell.machine.reset();
+  EXPECT_FALSE(withhold_mixed_times(cells)) << "cells of before";
+  for (records::CellRecord& cell : cells) cell.machine = make_kind("A CPU");
+  EXPECT_FALSE(withhold_mixed_times(cells));
+  EXPECT_FALSE(withhold_mixed_times({}));
+  cells[2].machine.reset();
+  EXPECT_TRUE(withhold_mixed_times(cells)) << "one that is not known is another one";
+}
+
+TEST(MixedMachines, WarningCountsTheCellsOfEachKind) {
+  EXPECT_THAT(warn_of_mixed_machines(make_mixed_cells()),
+              AllOf(StartsWith(std::string(kMixedMachines)), HasSubstr("A slow CPU, 4 cores"), HasSubstr("(2 cells)"),
+                    HasSubstr("A fast CPU, 64 cores, A GPU, GPU time (timer query) (1 cell)")));
+}
+
+TEST(MixedMachines, HaveNoTimes_AndSayWhy) {
+  std::vector<records::CellRecord> cells = make_mixed_cells();
+  cells[0].absent["time_ms.prefilter"] = "none is needed";
+  const records::CellRecord cell = withhold_mixed_times(cells).value().front();
+  EXPECT_FALSE(frame_time(cell, LightMotion::kMoving) || frame_time(cell, LightMotion::kStatic));
+  for (const char* field : {"time_ms.prefilter", "time_ms.moving"})
+    EXPECT_THAT(records::explain_absence(cell, field), HasSubstr("times do not compare")) << field;
+}
+
+TEST(MixedMachines, WithoutEstimates_NothingIsAdvised_AndOneSentenceSaysWhy) {
+  const auto cells = *withhold_mixed_times(make_mixed_cells());
+  AdviceRequest request;
+  request.cheapest = choose_cost(cells);
+  const Advice advice = advise(cells, request);
+  EXPECT_THAT(advice.keeping, IsEmpty());
+  EXPECT_THAT(describe_failure(advice), HasSubstr("several kinds of machine measured the run"));
+}
+
+TEST(MixedMachines, BytesAreComparedAllTheSame) {
+  const auto cells = *withhold_mixed_times(make_mixed_cells());
+  AdviceRequest request;
+  request.cheapest = CostKind::kBytes;
+  request.whole = true;
+  EXPECT_THAT(advise(cells, request).keeping, SizeIs(3));
+}
+
+/// Also where one of the machines has a GPU: its times are left out too.
+TEST(MixedMachines, CostIsAnEstimateWhereThereIsOne_AndNoTime) {
+  std::vector<records::CellRecord> cells = make_mixed_cells();
+  EXPECT_EQ(choose_cost(cells), CostKind::kTime);
+  for (records::CellRecord& cell : cells) {
+    cell.gpu.emplace();
+    (*cell.gpu)["navi21"].estimate = records::GpuEstimateRecord{};
+  }
+  EXPECT_EQ(choose_cost(cells), CostKind(CostKind::kGpu, "navi21"));
+  for (const Quantity& cost : list_cost_measures(cells)) EXPECT_FALSE(cost.is(CostKind::kTime)) << cost.id;
+  for (records::CellRecord& cell : cells) cell.machine = cells[2].machine;
+  EXPECT_EQ(choose_cost(cells), CostKind::kTime) << "of one GPU";
+}
+
+TEST(Measures, ErrorsDiffer_BeyondTheLargerStandardError_NotTheSumOfBoth) {
+  EXPECT_FALSE(is_clearly_less_error({0.2, 0.199, 0.201}, {0.201, 0.2, 0.202}));
+  EXPECT_TRUE(is_clearly_less_error({0.2, 0.199, 0.201}, {0.2015, 0.2005, 0.2025}));
+}
+
+/// Both move by 0.01 from group to group, and their difference by a hundredth of that.
+TEST(Measures, ErrorsOfTheSamePhases_DifferByWhatTheirDifferencesSay) {
+  const Estimate a{0.2, 0.18, 0.22, {0.19, 0.2, 0.2, 0.21}}, b{0.201, 0.18, 0.222, {0.1911, 0.2009, 0.201, 0.211}};
+  EXPECT_TRUE(is_clearly_less_error(a, b));
+  EXPECT_FALSE(is_clearly_less_error(b, a));
+  EXPECT_FALSE(is_clearly_less_error(a, a));
+  const Estimate gap = subtract(b, a);
+  EXPECT_NEAR(gap.value, 0.001, 1e-12);
+  EXPECT_NEAR(gap.high - gap.value, metrics::find_student_t(4) * std::sqrt(2e-8 / 3.0 / 4.0), 1e-9);
+  Estimate other = b;
+  other.replicates.pop_back();
+  EXPECT_FALSE(is_clearly_less_error(a, other)) << "of other phases, and then within both intervals";
+}
+
+// What the report says of GPUs, on cells made by hand.
+
+/// What a million lookups take of a frame's.
+double to_us(double ms) { return 1e3 * ms / 2.0736; }
+
+/// A cell whose frame takes `ms` here, and `gpu_ms` on a GPU.
+CellRecord make_gpu_cell(const std::string& filter, double ms, double gpu_ms) {
+  CellRecord cell = records::make_cell("cubes", filter, 4.0);
+  cell.time_ms.moving = records::OwnTime{{ms, ms, ms, 3}, {ms, ms}};
+  records::ShaderFacts lookup, empty;
+  lookup.instructions = 50;
+  lookup.compares = 4;
+  lookup.loads = 2;
+  lookup.vector_registers = 24;
+  empty.instructions = 27;
+  empty.loads = 1;
+  cell.gpu = {
+      {"one",
+       {{{"empty", 1, empty}, {"lookup", 1, lookup}}, records::GpuEstimateRecord{.lookup_us = to_us(gpu_ms)}, ""}}};
+  return cell;
+}
+
+struct Costs {
+  explicit Costs(std::vector<CellRecord> made) : cells(std::move(made)) {}
+
+  std::vector<CellRecord> cells;
+  std::vector<Configuration> configurations = list_configurations(point_to(cells));
+  std::vector<GpuCost> costs = list_gpu_costs(configurations, "one");
+};
+
+/// A CPU's times say nothing of a GPU: they are in no column.
+TEST(GpuCosts, OfASoftwareRasteriser_NoTimesStandBesideEstimates) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("b", 2, 20), make_gpu_cell("c", 3, 30)};
+  for (const bool software : {false, true}) {
+    for (CellRecord& cell : cells)
+      cell.machine = records::MachineKind{"CPU", 2, "renderer", software, records::TimerKind::kWallClock};
+    const Costs costs(cells);
+    EXPECT_EQ(std::ranges::count(make_gpu_table(costs.costs).header, "measured here, ms"), software ? 0 : 1);
+  }
+}
+
+TEST(GpuCosts, WhatIsGuessedOrRefusedIsSaid) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 30), make_gpu_cell("b", 2, 10), make_gpu_cell("c", 3, 20)};
+  cells.push_back(make_gpu_cell("d", 4, 40));
+  cells[1].gpu->at("one").facts[1].facts.loops = 1;
+  cells[2].gpu->at("one").facts[1].facts.spilled_registers = 7;
+  cells[3].gpu->at("one") = {{}, std::nullopt, "mine.glsl:8: Vulkan refuses"};
+  const Costs costs(cells);
+  const auto sentences = describe_gpu("one", costs.costs);
+  ASSERT_EQ(sentences.size(), 3u);
+  EXPECT_THAT(sentences[0], HasSubstr("d: mine.glsl:8: Vulkan refuses"));
+  EXPECT_THAT(sentences[1], HasSubstr("how often loops turn: b."));
+  EXPECT_THAT(sentences[2], HasSubstr("spill to memory, which is slow: c."));
+}
+
+TEST(GpuCosts, OfSeveralScenes_AreMeans) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("a", 3, 30)};
+  cells[1].scene = "stack";
+  cells[1].gpu->at("one").estimate->prefilter_us = 8000.0;
+  cells[0].gpu->at("one").estimate->map_us = 2000.0;
+  const Costs costs(cells);
+  ASSERT_EQ(costs.costs.size(), 1u);
+  EXPECT_DOUBLE_EQ(*costs.costs[0].estimate_ms, 25.0);
+  EXPECT_DOUBLE_EQ(costs.costs[0].map_ms, 1.0);
+  EXPECT_DOUBLE_EQ(costs.costs[0].lookup_ms, 20.0);
+  EXPECT_DOUBLE_EQ(costs.costs[0].prefilter_ms, 4.0);
+  EXPECT_DOUBLE_EQ(*costs.costs[0].measured_ms, 2.0);
+}
+
+TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
+  std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 30), make_gpu_cell("b", 2, 10)};
+  cells.push_back(make_gpu_cell("wrong", 1, 1));
+  cells.back().status = records::CellStatus::kSuspect;
+  const records::TextTable table = make_gpu_table(Costs(cells).costs);
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0].front(), "b");
+  EXPECT_EQ(table.rows[1].front(), "a");
+  EXPECT_EQ(table.rows[1].size(), table.header.size());
+  EXPECT_EQ(table.rows[1][1], "30");
+  EXPECT_EQ(table.rows[1][2], "1");
+  EXPECT_EQ(table.rows[1][3], "30");
+  EXPECT_EQ(table.rows[1][4], "0");
+  EXPECT_EQ(table.rows[1][7], "23");
+  EXPECT_EQ(table.rows[1][8], "5");
+}
+
+}  // namespace
 }  // namespace shadowbench::analysis

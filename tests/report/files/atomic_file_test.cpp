@@ -1,19 +1,25 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
+#include <functional>
+#include <set>
 
 #include "base/error.h"
 #include "base/files.h"
+#include "report/files/file_name.h"
+#include "report/files/folder_lock.h"
 #include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::files {
-
-using namespace records;
 namespace {
 
+using namespace records;
 using ::testing::HasSubstr;
 
 std::size_t count_files(const std::filesystem::path& dir) {
@@ -120,6 +126,178 @@ TEST(AtomicFile, FullDisk_IsAnOutputErrorAndKeepsTheOldFile) {
   EXPECT_THAT(short_message, HasSubstr("File too large"));
   EXPECT_EQ(read_text(folder.path() / "a.txt"), "old");
   EXPECT_EQ(count_files(folder.path()), 1u);
+}
+
+TEST(FileName, PlainNames_StayAsTheyAre) {
+  EXPECT_EQ(make_file_stem("cubes"), "cubes");
+  EXPECT_EQ(make_file_stem("Old_house-2.lod1"), "Old_house-2.lod1");
+}
+
+TEST(FileName, AnyName_StaysInItsFolder) {
+  for (const std::string name :
+       {"../../etc/passwd", "..", ".", "", "/", "a/b", "a\\b", "-rf", ".hidden", "nul\0l", "ä"}) {
+    const std::string stem = make_file_stem(name);
+    EXPECT_THAT(stem, ::testing::MatchesRegex("[A-Za-z0-9_][A-Za-z0-9_.-]*")) << name;
+    EXPECT_EQ(std::filesystem::path(stem + ".png").filename(), stem + ".png") << name;
+  }
+}
+
+TEST(FileName, LongNames_AreCutAndStayApart) {
+  const std::string a = make_file_stem(std::string(300, 'a'));
+  const std::string b = make_file_stem(std::string(301, 'a'));
+  EXPECT_EQ(a.size(), 80u);
+  EXPECT_NE(a, b);
+}
+
+TEST(FileName, DifferentNames_NeverShareAFile) {
+  std::set<std::string> stems;
+  for (const std::string name : {"a b", "a_b", "a/b", "a:b", "a?b"}) stems.insert(make_file_stem(name));
+  EXPECT_EQ(stems.size(), 5u);
+}
+
+TEST(FileName, UrlPath_KeepsFoldersAndEncodesTheRest) {
+  EXPECT_EQ(encode_url_path("cells/a.json"), "cells/a.json");
+  EXPECT_EQ(encode_url_path("a b#%?\"<ä>:.png"), "a%20b%23%25%3F%22%3C%C3%A4%3E%3A.png");
+}
+
+std::string refusal_of(const std::filesystem::path& folder) {
+  const Error error = error_of([&] { const FolderLock lock(folder); });
+  return error.kind() == ErrorKind::kOutput ? error.what() : "";
+}
+
+std::set<std::string> list_names(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    names.insert(entry.path().lexically_relative(folder).string());
+  return names;
+}
+
+TEST(FolderLock, IsOfOneAtATime_AndLeavesItsMark) {
+  const TestFolder folder;
+  const std::filesystem::path out = folder.path() / "a" / "out";
+  {
+    const FolderLock lock(out);
+    lock.require_in_place();
+    const std::string refusal = refusal_of(out);
+    EXPECT_THAT(refusal, HasSubstr(out.string()));
+    EXPECT_THAT(refusal, HasSubstr("process " + std::to_string(getpid())));
+  }
+  EXPECT_EQ(list_names(out), std::set<std::string>{".shadowbench-folder"});
+  EXPECT_EQ(refusal_of(out), "");
+}
+
+TEST(FolderLock, OfAKilledProcess_IsFree) {
+  const TestFolder folder;
+  write_text_file(folder.path() / ".shadowbench-lock", "1\n");
+  EXPECT_EQ(refusal_of(folder.path()), "");
+}
+
+TEST(FolderLock, FolderThatIsGoneOrAnother_IsNoticed) {
+  const TestFolder folder;
+  const std::filesystem::path out = folder.path() / "out";
+  const FolderLock lock(out);
+  std::filesystem::remove_all(out);
+  EXPECT_THROW(lock.require_in_place(), Error);
+  const FolderLock other(out);
+  EXPECT_THROW(lock.require_in_place(), Error);
+  EXPECT_NO_THROW(other.require_in_place());
+}
+
+/// It would empty the file that the link leads to.
+TEST(FolderLock, LockThatIsALinkOrAPipe_IsRefused) {
+  const TestFolder folder;
+  const std::filesystem::path own = folder.path() / "own.txt", lock = folder.path() / "out" / ".shadowbench-lock";
+  write_text_file(own, "kept");
+  std::filesystem::create_directories(lock.parent_path());
+  const std::function<void()> makers[] = {
+      [&] { std::filesystem::create_symlink(own, lock); }, [&] { std::filesystem::create_symlink("nowhere", lock); },
+      [&] { std::filesystem::create_hard_link(own, lock); }, [&] { ASSERT_EQ(mkfifo(lock.c_str(), 0600), 0); }};
+  for (const auto& make : makers) {
+    make();
+    EXPECT_NE(refusal_of(lock.parent_path()), "");
+    EXPECT_THROW(FolderLock(lock.parent_path(), true), Error);
+    EXPECT_EQ(read_text(own), "kept");
+    EXPECT_TRUE(std::filesystem::remove(lock)) << "it is left where it was";
+  }
+}
+
+TEST(FolderLock, LinkAtAnyLevel_IsRefused) {
+  const TestFolder folder;
+  const std::filesystem::path out = folder.path() / "out", link = out / "a" / "b" / "link";
+  { const FolderLock marks(out); }
+  std::filesystem::create_directories(link.parent_path());
+  for (const auto& target : {folder.path(), std::filesystem::path("nowhere")}) {
+    std::filesystem::create_directory_symlink(target, link);
+    EXPECT_THAT(refusal_of(out), HasSubstr(link.string()));
+    std::filesystem::remove(link);
+  }
+  EXPECT_EQ(refusal_of(out), "");
+}
+
+TEST(FolderLock, FolderOfSomebodyElse_IsLeftAsItIs_UnlessItIsTold) {
+  for (const char* name : {"results.json", "index.html", "a.shadowbench-tmp-99999999.png", ".worker-99999999/a",
+                           "cells/notes.json", "stress/notes.txt", "deep/er/a.txt"}) {
+    const TestFolder folder;
+    write_text_file(folder.path() / name, R"({"schema_version": 1})");
+    const std::set<std::string> before = list_names(folder.path());
+    EXPECT_THAT(refusal_of(folder.path()), HasSubstr("--force")) << name;
+    EXPECT_EQ(list_names(folder.path()), before) << name;
+    EXPECT_NO_THROW(FolderLock(folder.path(), true)) << name;
+  }
+}
+
+/// Versions of before left no mark.
+TEST(FolderLock, FolderOfThisProgram_IsTakenAgain) {
+  for (const char* name : {"results.json", "stress.json", "cells/0123456789abcdef.json", ".shadowbench-folder"}) {
+    const TestFolder folder;
+    write_text_file(folder.path() / name, R"({"command": ["shadowbench"], "schema_version": 1})");
+    write_text_file(folder.path() / "notes.txt", "of the user");
+    EXPECT_EQ(refusal_of(folder.path()), "") << name;
+  }
+  const TestFolder folder;
+  { const FolderLock inner(folder.path() / "out" / "stress"); }
+  EXPECT_EQ(refusal_of(folder.path() / "out"), "");
+}
+
+/// Only names of ours are removed, however alike others are.
+TEST(TemporaryFiles, AreRemoved_AndNothingElseIs) {
+  const TestFolder folder;
+  const char* others[] = {"a.json",      "a.tmp-12.png", "a.shadowbench-tmp-.png", "a.shadowbench-tmp-12x.png",
+                          ".worker-x/a", ".worker-/a",   "cells/b.json",           "deep/er/a.shadowbench-tmp-12.png"};
+  const char* ours[] = {"a.shadowbench-tmp-12.png",        "b.grid.shadowbench-tmp-12.json", "c.shadowbench-tmp-12",
+                        "cells/d.shadowbench-tmp-12.json", ".worker-12/cells/e.json",        ".gpu-12/request.json"};
+  for (const char* name : others) write_text_file(folder.path() / name, "x");
+  for (const char* name : ours) write_text_file(folder.path() / name, "x");
+  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer.process == 13; });
+  for (const char* name : ours) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer.process == 12; });
+  for (const char* name : ours) EXPECT_FALSE(std::filesystem::exists(folder.path() / name)) << name;
+  for (const char* name : others) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+  EXPECT_FALSE(is_gone(this_writer()));
+  EXPECT_TRUE(is_gone({this_writer().host, 99999999}));
+}
+
+/// Machines that share a folder have processes of equal numbers.
+TEST(TemporaryFiles, OfAnotherMachine_AreItsOwn) {
+  const TestFolder folder;
+  const std::string theirs = "a.shadowbench-tmp-99999999-elsewhere.json";
+  write_text_file(folder.path() / theirs, "x");
+  write_text_file(folder.path() / ("a.shadowbench-tmp-99999999-" + this_writer().host + ".json"), "x");
+  remove_temporary_files(folder.path(), is_gone);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / theirs));
+  std::filesystem::remove(folder.path() / theirs);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  const std::string own = make_temporary_path("a.json").string();
+  EXPECT_TRUE(own.ends_with(this_writer().host + ".json")) << own;
+}
+
+TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
+  const TestFolder folder;
+  { PendingFile(folder.path() / "x.png"); }
+  for (const char* name : {"x.png", "x", "x.y.exr"}) write_text_file(make_temporary_path(folder.path() / name), "x");
+  std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "worker"));
+  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer == this_writer(); });
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 }  // namespace

@@ -1,13 +1,16 @@
 #include "report/images/heat_figures.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "report/images/color_values.h"
+#include "report/images/grid.h"
 #include "report/images/picture_io.h"
+#include "report/images/text.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::images {
@@ -295,6 +298,150 @@ TEST(TexelGrid, FieldsFarSmallerThanTheMedian_Fade) {
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 64; ++x) *picture.density.at(x, y) = 1.0f;
   EXPECT_EQ(count_color(draw(picture), {0.55f, 0.55f, 0.55f}), 64 * 48 / 2);
+}
+
+// Lit right of x = 20 and right of x = 60; blocked between 40 and 60.
+Image make_two_edges() {
+  Image image(80, 40, 1);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) *image.at(x, y) = (x >= 20 && x < 40) || x >= 60 ? 1.0f : 0.0f;
+  return image;
+}
+
+bool contains(const Rect& rect, int x, int y) {
+  return x >= rect.x && x < rect.x + rect.width && y >= rect.y && y < rect.y + rect.height;
+}
+
+TEST(HardestEdge, TheEdgeThatFiltersDisagreeOn_IsFound) {
+  const Image reference = make_two_edges();
+  Image other = reference;
+  for (int y = 25; y < 30; ++y) {
+    *other.at(60, y) = 0.4f;
+    *other.at(59, y) = 0.6f;
+  }
+  const Rect crop = find_hardest_edge({&reference, &other}, 0, {12, 9});
+  EXPECT_TRUE(contains(crop, 59, 25));
+  EXPECT_TRUE(contains(crop, 60, 29));
+  EXPECT_EQ(crop.width, 12);
+  EXPECT_EQ(crop.height, 9);
+}
+
+TEST(HardestEdge, DisagreementWithoutAnEdge_IsPassedOver) {
+  const Image reference = make_two_edges();
+  Image other = reference;
+  for (int y = 0; y < 10; ++y)
+    for (int x = 66; x < 78; ++x) *other.at(x, y) = 0.0f;  // acne far from any edge
+  *other.at(20, 30) = 0.5f;
+  EXPECT_TRUE(contains(find_hardest_edge({&reference, &other}, 0, {5, 5}), 20, 30));
+}
+
+TEST(HardestEdge, WithoutAnyEdge_HoldsTheDisagreement) {
+  Image lit(80, 40, 1);
+  std::fill(lit.texels.begin(), lit.texels.end(), 1.0f);
+  Image other = lit;
+  *other.at(55, 20) = 0.0f;
+  EXPECT_TRUE(contains(find_hardest_edge({&lit, &other}, 0, {5, 5}), 55, 20));
+}
+
+TEST(HardestEdge, TexelThatIsNotFinite_DoesNotSpoilTheSearch) {
+  const Image reference = make_two_edges();
+  Image other = reference;
+  *other.at(2, 2) = std::numeric_limits<float>::quiet_NaN();
+  *other.at(20, 30) = 0.5f;
+  EXPECT_TRUE(contains(find_hardest_edge({&reference, &other}, 0, {5, 5}), 20, 30));
+}
+
+TEST(HardestEdge, FailedFilters_AreLeftOut) {
+  const Image reference = make_two_edges();
+  Image other = reference;
+  *other.at(20, 30) = 0.5f;
+  const Image empty;
+  EXPECT_TRUE(contains(find_hardest_edge({&empty, nullptr, &reference, &other}, 0, {5, 5}), 20, 30));
+  EXPECT_EQ(find_hardest_edge({&empty}, 0, {5, 5}).width, 0);
+}
+
+TEST(HardestEdge, CropLargerThanTheImage_IsCutToIt) {
+  const Image reference = make_two_edges();
+  const Rect crop = find_hardest_edge({&reference}, 0, {500, 500});
+  EXPECT_EQ(crop.width, 80);
+  EXPECT_EQ(crop.height, 40);
+}
+
+TEST(HardestEdge, CropSize_FitsAnyPicture) {
+  for (const Size picture : {Size{1, 1}, Size{64, 36}, Size{960, 540}, Size{2000, 3}, Size{3, 2000}}) {
+    const Size crop = choose_crop_size(picture);
+    EXPECT_GE(crop.width, 1);
+    EXPECT_GE(crop.height, 1);
+    EXPECT_LE(crop.width, picture.width);
+    EXPECT_LE(crop.height, picture.height);
+  }
+}
+
+std::string without_spaces(std::string text) {
+  text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
+  return text;
+}
+
+Image draw(const std::string& text) {
+  Image canvas(60, 40, 3);
+  draw_text(canvas, 4, 4, text, {20, false}, {1.0f, 1.0f, 1.0f});
+  return canvas;
+}
+
+TEST(Text, CleanText_HasNoControlCharactersAndIsUtf8) {
+  EXPECT_EQ(clean_text("  a \n\t b\x01"
+                       "c \x7f"),
+            "a b c");
+  EXPECT_EQ(clean_text("a\xff"
+                       "b"),
+            "a\xEF\xBF\xBD"
+            "b");
+  EXPECT_EQ(clean_text("Würfel · 2×"), "Würfel · 2×");
+  EXPECT_EQ(clean_text(" "), "");
+}
+
+TEST(Text, CharactersOutsideAscii_AreDrawnAsThemselves) {
+  EXPECT_NE(draw("·").texels, draw("7").texels);
+  EXPECT_NE(draw("·").texels, draw("×").texels);
+  EXPECT_NE(draw("ä").texels, draw("a").texels);
+}
+
+TEST(Text, WrappedLines_FitAndLoseNoCharacter) {
+  const std::string text =
+      "taps 16, radius 2.5 texels, rotation interleaved-gradient · "
+      "a_word_so_long_that_it_must_be_broken_somewhere_ÄÖÜÄÖÜÄÖÜÄÖÜÄÖÜ end";
+  for (const int width : {40, 100, 250, 900}) {
+    std::string joined;
+    for (const std::string& line : wrap_text(text, {20, false}, width)) {
+      EXPECT_LE(measure_text(line, {20, false}), width) << line;
+      EXPECT_EQ(clean_text(line), line);
+      joined += line;
+    }
+    EXPECT_EQ(without_spaces(joined), without_spaces(text));
+  }
+}
+
+TEST(Text, ShortText_IsOneLineAndEmptyTextNone) {
+  EXPECT_THAT(wrap_text("vsm", {20, true}, 400), ::testing::ElementsAre("vsm"));
+  EXPECT_TRUE(wrap_text("", {20, true}, 400).empty());
+}
+
+TEST(Text, DrawnText_StaysInItsMeasuredBox) {
+  const std::string text = "jÄg·Qy";
+  const Font font{20, true};
+  Image canvas(200, 60, 3);
+  draw_text(canvas, 30, 10, text, font, {1.0f, 1.0f, 1.0f});
+  bool any = false;
+  for (int y = 0; y < canvas.height; ++y) {
+    for (int x = 0; x < canvas.width; ++x) {
+      if (*canvas.at(x, y) > 0.0f) {
+        any = true;
+        EXPECT_TRUE(x >= 30 && x < 30 + measure_text(text, font) && y >= 10 && y < 10 + line_height(font))
+            << x << " " << y;
+      }
+    }
+  }
+  EXPECT_TRUE(any);
 }
 
 }  // namespace

@@ -2,25 +2,39 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 
+#include "base/files.h"
+#include "report/analysis/findings.h"
 #include "report/images/picture_io.h"
 #include "report/pages/grid_sheets.h"
+#include "report/pages/tables.h"
 #include "report/pages/trade_section.h"
 #include "report/pages/write_page.h"
+#include "report/records/format.h"
 #include "report/records/json_io.h"
+#include "report/records/text_table.h"
+#include "tests/report/analysis/trade_cells.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::pages {
-
-using namespace records;
 namespace {
 
+using namespace analysis;
+using namespace records;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::SizeIs;
 
 std::set<std::string> list_links(const std::string& page) {
   static const std::regex kLink("(?:href|src)=\"([^\"]*)\"");
@@ -284,6 +298,150 @@ TEST(Report, OfNoCell_IsWritten) {
   for (const char* name : {"results.json", "results.schema.json", "timings.csv", "summary.md", "index.html"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
   expect_balanced(read_text(folder.path() / "index.html"));
+}
+
+std::string field(const records::TextTable& table, std::size_t row, const std::string& column) {
+  const auto found = std::find(table.header.begin(), table.header.end(), column);
+  EXPECT_NE(found, table.header.end()) << column;
+  return table.rows.at(row).at(static_cast<std::size_t>(found - table.header.begin()));
+}
+
+records::CellRecord make_empty() {
+  records::CellRecord empty;
+  empty.filter = "mine";
+  return empty;
+}
+
+TEST(CostTable, Rows_AreAsLongAsTheHeader) {
+  const records::TextTable table =
+      make_cost_table({"cubes", {make_cell("cubes", "vsm", 4.0), make_empty()}}, make_run().gl);
+  EXPECT_THAT(table.rows, Each(SizeIs(table.header.size())));
+  EXPECT_THAT(table.header, Contains("lookup, ms (CPU), median [quartiles]"));
+  EXPECT_THAT(table.rows[0], Contains("4 [3.92, 4.08]"));
+  EXPECT_THAT(table.rows[1], Not(Contains(HasSubstr("nan"))));
+}
+
+TEST(AccuracyTable, HoldsErrorsPartsAndArtefacts) {
+  records::CellRecord cell = make_attributed_cell("vsm", 0.04, {0.001, 0.71, 0.089, 0.2});
+  cell.artefact.acne = 0.0;
+  cell.artefact.leak = 0.0421;
+  cell.artefact.contact_gap = 0.00012;
+  cell.artefact.noise = 0.5;
+  cell.rmse_ci95 = records::Interval{0.03, 0.05};
+  const records::TextTable table = make_accuracy_table({"cubes", {cell}});
+  EXPECT_EQ(field(table, 0, "RMSE to the area truth [95 % over phases]"), "0.04 [0.03, 0.05]");
+  EXPECT_EQ(field(table, 0, "kernel width (class)"), "0.65 texels (medium)");
+  EXPECT_EQ(field(table, 0, "mean signed error"), "-0.005");
+  EXPECT_EQ(field(table, 0, "RMSE to the kernel truth, first phase"), "0.02");
+  EXPECT_EQ(field(table, 0, "dominating part, first phase"), "estimator 71 %");
+  EXPECT_EQ(field(table, 0, "acne, first phase"), "0 %");
+  EXPECT_EQ(field(table, 0, "leak, first phase"), "4.21 %");
+  EXPECT_EQ(field(table, 0, "contact gap, first phase"), "0.012 %");
+  EXPECT_EQ(field(table, 0, "noise, first phase"), "50 %");
+  EXPECT_EQ(field(table, 0, "share of numeric / estimator / discretisation / model, first phase"),
+            "0 % / 71 % / 9 % / 20 %");
+}
+
+TEST(AccuracyTable, WhatDoesNotExist_IsADash) {
+  const records::TextTable table = make_accuracy_table({"cubes", {make_empty(), make_empty()}});
+  ASSERT_THAT(table.rows, Each(SizeIs(table.header.size())));
+  for (std::size_t i = 1; i < table.header.size(); ++i)
+    EXPECT_EQ(table.rows[0][i], records::kNothing) << table.header[i];
+}
+
+TEST(AccuracyTable, DominatingPart_IsNamedOnlyWhereOneDoes) {
+  const records::TextTable table = make_accuracy_table({"cubes",
+                                                        {make_attributed_cell("a", 0.04, {0.0, 0.5, 0.1, 0.4}),
+                                                         make_attributed_cell("b", 0.0005, {0.0, 0.9, 0.1, 0.0})}});
+  EXPECT_EQ(field(table, 0, "dominating part, first phase"), "none");
+  EXPECT_EQ(field(table, 1, "dominating part, first phase"), "none: within the truth's own error");
+}
+
+class WritePage : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove_all(report_); }
+  void TearDown() override { std::filesystem::remove_all(report_); }
+
+  /// Writes a page into a folder of the report, and reads its HTML back.
+  std::string write(const std::string& folder, const std::string& command) const {
+    write_page(report_ / folder, command, {"A page", {}, {}});
+    return read(folder, command);
+  }
+
+  std::string read(const std::string& folder, const std::string& command) const {
+    std::ifstream stream(report_ / folder / (command + ".html"));
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+
+  const std::filesystem::path report_ =
+      std::filesystem::temp_directory_path() / ("shadowbench.write_page_test." + std::to_string(::getpid()));
+};
+
+TEST_F(WritePage, LinksThePagesThatLieInTheSameReport) {
+  write("bias", "bias");
+  write_text_file(report_ / "index.html", "");
+  EXPECT_THAT(write("stress", "stress"),
+              AllOf(HasSubstr("href=\"../index.html\""), HasSubstr("href=\"../bias/bias.html\""),
+                    Not(HasSubstr("href=\"../tune/tune.html\""))));
+}
+
+TEST_F(WritePage, LinksPagesThatWereWrittenEarlier_WithTheNewOne) {
+  write("bias", "bias");
+  EXPECT_THAT(read("bias", "bias"), Not(HasSubstr("stress.html")));
+  write("stress", "stress");
+  EXPECT_THAT(read("bias", "bias"), HasSubstr("href=\"../stress/stress.html\""));
+}
+
+TEST_F(WritePage, LinksNoPipe) {
+  std::filesystem::create_directories(report_ / "stress");
+  ASSERT_EQ(mkfifo((report_ / "stress" / "stress.html").c_str(), 0600), 0);
+  EXPECT_THAT(write("bias", "bias"), Not(HasSubstr("stress.html")));
+}
+
+/// A folder of the user's choice may lie beside somebody else's index.html.
+TEST_F(WritePage, LinksNothingOutsideTheReport) {
+  write_text_file(report_ / "index.html", "");
+  EXPECT_THAT(write("mine", "stress"), Not(HasSubstr("index.html")));
+}
+
+// The report of cells that several kinds of machine measured.
+
+std::string write_and_read(const std::vector<CellRecord>& cells, const RunRecord& run, const std::string& file) {
+  const TestFolder folder;
+  std::vector<std::string> keys;
+  for (const CellRecord& cell : cells) {
+    write_cell(folder.path(), cell);
+    keys.push_back(cell.key);
+  }
+  write_report(folder.path(), run, keys);
+  return read_text(folder.path() / file);
+}
+
+/// Whether a text says a number of milliseconds.
+bool says_milliseconds(const std::string& text) { return std::regex_search(text, std::regex("[0-9] ms")); }
+
+TEST(MixedMachines, NoTimeIsSaid_ButInTheTablesOfMeasurements) {
+  const std::string summary = write_and_read(make_mixed_cells(), make_run(), "details.md");
+  EXPECT_FALSE(says_milliseconds(summary)) << summary;
+  EXPECT_THAT(summary, HasSubstr("Nothing fits: none of 3 configurations can be judged"));
+  EXPECT_THAT(summary, HasSubstr("A fast CPU, 64 cores, A GPU, GPU time (timer query) (1 cell)"));
+  EXPECT_THAT(write_and_read(make_mixed_cells(), make_run(), "timings.csv"),
+              HasSubstr("\"A fast CPU, 64 cores, A GPU, GPU time (timer query)\""));
+  std::vector<CellRecord> alike = make_mixed_cells();
+  for (CellRecord& cell : alike) cell.machine = make_kind("A CPU");
+  const std::string usual = write_and_read(alike, make_run(), "details.md");
+  EXPECT_TRUE(says_milliseconds(usual));
+  EXPECT_THAT(usual, Not(HasSubstr("Several kinds")));
+}
+
+TEST(MixedMachines, OneWarningSaysSo_AlsoWhereTheReportIsWrittenAgain) {
+  RunRecord run = make_run();
+  run.warnings = {"another", warn_of_mixed_machines(make_mixed_cells())};
+  const auto results = nlohmann::json::parse(write_and_read(make_mixed_cells(), run, "results.json"));
+  EXPECT_THAT(results["warnings"], ElementsAre(warn_of_mixed_machines(make_mixed_cells()), "another"));
+  EXPECT_FALSE(results["cells"][2]["time_ms"]["moving"].is_null()) << "records keep what was measured";
 }
 
 }  // namespace

@@ -5,22 +5,27 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "report/analysis/advice_words.h"
+#include "report/analysis/cells.h"
+#include "report/pages/advice_text.h"
 #include "report/pages/run_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/json_io.h"
+#include "report/records/records.h"
 #include "tests/report/analysis/trade_cells.h"
+#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::pages {
+namespace {
 
 using namespace analysis;
 using namespace records;
-namespace {
-
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 constexpr const char* kHostile = "</script><script>alert('1', \"2\")</script><!--";
 
@@ -178,6 +183,203 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
       write_and_read(folder, {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");
   EXPECT_THAT(page, Not(HasSubstr("id=\"charts\"")));
   EXPECT_THAT(page, Not(HasSubstr("id=\"trade\"")));
+}
+
+constexpr std::size_t kLongestLine = 100;
+
+analysis::Demand max_rmse(double most) { return {&analysis::limit_table()[0], most, {}}; }
+
+records::CellRecord measure(const std::string& scene, const std::string& filter, double ms, double rmse) {
+  records::CellRecord cell = make_cell(scene, filter, ms);
+  cell.cost.prefilter_texels = 0;
+  cell.ratio_to_none.moving = records::Ratio{ms / 4.0, {ms / 4.1, ms / 3.9}};
+  cell.error.rmse = rmse;
+  cell.truth.se = 0.001;
+  cell.absent.erase("error");
+  return cell;
+}
+
+std::vector<records::CellRecord> make_cells() {
+  return {measure("cubes", "none", 1.0, 0.04), measure("stack", "none", 1.0, 0.06),
+          measure("cubes", "wide", 4.0, 0.02), measure("stack", "wide", 6.0, 0.0295),
+          measure("cubes", "huge", 9.0, 0.01), measure("stack", "huge", 9.0, 0.01)};
+}
+
+analysis::Advice advise_on(const std::vector<records::CellRecord>& cells, std::vector<analysis::Demand> demands) {
+  analysis::AdviceRequest request;
+  request.demands = std::move(demands);
+  return analysis::advise(cells, request);
+}
+
+std::vector<std::string> list_labels(const std::vector<records::CellRecord>& cells) {
+  std::vector<std::string> labels;
+  for (const analysis::Configuration& configuration : analysis::list_configurations(analysis::point_to(cells)))
+    labels.push_back(configuration.name);
+  return labels;
+}
+
+std::vector<std::string> list_names(const nlohmann::json& json) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : json.items()) names.push_back(name);
+  return names;
+}
+
+TEST(Configurations, CellsOfOneChoice_AreTogetherWhateverTheScene) {
+  std::vector<records::CellRecord> cells = make_cells();
+  cells[5].view = "top";
+  const auto pointers = analysis::point_to(cells);
+  const auto configurations = analysis::list_configurations(pointers);
+  ASSERT_EQ(configurations.size(), 3U);
+  EXPECT_THAT(configurations[1].cells, ElementsAre(&cells[2], &cells[3]));
+  EXPECT_EQ(configurations[0].surroundings, configurations[1].surroundings);
+  const auto places = analysis::list_places(pointers);
+  ASSERT_EQ(places.size(), 3U);
+  EXPECT_EQ(analysis::describe_place(places[0], places), "cubes");
+  EXPECT_EQ(analysis::describe_place(places[2], places), "stack (top)");
+}
+
+TEST(Configurations, Labels_NameTheMapAndWhatDiffers) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "vsm", 1.0, 0.1), measure("cubes", "vsm", 1.0, 0.1),
+                                            measure("cubes", "none", 1.0, 0.1)};
+  cells[1].params["radius"] = 8.0;
+  EXPECT_THAT(list_labels(cells), ElementsAre("vsm (radius 4)", "vsm (radius 8)", "none"));
+  cells[2].width = 480;
+  cells[0].bias.plane_kernels = cells[1].bias.plane_kernels = cells[2].bias.plane_kernels = 1.0;
+  EXPECT_EQ(list_labels(cells)[2], "none, picture 480 × 540");
+  cells[2].bias.plane_kernels = 2.0;
+  EXPECT_THAT(list_labels(cells)[2], HasSubstr("bias: plane over 2"));
+}
+
+TEST(Configurations, LengthsInUnitsOfAScenesMap_MakeNoDifference) {
+  std::vector<records::CellRecord> cells = {measure("cubes", "a", 1.0, 0.1), measure("cubes", "b", 1.0, 0.1)};
+  for (records::CellRecord& cell : cells) cell.bias.constant.depth = 0.01;
+  cells[0].map_scale = {0.1, 10.0};
+  cells[1].map_scale = {0.2, 10.0};
+  EXPECT_EQ(list_labels(cells)[0], "a");
+}
+
+TEST(AdviceText, BeginsWithThePicks_ThenTheFastOne) {
+  const auto cells = make_cells();
+  EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
+              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 on the front that keep the "
+                        "limits\nwith a kernel of 0.65 texels (medium), radius 4, store rg32f\n"));
+  EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {})),
+              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 on the front\n"));
+  EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.001)})), StartsWith("Nothing fits.\n"));
+}
+
+TEST(AdviceText, ALimitKeptWithinTheIntervalOverPhases_SaysSo) {
+  auto cells = make_cells();
+  for (records::CellRecord& cell : cells)
+    cell.rmse_ci95 = records::Interval{*cell.error.rmse - 0.002, *cell.error.rmse + 0.002};
+  EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
+              HasSubstr("0.0295  stack  kept by less than its interval over the phases of the map reaches, 0.002\n"));
+}
+
+TEST(AdviceText, Evidence_IsQuoted) {
+  const auto cells = make_cells();
+  const std::string text = make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)}));
+  EXPECT_THAT(text,
+              HasSubstr("  --max-rmse 0.03  0.0295  stack  kept by less than the truth's own standard error, 0.001\n"));
+  EXPECT_THAT(text, HasSubstr("ms (CPU)"));
+  EXPECT_THAT(text, HasSubstr("  stack  9.5       9.31 .. 9.69  1.5 [1.46, 1.54]  0.0295  4 MiB  4\n"));
+  EXPECT_THAT(text, HasSubstr("Others on the front:\n  huge  12.5 ms (CPU)  RMSE 0.01\n"));
+  EXPECT_THAT(text, HasSubstr("Cheaper, outside the limits:\n  none  4.5 ms (CPU)  RMSE 0.051  breaks --max-rmse 0.03 "
+                              "with 0.06\n"));
+  EXPECT_THAT(text, HasSubstr("3 of 3 configurations judged, on cubes, stack.\n"));
+  EXPECT_THAT(text, HasSubstr("Times are CPU time"));
+}
+
+TEST(AdviceText, LimitOnTimeWithinTheSpread_IsSaid) {
+  const auto cells = make_cells();
+  const analysis::Demand limit{&analysis::cost_spec(analysis::CostKind::kTime), 4.51, {}};
+  const std::string text = make_advice_text(make_run(), advise_on(cells, {limit}));
+  EXPECT_THAT(text, HasSubstr("  --max-ms 4.51  4.5 ms (CPU)  cubes  its upper quartile, 4.59, is over it\n"));
+}
+
+TEST(AdviceText, NothingFits_ListsTheNearest) {
+  const auto cells = make_cells();
+  const std::string text = make_advice_text(make_run(), advise_on(cells, {max_rmse(0.001)}));
+  EXPECT_THAT(text,
+              HasSubstr("Nearest to the limits:\n  huge  12.5 ms (CPU)  RMSE 0.01    breaks --max-rmse 0.001 with "
+                        "0.01\n"));
+}
+
+TEST(AdviceText, WhatWasNotJudged_IsSaid) {
+  auto cells = make_cells();
+  cells[0].error.rmse.reset();
+  cells[0].absent["error.rmse"] = "the cat slept on it";
+  EXPECT_THAT(
+      make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
+      HasSubstr("2 of 3 configurations judged, on cubes, stack.\nNot judged, 1: no error.rmse on cubes: the cat slept "
+                "on it.\n"));
+}
+
+TEST(AdviceText, Lines_FitATerminal) {
+  auto cells = make_cells();
+  cells[0].error.rmse.reset();
+  cells[0].absent["error.rmse"] = std::string(40, 'x') + " " + std::string(40, 'y') + " and more of the same";
+  for (const double most : {0.03, 0.001}) {
+    std::istringstream text(make_advice_text(make_run(), advise_on(cells, {max_rmse(most)})));
+    for (std::string line; std::getline(text, line);) {
+      const auto width = std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; });
+      EXPECT_LE(static_cast<std::size_t>(width), kLongestLine) << line;
+    }
+  }
+}
+
+TEST(AdviceJson, Fields_AreTheSameWhateverTheAnswer) {
+  const auto cells = make_cells();
+  const auto fits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03)}));
+  const auto nothing = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.001)}));
+  EXPECT_EQ(list_names(fits), list_names(nothing));
+  EXPECT_EQ(fits["fits"], true);
+  EXPECT_EQ(nothing["fits"], false);
+  EXPECT_EQ(nothing["keeping"].size(), 0U);
+  EXPECT_EQ(list_names(fits["keeping"][0]), list_names(nothing["failing"][0]));
+}
+
+TEST(AdviceJson, Claims_HaveNoSize) {
+  auto cells = make_cells();
+  analysis::AdviceRequest request;
+  request.demands = {{nullptr, 0.0, "contact-hardening"}};
+  for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
+  for (records::CellRecord& cell : cells)
+    if (cell.filter == "none") cell.claims = {"contact-hardening"};
+  const auto json = make_advice_json(make_run(), analysis::advise(cells, request));
+  EXPECT_EQ(json["keeping"][0]["limits"].dump(),
+            R"([{"claim":"contact-hardening","kept":true,"option":"--requires"}])");
+  EXPECT_EQ(json["failing"][0]["limits"][0]["kept"], false);
+}
+
+TEST(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
+  auto cells = make_cells();
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (i % 2 == 0)
+      cells[i].artefact.leak = 0.0;
+    else
+      records::explain(cells[i], "artefact.leak", {"too few", true});
+  const analysis::Demand leak{
+      &*std::ranges::find(analysis::limit_table(), std::string("artefact.leak"), &analysis::Quantity::field), 0.1, {}};
+  const auto limits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03), leak}))["keeping"][0]["limits"];
+  EXPECT_TRUE(limits[0]["nothing_to_see"].empty());
+  EXPECT_EQ(limits[1]["nothing_to_see"].dump(), R"([{"reason":"too few","scene":"stack","view":"main"}])");
+}
+
+TEST(AdviceJson, Numbers_AreThoseOfTheCells) {
+  const auto cells = make_cells();
+  const auto json = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03)}));
+  EXPECT_EQ(json["software"], true);
+  EXPECT_EQ(json["clock"], "CPU time (software rasteriser)");
+  EXPECT_EQ(json["asked"]["limits"]["--max-rmse"], 0.03);
+  EXPECT_EQ(json["keeping"][0]["settings"]["filter"], "wide");
+  EXPECT_EQ(json["keeping"][0]["cost"]["mean"], 8.5);
+  EXPECT_EQ(json["keeping"][0]["limits"][0]["worst"], 0.0295);
+  EXPECT_EQ(json["keeping"][0]["limits"][0]["key"], cells[3].key);
+  EXPECT_EQ(json["keeping"][0]["limits"][0]["within_uncertainty"], true);
+  EXPECT_EQ(json["keeping"][0]["cells"][1]["cost"], 9.5);
+  EXPECT_EQ(json["failing"][0]["label"], "none");
+  EXPECT_EQ(json["failing"][0]["limits"][0]["worst"], 0.06);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include "harness/scene/files/mesh_file.h"
 #include "tests/test_files.h"
@@ -13,6 +14,7 @@
 namespace shadowbench::scene {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
 
 constexpr const char* kObjQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -122,8 +124,6 @@ TEST(ObjFileTest, IndexOutOfRange_IsAnError) {
   EXPECT_THROW(import_text(std::string(kObjQuad) + "f 1 2 0\n"), Error);
   EXPECT_THROW(import_text(std::string(kObjQuad) + "f 1 2 -9\n"), Error);
 }
-
-using testing::EndsWith;
 
 using Polygon = std::vector<glm::dvec3>;
 
@@ -321,6 +321,36 @@ TEST(ObjFileTest, FanOfVeryManyTriangles_IsReadInSeconds) {
   EXPECT_EQ(tip.position_ws, glm::vec3(0, 0, 1));
   EXPECT_GT(tip.normal_ws.x, 0.4f) << "of a cone of 90 degrees, the faces on the other side are beyond the crease";
   EXPECT_NEAR(tip.normal_ws.y, 0.0f, 1e-3f);
+}
+
+/// Bytes from text, so that zeros and escapes can stand in it.
+template <std::size_t N>
+std::vector<unsigned char> bytes(const char (&text)[N]) {
+  return {text, text + N - 1};
+}
+
+constexpr char kHugePng[] = "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\1\0\0\0\1\0\0\x08\2\0\0\0";
+constexpr char kHugeTga[] = "\0\0\2\0\0\0\0\0\0\0\0\0\xff\xff\xff\xff\x20\x28";
+
+TEST(PictureHeader, ClaimsThatNoMemoryHolds_AreRefusedBeforeDecoding) {
+  const auto complaint = [](const std::vector<unsigned char>& picture) {
+    return error_of([&] { decode_texture(picture, "huge", "a.gltf", {}); }).message();
+  };
+  EXPECT_THAT(complaint(bytes(kHugePng)),
+              HasSubstr("'huge' cannot be decoded: use PNG or JPEG, 1 to 16384 pixels a side"));
+  EXPECT_THAT(complaint(bytes(kHugeTga)), testing::AllOf(HasSubstr("65535 x 65535"), HasSubstr("16384")));
+  EXPECT_THAT(complaint(bytes("P6 99999 99999 255\n")), HasSubstr("99999 x 99999"));
+  EXPECT_THAT(complaint(bytes("\0\0\2\0\0\0\0\0\0\0\0\0\1\x20\1\x20\x20\x28")), HasSubstr("8193 x 8193"));
+}
+
+TEST(PictureHeader, AllTexturesOfAModel_AreCountedTogether) {
+  const auto small = bytes(
+      "\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\x28"
+      "abcd");
+  const Texture large{"large", 16384, 16384, {}};
+  EXPECT_EQ(decode_texture(small, "small", "a.gltf", {}).rgba.size(), 4U);
+  const Error error = error_of([&] { decode_texture(small, "small", "a.gltf", {large}); });
+  EXPECT_THAT(error.message(), testing::AllOf(HasSubstr("'small'"), HasSubstr("268435457")));
 }
 
 }  // namespace
