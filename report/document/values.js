@@ -143,39 +143,3 @@ const paint = (numbers, mask, width, rect, palette, scale) => {
   canvas.getContext("2d").putImageData(image, 0, 0);
   return canvas;
 };
-
-const addSquares = (sums, errors, mask) => {
-  const all = sums || new Float32Array(errors.length);
-  for (let i = 0; i < all.length; ++i)
-    if ((!mask || mask[i]) && errors[i] === errors[i]) all[i] += errors[i] * errors[i];
-  return all;
-};
-
-// Finds the tiles, an eighth of the width, that hold the most and do not overlap; they lie on a grid of half a tile.
-const findTiles = (sums, width, height, count) => {
-  const half = Math.ceil(width / 16);
-  const columns = Math.ceil(width / half);
-  const rows = Math.ceil(height / half);
-  const halves = new Float64Array((columns + 1) * (rows + 1));
-  const tiles = [];
-  const found = [];
-  const find = (i) => Math.floor(Math.floor(i / width) / half) * (columns + 1) + Math.floor((i % width) / half);
-  for (let i = 0; i < sums.length; ++i) halves[find(i)] += sums[i];
-  const total = halves.reduce((sum, value) => sum + value, 0);
-  for (let row = 0; row < Math.max(1, rows - 1); ++row) {
-    for (let column = 0; column < Math.max(1, columns - 1); ++column) {
-      const at = row * (columns + 1) + column;
-      const sum = halves[at] + halves[at + 1] + halves[at + columns + 1] + halves[at + columns + 2];
-      tiles.push({ row, column, share: sum / total });
-    }
-  }
-  for (const tile of tiles.filter(({ share }) => share > 0).sort((a, b) => b.share - a.share)) {
-    const overlaps = ({ row, column }) => Math.abs(row - tile.row) < 2 && Math.abs(column - tile.column) < 2;
-    if (found.length < count && !found.some(overlaps)) found.push(tile);
-  }
-  return found.map(({ row, column, share }) => {
-    const x = column * half;
-    const y = row * half;
-    return { share, rect: { x, y, width: Math.min(2 * half, width - x), height: Math.min(2 * half, height - y) } };
-  });
-};

@@ -76,11 +76,9 @@ const makePane = () => {
 };
 const panes = [makePane(), makePane()];
 const live = element(root, "p", { className: "unseen", "aria-live": "polite" });
-const below = element(root, "div", { className: "below" });
 const hiddenScroll = { tabIndex: 0, hidden: true };
-const tableBox = addGroup(below, "values scroll", "Visibility at the pixel under the pointer", hiddenScroll);
+const tableBox = addGroup(root, "values scroll", "Visibility at the pixel under the pointer", hiddenScroll);
 const table = element(tableBox, "table");
-const hardest = element(below, "div", { className: "strip", hidden: true });
 const crops = element(root, "div", { className: "strip", hidden: true });
 const help = element(root, "details");
 element(help, "summary", {}, "Keys and gestures");

@@ -1,4 +1,4 @@
-// What the viewer's panes hold, the values and tiles below them, and the link to a view.
+// What the viewer's panes hold, the values and crops below them, and the link to a view.
 const kLoadedFirst = 12;
 const kNote = " (its visibility: only filters have this layer)";
 const keepColours = makeStore(24e6);
@@ -150,7 +150,7 @@ const listKnownLayers = async (mine) => {
   whos.forEach((who) => learn(who, state.place));
 };
 
-// The values under the pointer, and the hardest tiles.
+// The values under the pointer.
 const learn = async (who, place) => {
   const { value } = await attempt(getNumbers(who, place, "visibility"));
   if (!value || place !== state.place || known.has(who)) return;
@@ -193,37 +193,11 @@ const readPlace = async () => {
   const { place } = state;
   known.clear();
   table.replaceChildren();
-  hardest.replaceChildren();
-  [tableBox.hidden, hardest.hidden, cursor] = [true, true, null];
+  [tableBox.hidden, cursor] = [true, null];
   await new Promise((resolve) => onceSeen(section, resolve));
   for (const who of [kTruth, ...listFilters(place).slice(0, kLoadedFirst)]) {
     await learn(who, place);
     if (place !== state.place) return;
-  }
-  showHardest(place);
-};
-const showHardest = async (place) => {
-  const mask = await getMask(place);
-  const truth = known.get(kTruth)?.value;
-  let sums = null;
-  let count = 0;
-  for (const [who, { value }] of known) {
-    if (who === kTruth || !truth || value.length !== truth.length) continue;
-    sums = addSquares(sums, subtract(value, truth), mask);
-    ++count;
-    await new Promise((resolve) => setTimeout(resolve));
-    if (place !== state.place) return;
-  }
-  if (!sums) return;
-  const { value: picture } = await attempt(getPicture(kTruth, place));
-  const { width, height } = await loadFile(kTruth, place);
-  const all = listFilters(place).length;
-  const some = count < all ? `${count} of ${all}` : all;
-  fillStrip(hardest, `Shares of the squared error of ${some} filters`);
-  for (const { rect, share } of findTiles(sums, width, height, 6)) {
-    const caption = `${(100 * share).toFixed(0)} %`;
-    const make = async () => (picture ? cut(picture, rect, 1) : paint(truth, null, width, rect, "grey", 1));
-    addThumb(hardest, caption, () => showRect(rect), make).title = `at x\u00a0${rect.x}, y\u00a0${rect.y}`;
   }
 };
 const fillStrip = (strip, title) => {

@@ -15,7 +15,7 @@ const wheel = async (page, by) => {
 };
 test("Gestures_PanSplitCropAndPinch", async () => {
   const { page, messages, shoot, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,slider,120,67.5,4", hasTouch: true });
-  await page.waitForSelector(".viewer .strip button canvas");
+  await page.waitForSelector(".viewer tbody tr", { state: "attached" });
   const box = await page.locator(".viewer .panes canvas").first().boundingBox(), step = 240 / box.width / 4;
   const middle = [box.x + box.width / 2, box.y + box.height / 2];
   await drag(page, [box.x + 100, box.y + 100], [box.x + 150, box.y + 80]);
@@ -56,7 +56,7 @@ test("MissingAndDamagedFiles_AreNamed_AndTheRestWorks", async () => {
   writeFileSync(join(folder, "images/cubes.pcf2x2.values.js"), readFileSync(join(folder, "images/cubes.pcf2x2.values.js"), "utf8").replace(/"data": ?"[^"]{40}/, '"data": "'));
   rmSync(join(folder, "images/cubes.tent3x3.picture.png"));
   const { page, messages, shoot, close } = await openViewer(join(folder, "index.html"), { hash: "#view=cubes,none,pcf2x2,visibility,side,0,0,1" });
-  await page.waitForSelector(".viewer .strip button canvas");
+  await page.waitForSelector(".viewer tbody tr", { state: "attached" });
   assert.deepEqual(await page.locator(".viewer .message").allTextContents(), ["images/cubes.none.values.js cannot be read: the file is not beside this page.",
     "images/cubes.pcf2x2.values.js cannot be read: it is damaged or cut short."]);
   await shoot("missing");

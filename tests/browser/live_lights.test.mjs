@@ -41,7 +41,7 @@ test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", (context) => withBrowser
   writeFileSync(join(folder, "moved.toml"), [head, ...moved].join("[[light]]"));
   for (const light of ["spot", "bulb"]) {
     const place = `three_lights.${light}`, { picture, said, data } = await drawTurned(browser, "lamps", place, "tent3x3", [0, 0], [yaw, 0]);
-    assert.match(said, /The lamp that was moved is not in it/);
+    assert.match(said, /the scene's own lamp, not the moved one/);
     const drawn = drawByProgram(["run", "--scene", "moved.toml", "--light-name", light, "--filters", "tent3x3", "--size", "160x90", "--map-size", "128"], join(folder, light), folder);
     holdAgainst(context, light, [picture, drawn, ownPicture("lamps", data, place, "tent3x3")]);
   }

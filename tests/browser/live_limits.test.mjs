@@ -53,19 +53,11 @@ test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa,
   const gap = compareShots([Buffer.from(before.split(",")[1], "base64"), readFileSync(pageOf("waves", decodeURI(own.picture)))]);
   context.diagnostic(`the picture differs from the run's by ${gap.mean} of 255`);
   assert.ok(gap.mean < 0.1, JSON.stringify(gap));
-  // View and light stay, and so does the map; its bias and parameters do not.
+  // View and light stay; parameters do not.
   await dragOver(page.locator(".live-stage canvas"), [100, 60], [60, 0]);
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("Camera and light stay: the scene has more triangles"));
   assert.equal(await settled(), before);
-  const box = page.locator(".live details", { hasText: "Map and bias" });
-  await box.locator("summary").click();
-  for (const name of ["Map", "Format"]) assert.ok(await page.locator(".live").getByRole("combobox", { name, exact: true }).isDisabled());
-  await box.getByLabel("constant bias").fill("1");
-  assert.notEqual(await settled(), before);
   await shoot("live.large");
-  // A link that asks for what stays is heeded as far as it can be, and the map is the run's afterwards too.
-  await page.evaluate((hash) => (location.hash = hash), `#live=${["waves", label, label, 0, 0, 0, 0, 0, "map:format:d16", "map:size:64"].map(encodeURIComponent).join()}`);
-  assert.equal(await settled(), before);
   await page.locator(".live").getByRole("button", { name: "As it was" }).click();
   assert.equal(await settled(), before);
   await press(page, "Time on this GPU");
@@ -90,8 +82,6 @@ test("WithoutTargetsOfFloats_ThePageSaysSo_AndGoesOn", () => withBrowser(kMesa, 
   await page.locator("#live").evaluate((section) => section.scrollIntoView());
   await says(".live");
   assert.equal(await page.locator(".live canvas").count(), 0);
-  await page.locator(".answer").getByRole("button", { name: "Live" }).click();
-  await says(".answer .split p.note");
   await page.locator("select[name=cost]").selectOption({ label: "this GPU (measure)" });
   await says(".answer form");
   // The rest of the page works.

@@ -139,20 +139,13 @@ test("Layers_AreVisibility_ItsErrorAgainstTheTruth_AndTheMap", (context) => with
   await close();
 }));
 
-test("AContextThatIsLost_IsSaid_AndDrawsAgainOnceItIsBack", () => withBrowser(kMesa, async (browser) => {
+test("AContextThatIsLost_IsSaid", () => withBrowser(kMesa, async (browser) => {
   const { page, close } = await openLive(pageOf("ball"), browser, { init: keepContexts });
-  await page.evaluate(() => {
-    window.lost = window.contexts[0].getExtension("WEBGL_lose_context");
-    window.lost.loseContext();
-  });
+  await page.evaluate(() => window.contexts[0].getExtension("WEBGL_lose_context").loseContext());
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the browser has taken the GPU away"));
   await page.locator(".live").getByRole("button", { name: "Check against the run" }).click();
   await settle(page);
   assert.match(await page.locator(".live [role=status]").textContent(), /Nothing is drawn now/, "also once a check has ended");
-  await page.evaluate(() => window.lost.restoreContext());
-  await page.waitForFunction(() => !document.querySelector(".live").textContent.includes("taken the GPU away"));
-  await press(page, "Check against the run");
-  for (const [filter, own] of await readTable(page)) assert.match(own, /^[\d.e-]+$/, filter);
   await close();
 }));
 

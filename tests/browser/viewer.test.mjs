@@ -9,12 +9,11 @@ const kPage = pageOf("several");
 
 test("FirstPaint_ShowsTheTruthAndAFilter_Silently", async () => {
   const { page, messages, shoot, close } = await openViewer(kPage);
-  await page.waitForSelector(".viewer .strip button canvas");
+  await page.waitForSelector(".viewer tbody tr:nth-child(9)", { state: "attached" });
   assert.deepEqual((await labels(page)).map((each) => each.replace(/[\u2068\u2069]/g, "")),
     ["Picture of cubes, Side by side. Left: truth", "Picture of cubes, Side by side. Right: none"]);
   assert.equal(new URL(page.url()).hash, "", "the address stays until the reader changes something");
   assert.ok(Object.keys(await colours(page)).length > 20);
-  assert.equal(await page.locator(".viewer .strip button canvas").count(), 6);
   await shoot("first");
   assert.deepEqual(messages, []);
   await close();
@@ -82,7 +81,7 @@ test("LayerThatTheTruthLacks_LeavesItsVisibility", async () => {
 
 test("Keys_ChooseZoomFlipAndMove", async () => {
   const { page, messages, close } = await openViewer(kPage);
-  await page.waitForSelector(".viewer .strip button canvas");
+  await page.waitForSelector(".viewer tbody tr:nth-child(9)", { state: "attached" });
   for (const [key, name] of [["3", "tent3x3"], ["8", "esm"], ["t", "truth"], ["2", "pcf2x2"]]) {
     await page.keyboard.press(key);
     await settle(page);
@@ -132,7 +131,7 @@ const readPlane = (file, name) => {
 
 test("Values_UnderThePointer_AreThoseOfTheFile", async () => {
   const { page, close } = await openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,side,120,67,1" });
-  await page.waitForSelector(".viewer .strip button canvas");
+  await page.waitForSelector(".viewer tbody tr:nth-child(9)", { state: "attached" });
   assert.equal(await page.locator(".viewer tbody tr").count(), 9);
   const box = await page.locator(".viewer .panes canvas").first().boundingBox();
   for (const [x, y] of [[50, 75], [150, 50], [120, 100], [90, 79], [40, 60]]) {

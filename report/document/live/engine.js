@@ -1,14 +1,13 @@
-// Draws the run's filters with WebGL 2 on a canvas that nobody sees: the section Live and the picture of the answer copy
-// from it. A view has an id, a place, the angles that camera and light are turned by, a map of parameters by filter, the
-// settings of its map and a layer.
+// Draws the run's filters with WebGL 2 on a canvas that nobody sees, from which the section Live copies. A view has an id, a
+// place, the angles that camera and light are turned by, parameters by filter, and a layer.
 const kAsRun = { id: "run", camera: [0, 0], light: [0, 0], parameters: new Map() };
 const kMapsAtOnce = 4; // of a reference, in each frame
 const kMostError = 0.5; // of visibility, has the palette's last colour
-const kGpuIsGone = "The browser has taken the GPU away from this page, and may give it back.";
+const kGpuIsGone = "The browser has taken the GPU away from this page: load it again.";
 const listFiltersAt = (place) => [...run.configurations.keys()].filter((who) => cellAt(who, place)?.frames);
 const isTurned = (angles) => angles.some((angle) => angle !== 0);
 const isMoved = ({ camera, light }) => isTurned(camera) || isTurned(light);
-const posesOf = ({ camera, light, map = {} }) => JSON.stringify([camera, light, map]);
+const posesOf = ({ camera, light }) => JSON.stringify([camera, light]);
 
 const makeEngine = (gl) => {
   const names = gl.getExtension("WEBGL_debug_renderer_info");
@@ -18,8 +17,7 @@ const makeEngine = (gl) => {
   const truths = new Map(); // by place
   const motions = new Map(); // by what they move
   const references = new Map(); // by view and place
-  const varied = new Map(); // by the path of frames: the settings of their map
-  let turn = 0; // counts the changes of camera, light and map
+  let turn = 0; // counts the changes of camera and light
   let posed = "";
   let display = null;
 
@@ -42,7 +40,6 @@ const makeEngine = (gl) => {
     return {
       ...frame,
       settings,
-      fixed: listFixed(frame, settings),
       motion: motions.get(key),
       constants,
       parameters: parameters.filter((each) => each.steps.length > 0),
@@ -53,16 +50,10 @@ const makeEngine = (gl) => {
     if (!frames.has(key)) frames.set(key, readFrame(who, place));
     return frames.get(key);
   };
-  // Turns a frame as a view is turned, and gives it the view's parameters and map.
+  // Turns a frame as a view is turned, and gives it the view's parameters.
   const pose = (frame, view) => {
-    const { player, motion, parameters, who, cell, settings, fixed } = frame;
+    const { player, motion, parameters, who } = frame;
     const { camera, light, parameters: own } = view;
-    const map = dropFixed(frame, view.map);
-    if (map.size && map.size !== settings.map_size && fixed.size && who !== kTruth)
-      throw new Error(`the map's size stays: ${fixed.size}.`);
-    if ((varied.get(cell.frames) ?? "{}") !== JSON.stringify(map))
-      player.vary(isMapChanged(map) ? varyMap(frame, map) : kNoVariant);
-    varied.set(cell.frames, JSON.stringify(map));
     const key = posesOf(view);
     if (key !== posed) ++turn;
     posed = key;
@@ -174,26 +165,19 @@ const makeEngine = (gl) => {
   };
 };
 
-// The page has one engine, made when it is asked for; `gpuEvents` tells "lost" and "back" of the GPU that it draws with.
-const gpuEvents = new EventTarget();
+// The page has one engine, made when it is asked for.
 let engine = null;
 let isGpuLost = false;
+let whenGpuIsLost = () => {};
 const makeContext = () => {
   const canvas = makeCanvas(1, 1);
   const gl = canvas.getContext("webgl2", { alpha: false, antialias: false });
   if (!gl) throw new Error("This browser gives no WebGL 2, with which filters would be drawn here.");
   if (!gl.getExtension("EXT_color_buffer_float"))
     throw new Error("This browser's WebGL 2 lacks EXT_color_buffer_float, without which filters cannot be drawn here.");
-  canvas.addEventListener("webglcontextlost", (event) => {
-    event.preventDefault();
+  canvas.addEventListener("webglcontextlost", () => {
     isGpuLost = true;
-    gpuEvents.dispatchEvent(new Event("lost"));
-  });
-  // A context that was lost has lost all that was made with it.
-  canvas.addEventListener("webglcontextrestored", () => {
-    isGpuLost = false;
-    engine = makeEngine(gl);
-    gpuEvents.dispatchEvent(new Event("back"));
+    whenGpuIsLost();
   });
   return gl;
 };

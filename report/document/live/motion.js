@@ -102,9 +102,8 @@ const frameLamp = (uv, back, range, distance, { radius }) => {
 };
 
 // `bounds` are the scene's; `cameraNow` gives where the camera is; `fit` is the run's.
-const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow }) => {
+const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow, uniformsOf }) => {
   const { middle, radius } = bounds;
-  const uniformsOf = player.uniformsOf;
   const find = (name) => steps.map((index) => uniformsOf(index)[name]).find(Boolean);
   const followsView = /^(view|cascades)/.test(fit);
   const byMatrix = new Map();
@@ -275,12 +274,13 @@ const findBounds = (frames, blobs, steps) => {
   };
 };
 
+const kTooLarge = "the scene has more triangles than go with a page";
 const kOfCamera = ["clip_from_world", "camera_position_ws", "camera_forward_ws"];
 const makeMotion = (player, frames, blobs, picture, fit) => {
   if (frames.check.whole) return { isSun: false, stays: kTooLarge, moveCamera: () => {}, moveLight: () => {} };
   const steps = [...player.listSteps(picture)].filter((index) => frames.steps[index].op === "draw");
   const labelOf = (index) => frames.programs[frames.steps[index].program].label;
-  const uniformsOf = player.uniformsOf;
+  const uniformsOf = (index) => frames.steps[index].uniforms;
   const seen = steps.filter((index) => uniformsOf(index).camera_forward_ws);
   const casters = steps.filter((index) => labelOf(index).startsWith("depth"));
   const bounds = findBounds(frames, blobs, steps);
@@ -305,15 +305,17 @@ const makeMotion = (player, frames, blobs, picture, fit) => {
       player.setUniforms(index, camera.isTurned ? turned : restored);
     }
   };
-  return { moveCamera, ...makeLightMotion(player, { steps, casters, bounds, fit, cameraNow: () => camera }) };
+  return {
+    moveCamera,
+    ...makeLightMotion(player, { steps, casters, bounds, fit, uniformsOf, cameraNow: () => camera }),
+  };
 };
 
-// Calls with the angles, radians, that a pointer's way over an element turns by, where it begins as `begins` says.
-const followDrags = (node, onTurn, begins = () => true) => {
+// Calls with the angles, radians, that a pointer's way over an element turns by.
+const followDrags = (node, onTurn) => {
   const kTurnPerPixel = 0.006;
   let from = null;
   node.addEventListener("pointerdown", (event) => {
-    if (!begins(event)) return;
     node.setPointerCapture(event.pointerId);
     from = event;
   });

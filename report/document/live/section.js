@@ -1,11 +1,10 @@
 // What the section Live shows, in the page's address; and as the command that measures its right side.
-const saveLive = ({ place, left, right, split, camera, light, parameters, map, layer }) => {
+const saveLive = ({ place, left, right, split, camera, light, parameters, layer }) => {
   const changes = { left, ...(right !== left && { right }) };
   const own = Object.entries(changes).flatMap(([side, who]) =>
     Object.entries(parameters.get(who) ?? {}).map(([name, value]) => [side, name, value].join(":")),
   );
   if (layer !== "picture") own.push(`layer:${layer}`);
-  own.push(...Object.entries(map).map(([name, value]) => ["map", name, value].join(":")));
   writeLink("live", [run.places[place].title, nameOf(left), nameOf(right), split, ...camera, ...light, ...own]);
 };
 // What the address says of a view, as far as this run has it; null where it says nothing.
@@ -14,7 +13,7 @@ const readLive = (places) => {
   if (!fields) return null;
   const [title, left, right, ...rest] = fields;
   const numbers = rest.splice(0, 5).map((text) => (text === "" ? NaN : Number(text)));
-  const found = { place: places.find((each) => run.places[each].title === title), parameters: new Map(), map: {} };
+  const found = { place: places.find((each) => run.places[each].title === title), parameters: new Map() };
   if (found.place === undefined) return null;
   const findWho = (name) =>
     name === nameOf(kTruth) && run.truths[found.place]
@@ -27,10 +26,8 @@ const readLive = (places) => {
     Object.assign(found, { split: clamp(split, 0, 1), camera: [yaw, clamp(pitch, -1, 1)] });
     found.light = [lightYaw, clamp(lightPitch, -1, 1)];
   }
-  const settings = readSettings(sides.right >= 0 ? sides.right : listFiltersAt(found.place)[0]);
   for (const [side, name, value] of rest.map((text) => text.split(":")))
     if (side === "layer" && kLiveLayers.some(([layer]) => layer === name)) found.layer = name;
-    else if (side === "map") Object.assign(found.map, readMapSetting(settings, name, value));
     else if (sides[side] !== undefined && value && Number.isFinite(Number(value)))
       found.parameters.set(sides[side], { ...found.parameters.get(sides[side]), [name]: Number(value) });
   return found;
@@ -56,8 +53,29 @@ const writeFormat = (text) =>
     .replace("reversed", "--reversed-depth")
     .replace(/hashed|dither/, "--blend-casters $&")
     .split(" ");
+const readSettings = (who) => JSON.parse(run.configurations[who].surroundings);
+// The bias as the command has it; empty where it is the program's default.
+const writeBias = ({ bias: rule }) => {
+  const amounts = (name, list) => {
+    const given = list.filter(([, value]) => value).map(([key, value]) => `${key}=${value}`);
+    return given.length > 0 ? [`${name}:${given.join()}`] : [];
+  };
+  const unitsOf = (name) => ["depth", "texels", "world"].map((unit) => [unit, rule[`${name}_${unit}`]]);
+  const words = [
+    ...amounts("constant", unitsOf("constant")),
+    ...amounts("slope", unitsOf("slope")),
+    ...amounts("plane", Object.entries({ kernels: rule.plane_kernels, texels: rule.plane_texels })),
+    ...amounts("normal-offset", unitsOf("normal_offset")),
+    ...amounts("polygon-offset", Object.entries({ factor: rule.polygon_factor, units: rule.polygon_units })),
+    ...["receiver_plane", "front_cull", "midpoint"]
+      .filter((flag) => rule[flag])
+      .map((flag) => `${flag.replace("_", "-")}:depth=0`),
+  ];
+  const isDefault = words.join() === "constant:depth=0.00002,plane:kernels=1";
+  return isDefault ? [] : (words.length > 0 ? words : ["none"]).flatMap((word) => ["--bias", word]);
+};
 // Empty where it is not known how the scene, or the file of the filter, was given.
-const writeRun = ({ place, right, light, parameters, map: changes }, { motion, settings }) => {
+const writeRun = ({ place, right, light, parameters }, { motion, settings }) => {
   const { filter, request, map, size } = run.configurations[right];
   const [scene, ...of] = run.places[place].view;
   const file = run.files[filter];
@@ -65,28 +83,26 @@ const writeRun = ({ place, right, light, parameters, map: changes }, { motion, s
   const sky = motion.isSun && isTurned(light) ? findSkyAngles(motion.directionOf(light)).join() : settings.light;
   const words = [
     ...["--scene", scene, ...of, ...(file ? ["--filter-file", file] : [])],
-    ...["--filters", writeChanges(request, parameters.get(right)), "--map-size", changes.size ?? map],
-    ...["--size", size.join("x"), "--fit", settings.fit],
-    ...["--map-format", ...writeFormat(settings.map_format.replace(/^\S+/, changes.format ?? "$&"))],
-    ...writeBias(settings, changes),
+    ...["--filters", writeChanges(request, parameters.get(right)), "--map-size", map],
+    ...["--size", size.join("x"), "--fit", settings.fit, "--map-format", ...writeFormat(settings.map_format)],
+    ...writeBias(settings),
     ...(/^-?[\d.]+,/.test(sky) ? ["--light", sky] : []),
   ];
   return `shadowbench run ${words.map((word) => writeWord(`${word}`)).join(" ")}`;
 };
 // What the command leaves out, or makes otherwise.
-const listUnsaid = ({ place, camera, light }, { motion } = {}) => {
+const sayUnsaid = ({ place, camera, light }, { motion } = {}) => {
   const { view } = run.places[place];
   const isModel = view.includes("--ground") || /\.(obj|gltf|glb)$/i.test(view[0]);
+  const isMoved = isTurned(light) && motion && !motion.stays;
   return [
-    ...(isTurned(camera) ? ["The camera that was turned is not in it: the program has the scene's own."] : []),
-    ...(isTurned(light) && motion && !motion.isSun && !motion.stays
-      ? ["The lamp that was moved is not in it: the program has the scene's own."]
-      : []),
-    ...(isTurned(light) && motion?.isSun && !motion.isFitted
-      ? ["The map's window, which follows the view, is a little wider here than the program's."]
-      : []),
-    ...(isTurned(light) && isModel ? ["A model's camera and floor, where it has none, follow its light."] : []),
-  ];
+    isTurned(camera) && "It has the scene's own camera, not the turned one.",
+    isMoved && !motion.isSun && "It has the scene's own lamp, not the moved one.",
+    isMoved && motion.isSun && !motion.isFitted && "Its map, which follows the view, covers a little less.",
+    isMoved && isModel && "A model's camera and floor, where it has none, follow its light.",
+  ]
+    .filter(Boolean)
+    .join(" ");
 };
 
 // The section "Live": the run's filters drawn by the reader's own GPU, held against what the run drew, and timed.
@@ -105,11 +121,15 @@ const startLive = (holder) => {
     if (isNewerInLink("live", "view")) holder.closest("section").scrollIntoView();
   };
   window.addEventListener("hashchange", followLink);
-  gpuEvents.addEventListener("lost", () => opened?.lose());
-  gpuEvents.addEventListener("back", () => opened && (opened = openLive(holder)));
+  whenGpuIsLost = () => opened?.lose();
   // Times all scenes, and promises the id of the cost that they became; `say` hears how far that is.
   shadowbench.timeHere = (say) => open().timeHere(say);
   shadowbench.stopTiming = () => opened?.stop();
+  // A side against the truth, from the answer.
+  shadowbench.showLive = ({ place, left, right }) => {
+    holder.closest("section").scrollIntoView();
+    open().show({ place, left, right, camera: [0, 0], light: [0, 0] });
+  };
   followLink();
 };
 const kLiveLayers = [
@@ -152,20 +172,6 @@ const addSlider = (parent, { name, value, own = value, min, max, step, unit, tex
   });
   return input;
 };
-// What a filter's shaders or their weights were built with cannot be changed here.
-const fillConstants = (box, { constants }) => {
-  box.replaceChildren();
-  if (constants.length === 0) return;
-  const details = element(box, "details");
-  element(details, "summary", {}, "What stays");
-  const row = element(details, "div", { className: "controls" });
-  for (const { name, value, min, max, unit, text } of constants) {
-    if (min !== undefined) addSlider(row, { name, value, min, max, step: "any", unit, text }, () => {}).disabled = true;
-    else addSelect(row, name, [[value, value]], { disabled: true, title: text }, () => {});
-  }
-  const why = "The run made loops, tables and weights of them, which go with the report.";
-  element(details, "p", { className: "note" }, `${why} For another value, change it in the command below.`);
-};
 const openLive = (holder) => {
   holder.replaceChildren();
   const status = element(holder, "p", { className: "note", role: "status" });
@@ -175,7 +181,13 @@ const openLive = (holder) => {
   } catch ({ message }) {
     status.textContent = message;
     const ignore = () => {};
-    return { lose: ignore, stop: ignore, openLink: ignore, timeHere: () => Promise.reject(new Error(message)) };
+    return {
+      lose: ignore,
+      stop: ignore,
+      openLink: ignore,
+      show: ignore,
+      timeHere: () => Promise.reject(new Error(message)),
+    };
   }
   const controls = element(holder, "div", { className: "controls" });
   const stage = element(holder, "div", { className: "live-stage" });
@@ -189,8 +201,7 @@ const openLive = (holder) => {
   });
   const message = element(holder, "p", { className: "note" });
   const parameters = element(holder, "div", { className: "controls" });
-  const mapBox = element(holder, "div");
-  const constantBox = element(holder, "div");
+  const constants = element(holder, "p", { className: "note" });
   const code = addCommand(holder, "Measure the right side: ");
   const command = code.parentNode;
   command.hidden = true;
@@ -203,7 +214,7 @@ const openLive = (holder) => {
   const [first] = listFiltersAt(places[0]);
   const state = {
     ...{ id: "live", place: places[0], left: run.truths[places[0]] ? kTruth : first, right: first, split: 0.5 },
-    ...{ camera: [0, 0], light: [0, 0], parameters: new Map(), map: {}, drags: "camera", layer: "picture" },
+    ...{ camera: [0, 0], light: [0, 0], parameters: new Map(), drags: "camera", layer: "picture" },
   };
 
   // What stands in for the truth is no better than it is where rays were traced.
@@ -263,7 +274,7 @@ const openLive = (holder) => {
     const { value: frame } = right === kTruth ? {} : await attempt(engine.load(right, place));
     code.textContent = frame ? writeRun(state, frame) : "";
     command.hidden = code.textContent === "";
-    unsaid.textContent = listUnsaid(state, frame).join(" ");
+    unsaid.textContent = sayUnsaid(state, frame);
   };
   const fillTable = () => fillResults(results, state.place, measuring);
   const sayRenderer = () =>
@@ -301,13 +312,13 @@ const openLive = (holder) => {
     for (const file of files) {
       const { value: times, message: why } = await attempt(file.text().then(readTimes));
       if (times) addMachine(times, false);
-      const said = why ?? `its times are among the costs. ${sayEstimates(times.renderer)}`;
-      message.textContent = `${file.name}: ${said}`;
+      message.textContent = `${file.name}: ${why ?? "its times are among the costs."}`;
     }
   };
   // Nothing else is drawn meanwhile. Promises what an action does, or throws what went wrong.
   const work = async (action) => {
     if (engine.isBusy) throw new Error("This GPU is being timed already.");
+    if (isGpuLost) throw new Error(kGpuIsGone);
     engine.isBusy = true;
     measuring.begin();
     stopButton.hidden = false;
@@ -337,9 +348,9 @@ const openLive = (holder) => {
     const known = frame?.parameters.filter(({ name }) => name in own) ?? [];
     const bounded = known.map(({ name, min, max }) => [name, clamp(own[name], min, max)]);
     state.parameters.set(right, Object.fromEntries(bounded)); // a link may say anything
-    if (frame) state.map = dropFixed(frame, state.map);
     showCommand();
-    if (!frame || right === kTruth) return [mapBox, constantBox].forEach((box) => box.replaceChildren());
+    constants.textContent = "";
+    if (!frame || right === kTruth) return;
     for (const { value: own, ...each } of frame.parameters) {
       const value = state.parameters.get(right)?.[each.name] ?? own;
       const step = each.whole ? 1 : (each.max - each.min) / 200;
@@ -348,12 +359,13 @@ const openLive = (holder) => {
         changed();
       });
     }
-    fillConstants(constantBox, frame);
-    fillMapControls(mapBox, frame, state, engine.gl.getParameter(engine.gl.MAX_TEXTURE_SIZE), changed);
+    if (frame.constants.length === 0) return;
+    const built = frame.constants.map(({ name, value }) => `${name} ${value}`).join(", ");
+    constants.textContent = `Built into the shaders or their weights: ${built}. The command below measures other values.`;
   };
-  // Camera, sun, parameters and map are the run's own again.
+  // Camera, light and parameters are the run's own again.
   const restore = () => {
-    Object.assign(state, { camera: [0, 0], light: [0, 0], parameters: new Map(), map: {} });
+    Object.assign(state, { camera: [0, 0], light: [0, 0], parameters: new Map() });
     fillParameters();
     changed();
   };
@@ -413,8 +425,8 @@ const openLive = (holder) => {
     turnView(state, state.drags, yaw, pitch);
     changed();
   });
-  const openLink = () => {
-    Object.assign(state, { map: {}, layer: "picture" }, readLive(places));
+  const showSides = (changes) => {
+    Object.assign(state, { layer: "picture" }, changes);
     selects.layer.value = state.layer;
     selects.place.value = state.place;
     slider.value = 100 * state.split;
@@ -423,10 +435,12 @@ const openLive = (holder) => {
     fillTable();
     show();
   };
+  const openLink = () => showSides(readLive(places));
   openLink();
   return {
     timeHere,
     openLink,
+    show: showSides,
     stop,
     lose: () => {
       measuring.stop(kGpuIsGone);

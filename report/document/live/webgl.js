@@ -38,7 +38,6 @@ const kSetters = {
   [kGl.UNSIGNED_INT]: "uniform1uiv",
 };
 
-const kNoVariant = { textures: new Map(), steps: new Map() };
 const makePlayer = (gl, frames, blobs) => {
   const textures = frames.textures.map(() => null);
   const programs = frames.programs.map(() => null);
@@ -48,8 +47,6 @@ const makePlayer = (gl, frames, blobs) => {
   const framebuffers = new Map();
   const overrides = new Map(); // uniforms that are not the run's, by step and name, with the turn of their change
   const standIns = new Map(); // textures that stand in for a sampler's, by its name, with the turn of their change
-  const varied = new Map(); // steps that were ever others than the run's, with the turn of their change
-  let variant = kNoVariant; // what stands for the run's own
   const known = new Map(); // steps whose textures hold what the run drew, with the turn of that
   let turn = 0;
 
@@ -61,10 +58,9 @@ const makePlayer = (gl, frames, blobs) => {
     if (extension && !gl.getExtension(extension)) throw new Error(`this browser's WebGL lacks ${extension}.`);
   };
 
-  const stepAt = (index) => variant.steps.get(index) ?? frames.steps[index];
   const textureOf = (index) => {
     if (textures[index]) return textures[index];
-    const { format, width, height, levels, samples } = variant.textures.get(index) ?? frames.textures[index];
+    const { format, width, height, levels, samples } = frames.textures[index];
     if (samples > 0) throw new Error("WebGL 2 has no textures of several samples.");
     const [internal, extension] = kFormats[format];
     need(extension);
@@ -186,10 +182,10 @@ const makePlayer = (gl, frames, blobs) => {
     if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(location, false, values);
     else gl[kSetters[type]](location, values);
   };
-  const valuesOf = (index, name) => overrides.get(`${index} ${name}`)?.values ?? stepAt(index).uniforms[name];
+  const valuesOf = (index, name) => overrides.get(`${index} ${name}`)?.values ?? frames.steps[index].uniforms[name];
   // The program keeps samplers that the run's compiler had dropped: they get a unit of their own, without a texture.
   const bindUniforms = (program, index) => {
-    const step = stepAt(index);
+    const step = frames.steps[index];
     let unit = 0;
     for (const uniform of program.uniforms) {
       if (!isSampler(uniform.type)) {
@@ -212,7 +208,7 @@ const makePlayer = (gl, frames, blobs) => {
     gl.activeTexture(gl.TEXTURE0);
   };
   const issue = (index) => {
-    const step = stepAt(index);
+    const step = frames.steps[index];
     const program = programOf(step.program);
     step.inputs.forEach(drawRing);
     bindTargets(step.targets);
@@ -270,7 +266,7 @@ const makePlayer = (gl, frames, blobs) => {
     const own = Object.keys(step.uniforms ?? {})
       .map((name) => overrides.get(`${index} ${name}`)?.turn ?? 0)
       .concat((step.inputs ?? []).map(({ sampler }) => standIns.get(sampler)?.turn ?? 0));
-    const stamp = Math.max(varied.get(index) ?? 0, ...own, ...sourcesOf(step).map((source) => stampOf(source, seen)));
+    const stamp = Math.max(0, ...own, ...sourcesOf(step).map((source) => stampOf(source, seen)));
     seen.set(index, stamp);
     return stamp;
   };
@@ -375,19 +371,6 @@ const makePlayer = (gl, frames, blobs) => {
       const inputs = [...listSteps(index)].flatMap((each) => frames.steps[each].inputs ?? []);
       const read = inputs.filter(({ sampler }) => sampler.startsWith("map_")).map(({ texture }) => texture);
       return [...new Set(read)].map(textureOf).filter(({ isDepth }) => isDepth);
-    },
-    uniformsOf: (index) => stepAt(index).uniforms,
-    // Lets some textures and steps be others than the run's, which have the same targets and sources.
-    vary: (next) => {
-      ++turn;
-      for (const index of [...variant.steps.keys(), ...next.steps.keys()]) varied.set(index, turn);
-      for (const index of new Set([...variant.textures.keys(), ...next.textures.keys()])) {
-        gl.deleteTexture(textures[index]?.object ?? null);
-        textures[index] = null;
-      }
-      framebuffers.forEach((object) => gl.deleteFramebuffer(object));
-      framebuffers.clear();
-      variant = next;
     },
     read: (index) => {
       const { width, height } = textureOf(frames.steps[index].targets[0].texture);
