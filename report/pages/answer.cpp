@@ -45,7 +45,7 @@ std::vector<std::string> make_row(const std::string& head, const analysis::Advic
 }
 
 /// The bias of each pick; empty where none was swept.
-std::vector<std::string> make_bias_row(const analysis::Advice& advice, const std::vector<records::BiasToShip>& biases) {
+std::vector<std::string> make_bias_row(const analysis::Advice& advice, const std::vector<records::BiasCell>& biases) {
   std::vector<std::string> row(1 + kPicks.size(), records::kNothing);
   bool is_any = false;
   for (const analysis::Pick& pick : analysis::list_picks(advice)) {
@@ -59,7 +59,7 @@ std::vector<std::string> make_bias_row(const analysis::Advice& advice, const std
 }
 
 document::Table make_table(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                           const analysis::Advice& advice, const std::vector<records::BiasToShip>& biases) {
+                           const analysis::Advice& advice, const std::vector<records::BiasCell>& biases) {
   document::Table table{"", {{"", "Fast", "Balanced", "Best"}, {}}};
   const std::vector<std::string> scenes = list_answered_scenes(cells);
   table.table.rows.push_back(
@@ -128,7 +128,7 @@ std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRec
 
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                       const analysis::AdviceRequest& request,
-                                      const std::vector<records::BiasToShip>& biases) {
+                                      const std::vector<records::BiasCell>& biases) {
   document::Section section{"answer", "", {}};
   if (!can_advise(cells)) {
     section.blocks = {document::Paragraph{

@@ -35,6 +35,6 @@ std::vector<FirstPicture> list_first_pictures(const std::vector<records::CellRec
 /// named.
 document::Section make_answer_section(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                                       const analysis::AdviceRequest& request,
-                                      const std::vector<records::BiasToShip>& biases);
+                                      const std::vector<records::BiasCell>& biases);
 
 }  // namespace shadowbench::pages

@@ -246,11 +246,11 @@ std::vector<std::string> list_answered_scenes(const std::vector<records::CellRec
 }
 
 std::string describe_biases(const analysis::Configuration& configuration,
-                            const std::vector<records::BiasToShip>& biases) {
+                            const std::vector<records::BiasCell>& biases) {
   std::vector<std::string> texts;
-  for (const records::BiasToShip& bias : biases)
+  for (const records::BiasCell& bias : biases)
     if (std::ranges::any_of(configuration.cells, [&](const auto* cell) { return bias.is_of(*cell); }))
-      texts.push_back(fmt::format("{}: {}", bias.scene, describe_bias_to_ship(bias)));
+      texts.push_back(fmt::format("{}: {}", bias.scene, describe_bias(bias)));
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
@@ -398,7 +398,7 @@ std::string write_request(const records::CellRecord& cell) {
 /// `counted` are the configuration's cells that are not left out of what is said of all scenes.
 json make_configuration(const analysis::Configuration& configuration,
                         const std::vector<const records::CellRecord*>& counted, const std::vector<std::string>& filters,
-                        const std::vector<Quantity>& choices, const std::vector<records::BiasToShip>& biases) {
+                        const std::vector<Quantity>& choices, const std::vector<records::BiasCell>& biases) {
   const records::CellRecord& cell = *configuration.cells.front();
   const document::ChartStyle style =
       document::style_of(static_cast<std::size_t>(std::ranges::find(filters, cell.filter) - filters.begin()));
@@ -425,7 +425,7 @@ json make_configuration(const analysis::Configuration& configuration,
 }  // namespace
 
 json make_run_data(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                   const std::vector<records::BiasToShip>& biases) {
+                   const std::vector<records::BiasCell>& biases) {
   const std::vector<const records::CellRecord*> all = analysis::point_to(cells);
   const std::vector<analysis::Place> places = analysis::list_places(all);
   const std::vector<std::string> filters = analysis::list_filters(cells);

@@ -33,8 +33,7 @@ std::string describe_setting(const std::vector<records::CellRecord>& cells);
 
 /// What a sweep of the bias recommends for a configuration, for each of its scenes that was swept; empty where none
 /// was.
-std::string describe_biases(const analysis::Configuration& configuration,
-                            const std::vector<records::BiasToShip>& biases);
+std::string describe_biases(const analysis::Configuration& configuration, const std::vector<records::BiasCell>& biases);
 
 /// What the script of the answer judges by, for all scenes and for each by itself: per configuration its costs, its
 /// worst values, its RMSE over the places, and whether it is better than `none`; and what advise() says without limits
@@ -53,6 +52,6 @@ std::vector<std::string> list_answered_scenes(const std::vector<records::CellRec
 /// class of width: scripts compare worst values with the limits that the reader moves, and judge nothing else. `biases`
 /// are what a sweep of the bias recommends. A value that does not exist is null.
 nlohmann::json make_run_data(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                             const std::vector<records::BiasToShip>& biases = {});
+                             const std::vector<records::BiasCell>& biases = {});
 
 }  // namespace shadowbench::pages

@@ -309,7 +309,7 @@ document::Section make_evidence_section(const records::RunRecord& run, const std
 }  // namespace
 
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                             const std::vector<records::BiasToShip>& biases, const std::string& so_far) {
+                             const std::vector<records::BiasCell>& biases, const std::string& so_far) {
   const analysis::AdviceRequest request = choose_request(cells);
   document::Page page{"Shadow filters compared", {}, {}};
   const auto add = [&](document::Section section) { page.sections.push_back(std::move(section)); };

@@ -16,6 +16,6 @@ namespace shadowbench::pages {
 /// `biases` are what a sweep of the bias recommends. A run under way says on top how far it is, `so_far`, and has no
 /// data files to link to.
 document::Page make_run_page(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
-                             const std::vector<records::BiasToShip>& biases = {}, const std::string& so_far = {});
+                             const std::vector<records::BiasCell>& biases = {}, const std::string& so_far = {});
 
 }  // namespace shadowbench::pages

@@ -156,7 +156,7 @@ void write_report(const std::filesystem::path& dir, records::RunRecord run, cons
 
 void write_report(const std::filesystem::path& dir, records::RunRecord run,
                   const std::vector<records::CellRecord>& cells, images::SheetWidth width) {
-  const std::vector<records::BiasToShip> biases = records::list_bias_to_ship(dir, run.warnings);
+  const std::vector<records::BiasCell> biases = records::read_recommended_biases(dir, run.warnings);
   add_warnings(run, cells);
   write_text_file(dir / "timings.csv", records::make_csv(records::CsvTable::kTimings, run, cells));
   write_text_file(dir / "accuracy.csv", records::make_csv(records::CsvTable::kAccuracy, run, cells));

@@ -106,8 +106,14 @@ records::CellRecord make_illustrated_cell(const std::string& scene, const std::s
 /// A row of the answer, and words of the configuration for the script that makes it anew.
 TEST(RunPage, TheBiasToShip_HasARow_WhereItWasSwept) {
   const std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 1.0)};
-  records::BiasToShip ship{"cubes", "a sun",         cells[0].map_size, cells[0].fit, "none",
-                           "none",  cells[0].params, "plane:texels=1",  0.01};
+  records::BiasCell ship;
+  ship.scene = "cubes";
+  ship.map_size = cells[0].map_size;
+  ship.fit = cells[0].fit;
+  ship.id = "none";
+  ship.params = cells[0].params;
+  ship.bias = "plane:texels=1";
+  ship.contact_gap = 0.01;
   const auto write = [&] { return document::write_html(make_run_page(make_run(), cells, {ship})); };
   EXPECT_THAT(write(), HasSubstr("bias to ship</td><td>cubes: plane:texels=1, contact gap 1 %"));
   EXPECT_EQ(read_data(write())["configurations"][0]["bias"], "cubes: plane:texels=1, contact gap 1 %");
