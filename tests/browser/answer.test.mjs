@@ -120,6 +120,16 @@ test("SlidersAndChoices_MoveTheAnswerAsTheProgramDoes", async () => {
   await close();
 });
 
+test("ALimitIsNeverBelowNought_ThoughATimeMayBe", async () => {
+  const file = changePage("several", "below.html", ({ scopes }) => scopes.forEach(({ rows }) => { rows[0].worst["time_ms.static"].limit = -0.01; }));
+  const { page, close } = await open(file);
+  await page.locator(".reasons").evaluate((each) => { each.open = true; });
+  await choose(page, "cost", "static");
+  await move(page, { name: "time_ms" }, 0);
+  assert.match(await readCommand(page), / --max-ms 0 /);
+  await close();
+});
+
 test("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", async () => {
   const { page, messages, close } = await openRun("several"), data = await readData(page);
   const stage = page.locator(".split .stage"), names = () => page.locator(".split figcaption bdi").allTextContents();

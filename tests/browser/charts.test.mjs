@@ -34,3 +34,13 @@ for (const [name, viewport] of [["wide", kWide], ["narrow", kNarrow]])
     assert.deepEqual(messages, []);
     await close();
   });
+
+test("CurvesThatSayLeast_AreHidden_UntilTheirNamesAreClicked", async () => {
+  const { page, close } = await open(pageOf("stress", "stress.html"), { waits: false });
+  const figure = page.locator("figure.chart", { has: page.locator('.key[opacity="0.3"]') }).first(), marks = figure.locator("svg path");
+  const hidden = figure.locator('.key[opacity="0.3"]'), [before, count] = [await marks.count(), await hidden.count()];
+  await hidden.first().click();
+  assert.equal(await hidden.count(), count - 1);
+  assert.ok((await marks.count()) > before);
+  await close();
+});

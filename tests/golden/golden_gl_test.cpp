@@ -153,6 +153,23 @@ TEST_P(GoldenOfScene, NoFilterPassesAsAnother) {
   }
 }
 
+/// Noise hides small differences, but no hard shadow passes as a stochastic filter's with another seed.
+TEST_P(GoldenOfScene, NoHardShadowPassesAsNoise) {
+  const regress::Baseline baseline(kBaseline);
+  const double level = regress::read_tolerances(baseline.tolerance_file()).find("", regress::kLevel).limit;
+  const images::Image hard = baseline.read_cells(GetParam(), "none").images.begin()->second.visibility;
+  int stochastic = 0;
+  for (const std::string& id : filter_ids()) {
+    const regress::CellFile file = baseline.read_cells(GetParam(), id);
+    const images::UncertaintyImages& spread = file.images.begin()->second.uncertainty;
+    if (spread.seed_mean.empty()) continue;
+    ++stochastic;
+    const auto test = regress::test_spread(hard, spread, file.cells.front().values.numbers.at("cost.fetches"), level);
+    EXPECT_GT(test.pixels.beyond + test.blocks.beyond, 0) << id;
+  }
+  EXPECT_GT(stochastic, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(BuiltIn, GoldenOfScene, ::testing::ValuesIn(builtin_scenes()),
                          [](const auto& each) { return each.param; });
 

@@ -12,7 +12,8 @@ Every README has a scratch folder of its own, in which its commands run in the o
   CHEAPER are appended where the command does not have them itself; nothing else is changed.
 - A command must end with exit code 0. A comment behind it may say otherwise: `# exit code 1` wants 1, and
   `# exit code 1 where ...` (or `if ...`) takes 0 or 1.
-- Commands in NOT_RUN have to do with other programs, or with the build, and are let pass; presets that they name must be there.
+- Commands in NOT_RUN have to do with other programs, or with the build, and are let pass; presets, scripts and
+  options of `harness/setup.sh` that they name must be there.
 
 Of the text around the commands it is checked that every relative link leads somewhere, with its heading; that every
 path of this tree in `code` exists; that every `--option` in `code` is one of the program's (or in OTHER_OPTIONS);
@@ -33,6 +34,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PRESETS = (ROOT / "CMakePresets.json").read_text(encoding="utf-8")
+SETUP = (ROOT / "harness/setup.sh").read_text(encoding="utf-8")
 
 # What is appended to a command that does not say it itself: (option, value). The value None marks a flag.
 CHEAPER = {
@@ -236,8 +238,10 @@ class Runner:
         """Says whether the command did what it should; else that is reported."""
         if words[0] in NOT_RUN:
             unknown = [word for word, after in zip(words[1:], words) if after == "--preset" and f'"{word}"' not in PRESETS]
+            unknown += [word for word in words[1:] if words[0] == "harness/setup.sh" and f" {word})" not in SETUP]
+            unknown += [word for word in words[1:2] if words[0] == "python3" and not (ROOT / word).is_file()]
             if unknown:
-                self.report.fail(self.page, number, f"no preset {unknown[0]} in CMakePresets.json")
+                self.report.fail(self.page, number, f"there is no {unknown[0]} for {words[0]}")
             return not unknown
         if Path(words[0]).name == "shadowbench":
             command = [str(self.options.program)] + append_cheaper(words)[1:]

@@ -98,9 +98,11 @@ def test_mouse_turns_camera_and_light(program, folder):
 
 
 def test_saved_filter_is_live(program, folder):
-    file = folder / "halved.glsl"
+    file, tree = folder / "halved.glsl", folder / "tree"
     file.write_text(FILTER)
-    window = Window(program, folder, ["cubes", *FIXED, "--filter-file", str(file), "--right", "none"])
+    for name in ("filters", "shaders", "data"):
+        shutil.copytree(Path(__file__).resolve().parents[2] / name, tree / name)
+    window = Window(program, folder, ["cubes", *FIXED, "--filter-file", str(file), "--right", "none"], {"SHADOWBENCH_ROOT": str(tree)})
     first = read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
     since, begun = window.now(), time.monotonic()
     file.write_text(FILTER.replace("factor * compare", "0.25 * factor * compare"))
@@ -126,6 +128,13 @@ def test_saved_filter_is_live(program, folder):
     file.write_text(FILTER)
     window.wait("the end of the fault", lambda frame: not frame["left.fault"] and not frame["message"], since=since)
     assert read_part(window.save("ctrl+p", "picture") + ".exr", "left.visibility", folder) == first, "mended"
+    # A built-in filter of a tree, too.
+    before = read_part(window.save("ctrl+p", "picture") + ".exr", "right.visibility", folder)[2]
+    since, built_in = window.now(), tree / "filters" / "none.glsl"
+    built_in.write_text(built_in.read_text().replace("return compare_nearest", "return 0.25 * compare_nearest"))
+    window.wait("a drawing", lambda frame: frame["drawn"], since=since)
+    after = read_part(window.save("ctrl+p", "picture") + ".exr", "right.visibility", folder)[2]
+    assert {pair for pair in zip(before, after) if pair[0] != pair[1]} == {(1.0, 0.25)}
     window.close()
     return f"a saved file was live after {seconds:.2f} s"
 
@@ -229,6 +238,8 @@ def test_light_is_saved_as_a_scene(program, folder):
     again = Window(program, folder, [str(scene), *TALL, "--right", "none"])
     assert again.last()["scene"] == scene.stem
     saved = read_part(again.save("ctrl+p", "picture") + ".exr", "left.visibility", folder)
+    experiment = Path(again.save("ctrl+e", "experiment") + ".toml").read_text()
+    assert "scene = 'cubes-" in experiment and "id = 'none'" in experiment, experiment
     again.close()
     first = Window(program, folder, ["cubes", *TALL, "--right", "none"])
     assert saved != read_part(first.save("ctrl+p", "picture") + ".exr", "left.visibility", folder), "another light"

@@ -235,6 +235,19 @@ TEST_F(SideMeasurementTest, Cancelled_IsKilledWithItsChildren_WithinATenthOfASec
   EXPECT_LT(fastest_ms, 100.0);
 }
 
+TEST_F(SideMeasurementTest, CancelledWhileResultsAreRead_WaitsForNoMoreThanOneImage) {
+  view::ViewState state = make_state("cubes", "vsm:radius=6", "tent3x3");
+  change(state, [](view::ViewSettings& settings) { settings.options.width = 960, settings.options.height = 540; });
+  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
+  measurement.start(state);
+  ASSERT_TRUE(wait_until([&] { return measurement.poll(), measurement.text() == "reading the results"; }));
+  const double begin_ms = now_ms();
+  measurement.cancel();
+  std::printf("cancelled within %.1f ms\n", now_ms() - begin_ms);
+  EXPECT_LT(now_ms() - begin_ms, 150.0) << "an image of many";
+  expect_nothing_left();
+}
+
 TEST_F(SideMeasurementTest, NeitherStartNorPoll_HoldsUpTheWindow) {
   const view::ViewState state = make_state("cubes", "vsm:radius=2", "vsm:radius=6");
   view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
