@@ -133,7 +133,7 @@ std::vector<Case> make_cases(const AxisInputs& inputs) {
 Axis make_picture_size_axis() {
   using namespace picture_size;
   Axis axis;
-  axis.title = "Picture size: the error that a screen pass leaves";
+  axis.title = "Error that a screen pass leaves, over picture size";
   axis.quantity = "pixels across 4 radii of a penumbra";
   axis.range = kRange;
   axis.limits = kRange;
