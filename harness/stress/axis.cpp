@@ -15,6 +15,7 @@
 #include "filters/model.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/provenance.h"
+#include "report/document/markdown.h"
 #include "report/files/folder_lock.h"
 #include "report/pages/stress_page.h"
 #include "report/pages/write_page.h"
@@ -355,7 +356,7 @@ class StressRun {
     pages::write_page(options_.out, "stress", pages::make_stress_page(record_));
     write_text_file(options_.out / "stress.csv", records::make_stress_csv(record_));
     write_text_file(options_.out / "stress.json", records::make_stress_json(record_));
-    return {pages::make_limit_text(record_), records::count_disagreements(record_)};
+    return {document::write_markdown_table(pages::make_limit_table(record_)), records::count_disagreements(record_)};
   }
 
  private:

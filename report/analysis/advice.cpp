@@ -257,11 +257,6 @@ void require_gpu(const std::vector<records::CellRecord>& cells, const std::strin
 
 }  // namespace
 
-bool beats(const Candidate& a, const Candidate& b) {
-  if (!a.rmse || !b.rmse || a.cost.mean > b.cost.mean || a.rmse->value > b.rmse->value || a.seam > b.seam) return false;
-  return a.cost.mean < b.cost.mean || a.rmse->value < b.rmse->value;
-}
-
 bool limits_what_is_seen(const AdviceRequest& request) {
   return std::ranges::any_of(
       request.demands,
@@ -431,12 +426,6 @@ std::string explain_best(const Candidate& fast, const Candidate& best, const Cos
          (times ? fmt::format(", at {} times the cost of the fast one", records::format_number(*times)) : "");
 }
 
-[[maybe_unused]] bool is_beaten(const Candidate& candidate, const Advice& advice) {
-  const auto beats_it = [&](const Candidate& other) { return beats(other, candidate); };
-  return std::ranges::any_of(advice.keeping, beats_it) || std::ranges::any_of(advice.beaten, beats_it) ||
-         std::ranges::any_of(advice.no_gain, beats_it);
-}
-
 std::vector<Pick> choose_picks(const Advice& advice) {
   const std::vector<Candidate>& keeping = advice.keeping;
   const CostKind& kind = advice.request.cheapest;
@@ -466,9 +455,6 @@ std::vector<Pick> list_picks(const Advice& advice) {
   std::vector<Pick> picks = choose_picks(advice);
   for (Pick& pick : picks) {
     const Candidate& candidate = advice.keeping[pick.index];
-    assert(!is_beaten(candidate, advice));
-    if (const std::string beaten = describe_larger_map(candidate, advice.beaten); !beaten.empty())
-      pick.why += "; " + beaten;
     if (candidate.seam >= kVisibleSeam)
       pick.why += fmt::format("; its cascades show a seam of {}", records::format_number(candidate.seam));
   }
@@ -501,18 +487,6 @@ std::string describe_choice(const Advice& advice) {
                                          : "best";
   return fmt::format(fmt::runtime(answer_words().at(kind)), fmt::arg("fast", fast.configuration.name),
                      fmt::arg("best", best.configuration.name), fmt::arg("times", records::format_number(times)));
-}
-
-std::string describe_larger_map(const Candidate& candidate, const std::vector<Candidate>& others) {
-  const records::CellRecord& own = *candidate.configuration.cells.front();
-  const Candidate* least = nullptr;
-  for (const Candidate& other : others) {
-    const records::CellRecord& cell = *other.configuration.cells.front();
-    if (cell.map_size < own.map_size && cell.filter != own.filter && beats(candidate, other) &&
-        (!least || other.rmse->value < least->rmse->value))
-      least = &other;
-  }
-  return least ? fmt::format("its larger map beats {}", least->configuration.name) : "";
 }
 
 }  // namespace shadowbench::analysis

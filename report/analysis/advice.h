@@ -78,10 +78,6 @@ struct Candidate {
   bool gains = false;             ///< its RMSE is clearly less than that of the cheapest without a filter
 };
 
-/// Does `a` beat `b`: is it no dearer, no more wrong and without a larger seam, and less of one of the first two? By
-/// the means alone, so that what is beaten by something that is beaten is beaten too.
-bool beats(const Candidate& a, const Candidate& b);
-
 /// Whether a limit is set on an error or on a fault that people see.
 bool limits_what_is_seen(const AdviceRequest& request);
 
@@ -155,8 +151,5 @@ const std::map<std::string, std::string>& answer_words();
 /// Says in a sentence which filter to use, and which where shadows must look right. Requires one that keeps the
 /// demands.
 std::string describe_choice(const Advice& advice);
-
-/// Says which filters on smaller maps a candidate beats: "its larger map beats pcss, map 1024"; empty where it is none.
-std::string describe_larger_map(const Candidate& candidate, const std::vector<Candidate>& others);
 
 }  // namespace shadowbench::analysis

@@ -57,37 +57,6 @@ std::string describe_power(const std::vector<records::CellRecord>& cells) {
 
 namespace {
 
-constexpr std::size_t kMostNamed = 3;
-
-}  // namespace
-
-std::string list_some(const std::vector<std::string>& names) {
-  if (names.size() <= kMostNamed) return fmt::format("{}", fmt::join(names, ", "));
-  return fmt::format("{} and {} more", fmt::join(names.begin(), names.begin() + kMostNamed, ", "),
-                     names.size() - kMostNamed);
-}
-
-std::string describe_extremes(const std::vector<Rated>& all, const char* link, const char* kind) {
-  bool ties = false;
-  const auto describe = [&](const Rated& end) {
-    std::vector<std::string> names;
-    for (const Rated& each : all)
-      if (each.text == end.text) names.push_back(each.name);
-    ties = names.size() > 1;
-    const bool are_all = names.size() == all.size() && names.size() > kMostNamed;
-    return fmt::format("{} {} {}{}", end.text, link,
-                       are_all ? fmt::format("all {} {}", names.size(), kind) : list_some(names),
-                       ties ? ", which tie" : "");
-  };
-  const auto [least, most] = std::ranges::minmax_element(all, {}, &Rated::rate);
-  if (least->text == most->text) return describe(*least);
-  std::string begin = describe(*least);
-  if (ties) begin += ",";
-  return fmt::format("from {} to {}", begin, describe(*most));
-}
-
-namespace {
-
 constexpr double kVisibleDifference = 1.0 / 255.0;  // of visibility: one step of a picture
 
 double count_texels(const records::CellRecord& cell) {

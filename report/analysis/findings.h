@@ -15,21 +15,6 @@ namespace shadowbench::analysis {
 /// 80 %: of one class of width, in one place. Empty where no two cells have phases in common.
 std::string describe_power(const std::vector<records::CellRecord>& cells);
 
-/// A share of something, as it is read, and whose it is.
-struct Rated {
-  std::string name;
-  double rate = 0.0;
-  std::string text;  ///< "22 %"
-};
-
-/// Lists a few names: "a, b, c and 5 more".
-std::string list_some(const std::vector<std::string>& names);
-
-/// Says who has the least and who the most: "from 1 % under slope to 50 % under plane, constant, which tie". What reads
-/// the same is a tie; where all read the same, that is said once. `link` stands before the names, and `kind` says what
-/// they are. Requires one at least.
-std::string describe_extremes(const std::vector<Rated>& all, const char* link, const char* kind);
-
 /// Says in a sentence for each trouble what breaks in a group's cells: broken texels, with the exponent that would be
 /// safe, variances below 0, a bound that does not hold, a 16-bit store that shows. Nothing where nothing breaks, or
 /// where the run was made without stability maps.

@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <utility>
 
-#include "report/analysis/findings.h"
-#include "report/document/markdown.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
 
@@ -53,7 +50,6 @@ constexpr const char* kStressNote =
     "The share that a filter's worst variant is ok in, to its best one's. \u2717: one breaks, or is over the axis' "
     "bound before half of the range. –: nothing was measured; an axis asks only filters that have what it drives.";
 constexpr const char* kNoFilter = "no filter";
-constexpr const char* kUnseen = "Not met, and not expected:";
 
 /// The share of an axis' range, from its easy end on, in which a case is ok.
 double measure_reach(const StressAxis& axis, const StressCase& item) {
@@ -89,28 +85,6 @@ std::map<std::string, Standing> find_standings(const StressAxis& axis) {
     standing.breaks = standing.breaks || item.broken;
   }
   return standings;
-}
-
-/// Says who holds least far on an axis, and who furthest; nothing where no filter was measured. `filters` counts those
-/// of the page.
-std::string summarize_axis(const StressAxis& axis, std::size_t filters) {
-  std::vector<analysis::Rated> rated;
-  for (const auto& [name, standing] : find_standings(axis))
-    if (name != kNoFilter) rated.push_back({name, standing.least, records::format_share(standing.least)});
-  if (rated.empty()) return {};
-  return fmt::format("The part of the range that holds with every variant: {}.{}",
-                     analysis::describe_extremes(rated, "with", "filters"),
-                     rated.size() < filters
-                         ? fmt::format(" Nothing was measured with {} of {} filters.", filters - rated.size(), filters)
-                         : "");
-}
-
-std::size_t count_filters(const StressRecord& record) {
-  std::set<std::string> filters;
-  for (const StressAxis& axis : record.axes)
-    for (const auto& [name, standing] : find_standings(axis))
-      if (name != kNoFilter) filters.insert(name);
-  return filters.size();
 }
 
 /// The case that breaks first on an axis; null where none does.
@@ -227,10 +201,8 @@ void add_sentences(document::Details& details, const char* lead, std::vector<std
   if (!sentences.empty()) details.blocks.emplace_back(document::Sentences{lead, std::move(sentences)});
 }
 
-document::Section make_axis_section(const StressAxis& axis, std::size_t filters) {
+document::Section make_axis_section(const StressAxis& axis) {
   document::Section section{axis.id, fmt::format("{}: {}", axis.id, axis.title), {}};
-  if (std::string reach = summarize_axis(axis, filters); !reach.empty())
-    section.blocks.emplace_back(document::Paragraph{std::move(reach)});
   if (std::string first = describe_break(axis); !first.empty())
     section.blocks.emplace_back(document::Paragraph{std::move(first)});
   if (std::optional<document::Chart> chart = make_stress_chart(axis)) section.blocks.emplace_back(std::move(*chart));
@@ -288,20 +260,6 @@ records::TextTable make_limit_table(const StressRecord& record) {
   return table;
 }
 
-std::vector<std::string> describe_out_of_sight(const StressRecord& record) {
-  std::vector<std::string> sentences;
-  for (const StressAxis& axis : record.axes) {
-    int unlimited = 0, beyond = 0;
-    for (const auto& [item, limit] : list_limits(axis))
-      if (is_out_of_sight(*limit)) ++(limit->onset ? beyond : unlimited);
-    if (unlimited + beyond == 0) continue;
-    std::string counts = unlimited > 0 ? fmt::format("{} where it says that there is none", unlimited) : std::string();
-    if (beyond > 0) counts += fmt::format("{}{} where it puts it beyond the range", counts.empty() ? "" : ", ", beyond);
-    sentences.push_back(fmt::format("{}: no limit within the range, as theory says: {}.", axis.id, counts));
-  }
-  return sentences;
-}
-
 std::vector<std::string> describe_stress_limits(const StressAxis& axis, StressAgreement agreement) {
   std::vector<std::string> sentences;
   for (const auto& [item, limit] : list_limits(axis)) {
@@ -344,15 +302,6 @@ std::optional<document::Chart> make_stress_chart(const StressAxis& axis) {
   return chart;
 }
 
-std::string make_limit_text(const StressRecord& record) {
-  std::string text = document::write_markdown_table(make_limit_table(record));
-  const std::vector<std::string> unseen = describe_out_of_sight(record);
-  if (unseen.empty()) return text;
-  text += fmt::format("{}\n\n", kUnseen);
-  for (const std::string& sentence : unseen) text += "- " + sentence + "\n";
-  return text + "\n";
-}
-
 document::Page make_stress_page(const StressRecord& record) {
   document::Page page{"Where filters break", {make_stress_answer(record)}, {}};
   std::vector<std::string> warnings;
@@ -361,12 +310,12 @@ document::Page make_stress_page(const StressRecord& record) {
       warnings.push_back(axis.id + ": " + sentence);
   if (!warnings.empty())
     page.sections.push_back({"warnings", "Warnings", {document::Sentences{{}, std::move(warnings)}}, true});
-  const std::size_t filters = count_filters(record);
-  for (const StressAxis& axis : record.axes) page.sections.push_back(make_axis_section(axis, filters));
+  for (const StressAxis& axis : record.axes) page.sections.push_back(make_axis_section(axis));
   document::Details limits{
       "Measured against theoretical limits",
-      {document::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)}}};
-  add_sentences(limits, kUnseen, describe_out_of_sight(record));
+      {document::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)},
+       document::Paragraph{"Limits that theory puts beyond the range, and that were not met, are in stress.json alone.",
+                           true}}};
   document::Details settings{"Settings and data",
                              {document::Facts{list_provenance(record)}, document::Sentences{"Filters:", record.filters},
                               link_data({"stress.json", "stress.csv"})}};

@@ -12,18 +12,12 @@ namespace shadowbench::pages {
 /// An axis' table of what is safe: a row per case, with its last value that is ok and the first ones that are not.
 records::TextTable make_case_table(const records::StressAxis& axis);
 
-/// Measured beside theoretical limits over all axes: a row per limit that was met, or should have been.
+/// Measured beside theoretical limits over all axes: a row per limit that was met, or should
+/// have been.
 records::TextTable make_limit_table(const records::StressRecord& record);
-
-/// Says of each axis how many limits that table leaves out: those that theory puts beyond the range, or says that there
-/// are none, and that were not met.
-std::vector<std::string> describe_out_of_sight(const records::StressRecord& record);
 
 /// The limits of an axis that compare so with theory: in words, with the reason or that there is none.
 std::vector<std::string> describe_stress_limits(const records::StressAxis& axis, records::StressAgreement agreement);
-
-/// Writes the table of all limits, with what it leaves out, for a terminal.
-std::string make_limit_text(const records::StressRecord& record);
 
 /// Draws what was measured over an axis' quantity: a line per case, the same colour for the levels of one variant, the
 /// model's dashed; broken points filled, at the upper edge where nothing finite was measured; the bound dashed,

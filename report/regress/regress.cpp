@@ -85,37 +85,6 @@ bool Selection::holds(const std::string& scene, const std::string& filter) const
   return chosen(scenes, scene) && chosen(filters, filter);
 }
 
-RunCells::RunCells(const std::filesystem::path& folder, const Selection& selection)
-    : folder_(folder), results_(records::read_results(folder / "results.json")), all_(results_.cells) {
-  std::erase_if(
-      results_.cells, [&](const auto& cell) { return !selection.holds(cell.scene, cell.filter); });
-}
-
-Origin RunCells::origin() const {
-  const records::RunRecord& run = results_.run;
-  return {.seed = run.seed,
-          .renderer = run.gl.renderer,
-          .machine = fmt::format("{}, {} cores", run.machine.cpu, run.machine.cores),
-          .commit = run.commit};
-}
-
-void RunCells::visit(const std::function<void(const ActualCell&)>& on_cell,
-                     const std::function<void(const ActualTruth&)>& on_truth) const {
-  std::set<std::string> seen;
-  for (const auto& [name, cells] : group_by_file(results_.cells)) {
-    const ImageFile file = name.empty() ? ImageFile() : read_image_file(folder_ / name);
-    for (const records::CellRecord* record : cells) {
-      ActualCell cell{*record, origin(), {}, explain_no_image(*record)};
-      if (cell.unreadable.empty()) read_images(cell, file);
-      on_cell(cell);
-    }
-    const ActualTruth truth{*cells.front(),
-                            {find_part(file.parts, "truth.area"), find_part(file.parts, "truth.standard_error")}};
-    if (!truth.images.area.empty() && seen.insert(cells.front()->scene + " " + truth_key(*cells.front())).second)
-      on_truth(truth);
-  }
-}
-
 namespace {
 
 /// Pictures are for people: where a whole run moved, those of the worst cells are enough.
@@ -190,10 +159,7 @@ struct ExpectedTruths {
 class Regression {
  public:
   explicit Regression(const RegressOptions& options)
-      : options_(options),
-        baseline_(options.baseline),
-        run_(options.run, options.selection),
-        accepter_(baseline_, tolerances_) {
+      : options_(options), baseline_(options.baseline), run_(records::read_results(options.run / "results.json")) {
     const bool known = baseline_.exists();
     if (options.accept) lock_.emplace(options.baseline, true);
     if (!options.accept && !known)
@@ -207,47 +173,70 @@ class Regression {
         options.selection.filters, "--filters", [](const auto& cell) { return cell.filter; });
     require_known(
         options.selection.scenes, "--scene", [](const auto& cell) { return cell.scene; });
-    std::erase_if(index_.cells,
-                  [&](const BaselineCell& cell) { return !options.selection.holds(cell.scene, cell.filter); });
-    if (run_.cells().empty() && index_.cells.empty() && index_.unreadable.empty())
+    const auto is_left_out = [&](const auto& cell) { return !options.selection.holds(cell.scene, cell.filter); };
+    std::erase_if(index_.cells, is_left_out);
+    std::erase_if(run_.cells, is_left_out);
+    if (run_.cells.empty() && index_.cells.empty() && index_.unreadable.empty())
       throw Error(ErrorKind::kInput, "neither the run nor the baseline has a cell", options.run.string());
   }
 
   RegressReport compare() {
-    run_.visit([&](const ActualCell& cell) { compare_cell(cell); },
-               [&](const ActualTruth& truth) { compare_truth(truth); });
+    compare_run();
     find_missing();
     find_missing_truths();
     name_unreadable_files();
     std::ranges::stable_sort(report_.comparisons, is_worse);
     report_.options = options_;
     report_.accept_command = make_accept_command(options_);
-    if (options_.accept) report_.accepted = accepter_.write();
+    if (options_.accept) write_accepted();
     return std::move(report_);
   }
 
  private:
   const RegressOptions& options_;
   Baseline baseline_;
-  RunCells run_;
+  records::Results run_;
   Tolerances tolerances_;
-  Accepter accepter_;
   Baseline::Index index_;
   std::set<std::string> seen_;                    ///< keys of the run's cells
   std::set<std::string> named_unreadable_;        ///< files of the baseline whose trouble a cell reports
   std::set<std::string> seen_truths_;             ///< scene and key
   std::map<std::string, ExpectedTruths> truths_;  ///< by scene
-  std::optional<files::FolderLock> lock_;         ///< held on a baseline that may change
+  std::map<std::pair<std::string, std::string>, CellFile> accepted_files_;  ///< by scene and filter
+  std::set<std::string> accepted_truths_;                                   ///< scenes
+  std::optional<files::FolderLock> lock_;                                   ///< held on a baseline that may change
   RegressReport report_;
   CellFile file_;  ///< the file of the last cell's scene and filter
   std::pair<std::string, std::string> file_name_;
   int pictures_ = 0;
 
+  /// Compares every cell, and the truth of every view once, where there is one. An image file stays in memory while its
+  /// cells are compared.
+  void compare_run() {
+    const records::RunRecord& run = run_.run;
+    const Origin origin{.seed = run.seed,
+                        .renderer = run.gl.renderer,
+                        .machine = fmt::format("{}, {} cores", run.machine.cpu, run.machine.cores),
+                        .commit = run.commit};
+    for (const auto& [name, cells] : group_by_file(run_.cells)) {
+      const ImageFile file = name.empty() ? ImageFile() : read_image_file(options_.run / name);
+      for (const records::CellRecord* record : cells) {
+        ActualCell cell{*record, origin, {}, explain_no_image(*record)};
+        if (cell.unreadable.empty()) read_images(cell, file);
+        compare_cell(cell);
+      }
+      const ActualTruth truth{*cells.front(),
+                              {find_part(file.parts, "truth.area"), find_part(file.parts, "truth.standard_error")}};
+      if (!truth.images.area.empty() && seen_truths_.insert(truth.record.scene + "/" + truth_key(truth.record)).second)
+        compare_truth(truth);
+    }
+  }
+
   /// A misspelt name would take cells out of the comparison, and nobody would notice.
   template <class Name>
   void require_known(const std::vector<std::string>& chosen, const char* option, const Name& name_of_cell) const {
     std::set<std::string> names;
-    for (const records::CellRecord& cell : run_.all_cells()) names.insert(name_of_cell(cell));
+    for (const records::CellRecord& cell : run_.cells) names.insert(name_of_cell(cell));
     for (const BaselineCell& cell : index_.cells) names.insert(name_of_cell(cell));
     const std::vector<std::string> known(names.begin(), names.end());
     for (const std::string& name : chosen) {
@@ -310,7 +299,6 @@ class Regression {
   }
 
   void compare_truth(const ActualTruth& truth) {
-    seen_truths_.insert(truth.record.scene + "/" + truth_key(truth.record));
     const ExpectedTruths& known = read_truths(truth.record.scene);
     const auto found = known.by_key.find(truth_key(truth.record));
     Comparison comparison = name_truth(truth.record);
@@ -330,7 +318,7 @@ class Regression {
   template <class Actual>
   void conclude(Comparison comparison, const Actual& actual, const images::Image& expected,
                 const images::Image& drawn) {
-    if (options_.accept) accepter_.take(comparison, actual);
+    if (options_.accept && comparison.differs()) take(comparison, actual);
     const bool moved = comparison.outcome == Outcome::kChanged || comparison.outcome == Outcome::kLessAccurate;
     if (moved && pictures_ < kMostPictures) {
       ++pictures_;
@@ -343,7 +331,7 @@ class Regression {
 
   void add_missing(Comparison comparison, const char* what) {
     comparison.add(Outcome::kMissing, what);
-    if (options_.remove_missing) accepter_.drop(comparison);
+    if (options_.remove_missing) drop(comparison);
     report_.comparisons.push_back(std::move(comparison));
   }
 
@@ -356,7 +344,8 @@ class Regression {
     std::set<std::string> scenes;
     for (const BaselineCell& cell : index_.cells) scenes.insert(cell.scene);
     for (const std::string& scene : scenes) {
-      for (const auto& [key, truth] : read_truths(scene).by_key) {
+      const std::map<std::string, TruthImages> known = read_truths(scene).by_key;  // which may lose some
+      for (const auto& [key, truth] : known) {
         if (seen_truths_.contains(scene + "/" + key)) continue;
         add_missing({{.key = key, .scene = scene, .filter = kTruthName, .label = kTruthName}, key},
                     "the run has no such truth");
@@ -365,7 +354,7 @@ class Regression {
   }
 
   /// Reads the truths of a scene once.
-  const ExpectedTruths& read_truths(const std::string& scene) {
+  ExpectedTruths& read_truths(const std::string& scene) {
     const auto [place, is_new] = truths_.try_emplace(scene);
     if (!is_new) return place->second;
     try {
@@ -374,6 +363,79 @@ class Regression {
       place->second.unreadable = error.what();
     }
     return place->second;
+  }
+
+  /// Takes a cell over into the baseline, if the run could measure it. Ratios that no run is compared with are not
+  /// kept: they would only make the files differ.
+  void take(Comparison& comparison, const ActualCell& cell) {
+    if (cell.images.visibility.empty()) return;
+    const records::CellRecord& record = cell.record;
+    ComparedValues values = read_values(record);
+    std::erase_if(values.ratios,
+                  [&](const auto& value) { return std::isinf(tolerances_.find(record.filter, value.first).limit); });
+    BaselineCell taken{name_cell(record), record.map_size, record.width, record.height, cell.origin, std::move(values)};
+    CellFile& own = accepted_file(record.scene, record.filter);
+    const auto same = std::ranges::find(own.cells, taken.key, &BaselineCell::key);
+    *(same == own.cells.end() ? own.cells.emplace(same) : same) = std::move(taken);
+    CellImages& kept = own.images[record.key] = cell.images;
+    kept.uncertainty.rounding = coarsen_rounding(cell.images.uncertainty.rounding);
+    note_accepted(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+  }
+
+  void take(Comparison& comparison, const ActualTruth& truth) {
+    accepted_truths(comparison.scene)[comparison.key] = truth.images;
+    note_accepted(comparison, comparison.outcome == Outcome::kExtra ? "added" : "replaced");
+  }
+
+  /// Removes a cell or a truth that the run lacks from the baseline.
+  void drop(Comparison& comparison) {
+    if (comparison.filter == kTruthName)
+      accepted_truths(comparison.scene).erase(comparison.key);
+    else
+      std::erase_if(accepted_file(comparison.scene, comparison.filter).cells,
+                    [&](const BaselineCell& each) { return each.key == comparison.key; });
+    note_accepted(comparison, "removed");
+  }
+
+  void note_accepted(Comparison& comparison, const char* what) {
+    comparison.accepted = true;
+    std::string line = fmt::format("{}: {} {} ({})", what, comparison.scene, comparison.label, comparison.settings);
+    if (comparison.outcome != Outcome::kExtra)
+      for (const Finding& finding : comparison.findings) line += "\n  - " + finding.text;
+    report_.accepted.push_back(std::move(line));
+  }
+
+  /// The cells of a scene and filter as they will be. A file that cannot be read keeps only its numbers, if those can
+  /// be read, and the cells that are taken over now.
+  CellFile& accepted_file(const std::string& scene, const std::string& filter) {
+    const auto [place, is_new] = accepted_files_.try_emplace({scene, filter});
+    if (!is_new) return place->second;
+    try {
+      return place->second = baseline_.read_cells(scene, filter);
+    } catch (const Error&) {
+      place->second = {};
+    }
+    try {
+      place->second.cells = baseline_.read_numbers(scene, filter);
+    } catch (const Error& error) {
+      report_.accepted.push_back(fmt::format("lost: every other cell of {} {}: {}", scene, filter, error.what()));
+    }
+    return place->second;
+  }
+
+  std::map<std::string, TruthImages>& accepted_truths(const std::string& scene) {
+    ExpectedTruths& truths = read_truths(scene);
+    if (accepted_truths_.insert(scene).second && !truths.unreadable.empty())
+      report_.accepted.push_back(
+          fmt::format("lost: the truth of every other view of {}: {}", scene, truths.unreadable));
+    return truths.by_key;
+  }
+
+  /// Tolerances come first: a folder that is written only in part is then known to be a baseline.
+  void write_accepted() {
+    if (!baseline_.exists()) write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
+    for (const auto& [name, own] : accepted_files_) baseline_.write_cells(name.first, name.second, own);
+    for (const std::string& scene : accepted_truths_) baseline_.write_truths(scene, truths_.at(scene).by_key);
   }
 
   /// Reports the files of the baseline that cannot be read and that no cell of the run belongs to.
