@@ -134,7 +134,7 @@ class Texture {
   int samples_;
 };
 
-// The GL objects, with those of texture.h. They are move-only, labelled, made by direct state access, and die with
+// GL objects, textures above among them. They are move-only, labelled, made by direct state access, and die with
 // their scope, which must lie inside the life of their context. Ids are for harness/gl and harness/render; they cross
 // no other folder's signatures.
 

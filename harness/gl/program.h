@@ -73,7 +73,7 @@ struct ShaderLog {
 
 /// Translates a driver's info log: "2:14(5): error: x" (Mesa), "2(14) : error C1: x" (NVIDIA) and
 /// "ERROR: 2:14: x" (AMD, Intel, glslang), where 2 indexes `files` unless the line itself
-/// does (kLinesPerFile in shader_source.h). Lines in no such form are kept as they are.
+/// does (kLinesPerFile above). Lines in no such form are kept as they are.
 ShaderLog translate_log(std::string_view log, const std::vector<std::string>& files);
 
 /// GLSL that does not compile or link; the message is the compiler's log.
