@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "harness/cli/terminal.h"
-#include "harness/options/experiment_file.h"
 #include "harness/scene/load.h"
 #include "harness/tune/tune_filters.h"
 

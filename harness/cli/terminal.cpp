@@ -1,7 +1,6 @@
 #include "harness/cli/terminal.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -10,9 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <system_error>
-#include <utility>
 
 #include "base/files.h"
 

@@ -8,9 +8,7 @@
 #include <sstream>
 
 #include "base/files.h"
-#include "harness/measure/scene_assets.h"
 #include "harness/run/provenance.h"
-#include "harness/run/run_plan.h"
 #include "harness/run/task_images.h"
 #include "harness/scene/files/mesh_file.h"
 #include "reference/truth/cached_tracer.h"
@@ -32,11 +30,11 @@ Json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 Json list(const glm::dmat4& matrix) { return std::vector<double>(glm::value_ptr(matrix), glm::value_ptr(matrix) + 16); }
 
 Json camera_json(const scene::Camera& camera) {
-  const glm::dvec3 forward(camera.forward_ws), right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up_ws)));
-  Json json = {{"position", list(glm::dvec3(camera.position_ws))},
-               {"forward", list(forward)},
-               {"right", list(right)},
-               {"up", list(glm::cross(right, forward))}};
+  const scene::ViewAxes axes(camera);
+  Json json = {{"position", list(axes.eye)},
+               {"forward", list(axes.forward)},
+               {"right", list(axes.right)},
+               {"up", list(axes.up)}};
   if (camera.orthographic_height_m > 0.0f)
     json["orthographic_height"] = camera.orthographic_height_m;
   else

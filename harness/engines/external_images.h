@@ -1,14 +1,14 @@
 #pragma once
 
-#include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "reference/truth/visibility.h"
 #include "report/images/image.h"
+#include "report/records/records.h"
 
 namespace shadowbench::engines {
 
@@ -37,6 +37,16 @@ struct ExternalImages {
 /// Reads them. Throws Error(kInput): a file that cannot be read, a layer that is missing (lit comes with unlit, or
 /// there is a visibility), codes that are sRGB, sizes that differ from each other.
 ExternalImages read_external_images(const ExternalFiles& files);
+
+/// What a meta.json says of a row.
+struct Meta {
+  records::ExternalRecord external;
+  std::string truth;                         ///< of the scene.json that was drawn; empty where it is not said
+  std::optional<glm::dmat4> map_from_world;  ///< of the shadow map; see OwnMap
+};
+
+/// Throws Error(kInput) for what is no object of texts and numbers, or has another key than README.md lists.
+Meta read_meta(const std::filesystem::path& file);
 
 /// A shadow map of another renderer.
 struct OwnMap {

@@ -17,7 +17,6 @@
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
 #include "reference/metrics/error_stats.h"
-#include "report/analysis/cells.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/images/picture_io.h"

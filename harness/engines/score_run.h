@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,16 +27,6 @@ struct ScoreRequest {
   std::optional<std::filesystem::path> meta;  ///< a meta.json
   bool unaligned = false;                     ///< score what does not show our view all the same, and say so
 };
-
-/// What a meta.json says of a row.
-struct Meta {
-  records::ExternalRecord external;
-  std::string truth;                         ///< of the scene.json that was drawn; empty where it is not said
-  std::optional<glm::dmat4> map_from_world;  ///< of the shadow map; see OwnMap
-};
-
-/// Throws Error(kInput) for what is no object of texts and numbers, or has another key than README.md lists.
-Meta read_meta(const std::filesystem::path& file);
 
 /// Scores pictures of other renderers against the truth of a run, and makes them rows of its report.
 class RunScorer {

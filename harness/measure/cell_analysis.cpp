@@ -7,9 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "harness/measure/scene_assets.h"
 #include "harness/render/gbuffer.h"
-#include "reference/metrics/error_stats.h"
 #include "report/records/format.h"
 #include "report/records/records.h"
 

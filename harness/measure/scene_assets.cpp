@@ -5,33 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "base/error.h"
 #include "filters/front_matter.h"
-#include "harness/gl/survey.h"
-#include "harness/measure/scene_truth.h"
 #include "harness/render/picture_passes.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/scene.h"
 #include "report/images/picture_io.h"
 
 namespace shadowbench::measure {
-
-Renderer make_renderer(gl::Backend backend, const options::Resources& resources) {
-  gl::ContextChoice choice = gl::create_context(backend);
-  const gl::TimerKind timer = gl::choose_timer(*choice.context);
-  return {std::move(choice.context), std::move(choice.refused), timer, render::ShaderLibrary(resources.shaders)};
-}
-
-filters::GlAccuracy measure_accuracy(Renderer& renderer) {
-  if (!renderer.accuracy) {
-    const gl::GlSurvey measured = gl::survey_gl(*renderer.context);
-    renderer.accuracy = {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
-  }
-  return *renderer.accuracy;
-}
-
 namespace {
 
 /// The least and the largest depth in a G-buffer.
@@ -54,7 +36,36 @@ double largest_radius_texels(const std::vector<filters::FilterRequest>& requests
   return largest;
 }
 
+/// A filter whose visibility is made of all that is read, so that the compiler drops none of it.
+filters::FilterRequest make_empty_filter(const render::ReceiverReads& reads) {
+  std::string sum = reads.place ? "r.uv.x + r.uv.y + r.depth" : "0.5";
+  if (reads.plane) sum += " + r.depth_per_texel.x + r.depth_per_texel.y + r.n_dot_l + r.view_depth";
+  if (reads.position) sum += " + r.position_ws.x + r.position_ws.y + r.position_ws.z";
+  if (reads.normal) sum += " + r.normal_ws.x + r.normal_ws.y + r.normal_ws.z";
+  filters::FilterRequest request;
+  request.spec = filters::parse_filter(
+      "/*+++\ntitle = \"Empty lookup\"\nsource = \"none\"\nkind = \"other\"\n+++*/\n"
+      "float visibility(Receiver r) { return clamp(" +
+          sum + ", 0.0, 1.0); }\n",
+      "empty.glsl");
+  return request;
+}
+
 }  // namespace
+
+Renderer make_renderer(gl::Backend backend, const options::Resources& resources) {
+  gl::ContextChoice choice = gl::create_context(backend);
+  const gl::TimerKind timer = gl::choose_timer(*choice.context);
+  return {std::move(choice.context), std::move(choice.refused), timer, render::ShaderLibrary(resources.shaders)};
+}
+
+filters::GlAccuracy measure_accuracy(Renderer& renderer) {
+  if (!renderer.accuracy) {
+    const gl::GlSurvey measured = gl::survey_gl(*renderer.context);
+    renderer.accuracy = {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
+  }
+  return *renderer.accuracy;
+}
 
 std::vector<scene::LightFrustum> fit_map_layers(const options::RunOptions& options, const MapFit& fit,
                                                 const std::function<const render::GBuffer&()>& gbuffer) {
@@ -201,25 +212,6 @@ double padding_texels(const options::RunOptions& options) {
 double widest_kernel_texels(const options::RunOptions& options) {
   return options.pad_texels ? std::max(*options.pad_texels - 1.0, 0.0) : largest_radius_texels(options.filters);
 }
-
-namespace {
-
-/// A filter whose visibility is made of all that is read, so that the compiler drops none of it.
-filters::FilterRequest make_empty_filter(const render::ReceiverReads& reads) {
-  std::string sum = reads.place ? "r.uv.x + r.uv.y + r.depth" : "0.5";
-  if (reads.plane) sum += " + r.depth_per_texel.x + r.depth_per_texel.y + r.n_dot_l + r.view_depth";
-  if (reads.position) sum += " + r.position_ws.x + r.position_ws.y + r.position_ws.z";
-  if (reads.normal) sum += " + r.normal_ws.x + r.normal_ws.y + r.normal_ws.z";
-  filters::FilterRequest request;
-  request.spec = filters::parse_filter(
-      "/*+++\ntitle = \"Empty lookup\"\nsource = \"none\"\nkind = \"other\"\n+++*/\n"
-      "float visibility(Receiver r) { return clamp(" +
-          sum + ", 0.0, 1.0); }\n",
-      "empty.glsl");
-  return request;
-}
-
-}  // namespace
 
 render::LightLayers make_filter_light(const options::RunOptions& options, const scene::Light& light,
                                       const std::vector<scene::LightFrustum>& layers,

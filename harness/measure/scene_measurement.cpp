@@ -15,8 +15,6 @@
 #include "filters/random.h"
 #include "filters/screen.h"
 #include "harness/gl/survey.h"
-#include "harness/measure/scene_assets.h"
-#include "harness/measure/scene_truth.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/timing.h"
 #include "harness/measure/view_receivers.h"
@@ -26,7 +24,6 @@
 #include "report/records/format.h"
 
 namespace shadowbench::measure {
-
 namespace {
 
 /// Whether a triangle reaches into a frustum, by its corners in clip space: not all are beyond one of its sides, or
@@ -354,60 +351,6 @@ void set_kernel(records::CellRecord& record, const filters::FilterRequest& reque
         fmt::format("kernels of more than {:.2f} texels have none", filters::width_classes().back().widest_texels);
 }
 
-}  // namespace
-
-records::ParamMap record_params(const filters::ParamValues& values) {
-  records::ParamMap params;
-  for (const auto& [name, value] : values)
-    std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
-  return params;
-}
-
-std::string describe_light(const scene::SkyAngles& light) {
-  return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg);
-}
-
-records::CellRecord make_record(const options::RunOptions& options, const SceneTask& task,
-                                const filters::FilterRequest& request) {
-  records::CellRecord record;
-  record.scene = task.scene->name;
-  record.view = task.camera->name;
-  record.filter = request.spec.id;
-  record.params = record_params(request.values);
-  set_kernel(record, request);
-  record.teaching = request.spec.teaching;
-  record.claims = request.spec.claims;
-  record.map_size = task.map_size;
-  record.map_format = render::describe_map(options.map);
-  record.fit = scene::describe_fit(options.fit) + (options.snap ? " snapped" : "");
-  if (options.light) record.light = describe_light(*options.light);
-  const render::BiasRule& bias = options.bias;
-  const auto amount = [](const render::BiasAmount& a) { return records::BiasAmountRecord{a.depth, a.texels, a.world}; };
-  record.bias = {.constant = amount(bias.constant),
-                 .slope = amount(bias.slope),
-                 .plane_texels = bias.plane_texels,
-                 .plane_kernels = bias.plane_kernels,
-                 .normal_offset = amount(bias.normal_offset),
-                 .receiver_plane = bias.receiver_plane,
-                 .polygon_factor = bias.map.polygon_factor,
-                 .polygon_units = bias.map.polygon_units,
-                 .front_cull = bias.map.cull_front,
-                 .midpoint = bias.map.midpoint};
-  record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
-  if (!options.stability)
-    record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";
-  record.width = options.width;
-  record.height = options.height;
-  record.key = records::cell_key(record);
-  return record;
-}
-
-SceneMeasurement measure_scene(const TaskRig& rig, const options::StepListener& listener) {
-  return SceneBench(rig, listener).run();
-}
-
-namespace {
-
 using records::format_number;
 
 constexpr float kRounding = 1e-5f;             // of a sum of weights in single precision
@@ -485,6 +428,56 @@ void check_loops(MeasuredCell& cell, gl::Context& context) {
 }
 
 }  // namespace
+
+records::ParamMap record_params(const filters::ParamValues& values) {
+  records::ParamMap params;
+  for (const auto& [name, value] : values)
+    std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
+  return params;
+}
+
+std::string describe_light(const scene::SkyAngles& light) {
+  return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg);
+}
+
+records::CellRecord make_record(const options::RunOptions& options, const SceneTask& task,
+                                const filters::FilterRequest& request) {
+  records::CellRecord record;
+  record.scene = task.scene->name;
+  record.view = task.camera->name;
+  record.filter = request.spec.id;
+  record.params = record_params(request.values);
+  set_kernel(record, request);
+  record.teaching = request.spec.teaching;
+  record.claims = request.spec.claims;
+  record.map_size = task.map_size;
+  record.map_format = render::describe_map(options.map);
+  record.fit = scene::describe_fit(options.fit) + (options.snap ? " snapped" : "");
+  if (options.light) record.light = describe_light(*options.light);
+  const render::BiasRule& bias = options.bias;
+  const auto amount = [](const render::BiasAmount& a) { return records::BiasAmountRecord{a.depth, a.texels, a.world}; };
+  record.bias = {.constant = amount(bias.constant),
+                 .slope = amount(bias.slope),
+                 .plane_texels = bias.plane_texels,
+                 .plane_kernels = bias.plane_kernels,
+                 .normal_offset = amount(bias.normal_offset),
+                 .receiver_plane = bias.receiver_plane,
+                 .polygon_factor = bias.map.polygon_factor,
+                 .polygon_units = bias.map.polygon_units,
+                 .front_cull = bias.map.cull_front,
+                 .midpoint = bias.map.midpoint};
+  record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
+  if (!options.stability)
+    record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";
+  record.width = options.width;
+  record.height = options.height;
+  record.key = records::cell_key(record);
+  return record;
+}
+
+SceneMeasurement measure_scene(const TaskRig& rig, const options::StepListener& listener) {
+  return SceneBench(rig, listener).run();
+}
 
 void check_drawing(MeasuredCell& cell, gl::Context& context) {
   check_values(cell);

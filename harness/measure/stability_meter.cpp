@@ -18,7 +18,6 @@
 #include "report/records/format.h"
 
 namespace shadowbench::measure {
-
 namespace {
 
 using filters::FilterRequest;
@@ -151,6 +150,31 @@ std::string warn_of_variance(const FilterRequest& request, const TexelHealth& he
       advise(remedies));
 }
 
+/// Puts a layer of a map into a picture of all, side by side; rows from top to bottom.
+void put_layer(images::Image& image, int layer, const std::vector<float>& values) {
+  const int side = image.height;
+  for (int y = 0; y < side; ++y) {
+    const auto row = values.begin() + static_cast<std::ptrdiff_t>(side - 1 - y) * side;
+    std::copy(row, row + side, image.at(layer * side, y));
+  }
+}
+
+void note_absent(records::CellRecord& record, std::initializer_list<const char*> fields, const std::string& reason) {
+  for (const char* field : fields) record.absent[std::string("stability.") + field] = reason;
+}
+
+/// Why a filter is not compared with what it bounds; empty where it is.
+std::string explain_no_bound(const filters::FilterRequest& request, const filters::ScalarModel* model) {
+  if (request.spec.kind != filters::FilterKind::kBound)
+    return "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter";
+  if (!filters::promises_bound(request.spec, request.values))
+    return fmt::format("the filter is a bound with {}=0 only", request.spec.bound_at_zero);
+  if (!model) return filters::kNoModel;
+  return model->kernel(request.values) ? "" : filters::explain_no_kernel(request.spec, request.values);
+}
+
+constexpr const char* kReadsDepth = "the filter reads the depth map itself";
+
 }  // namespace
 
 ReadMap::ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer)
@@ -203,35 +227,6 @@ std::vector<std::string> list_exceeded_limits(const std::string& name, const Fil
     warnings.push_back(name + ": " + warn_of_variance(request, health, trial));
   return warnings;
 }
-
-namespace {
-
-/// Puts a layer of a map into a picture of all, side by side; rows from top to bottom.
-void put_layer(images::Image& image, int layer, const std::vector<float>& values) {
-  const int side = image.height;
-  for (int y = 0; y < side; ++y) {
-    const auto row = values.begin() + static_cast<std::ptrdiff_t>(side - 1 - y) * side;
-    std::copy(row, row + side, image.at(layer * side, y));
-  }
-}
-
-void note_absent(records::CellRecord& record, std::initializer_list<const char*> fields, const std::string& reason) {
-  for (const char* field : fields) record.absent[std::string("stability.") + field] = reason;
-}
-
-/// Why a filter is not compared with what it bounds; empty where it is.
-std::string explain_no_bound(const filters::FilterRequest& request, const filters::ScalarModel* model) {
-  if (request.spec.kind != filters::FilterKind::kBound)
-    return "only a filter of the kind 'bound' promises never to be darker than its percentage-closer filter";
-  if (!filters::promises_bound(request.spec, request.values))
-    return fmt::format("the filter is a bound with {}=0 only", request.spec.bound_at_zero);
-  if (!model) return filters::kNoModel;
-  return model->kernel(request.values) ? "" : filters::explain_no_kernel(request.spec, request.values);
-}
-
-constexpr const char* kReadsDepth = "the filter reads the depth map itself";
-
-}  // namespace
 
 std::optional<std::string> find_other_store(const filters::FilterRequest& request) {
   const filters::ParamSpec* param = request.spec.find_param("store");

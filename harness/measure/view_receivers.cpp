@@ -10,9 +10,7 @@
 #include <memory>
 
 #include "base/bytes.h"
-#include "filters/kernel.h"
 #include "filters/percentage_closer.h"
-#include "filters/receiver.h"
 #include "filters/screen.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/render/geometry.h"
@@ -67,97 +65,9 @@ class SharedTrace {
   }
 };
 
-}  // namespace
-
-bool ViewReceivers::any_counts() const { return std::ranges::any_of(image.points, &truth::ReceiverPoint::counts); }
-
-images::Image ViewReceivers::to_image(const std::vector<float>& visibility) const {
-  images::Image result(image.width, image.height, 1);
-  for (std::size_t i = 0; i < visibility.size(); ++i)
-    result.texels[i] = image.points[i].counts ? visibility[i] : is_surface[i] ? 0.0f : 1.0f;
-  return result;
-}
-
-std::vector<std::uint8_t> ViewReceivers::mask() const {
-  std::vector<std::uint8_t> result;
-  for (const truth::ReceiverPoint& point : image.points) result.push_back(point.counts ? 1 : 0);
-  return result;
-}
-
-bool lie_on_one_surface(const truth::ReceiverPoint& a, const truth::ReceiverPoint& b) {
-  constexpr float kOffPlane = 0.05f, kCosine = 0.99f;
-  const glm::vec3 way = b.position_ws - a.position_ws;
-  return a.counts && b.counts && glm::dot(a.normal_ws, b.normal_ws) > kCosine &&
-         std::abs(glm::dot(way, a.normal_ws)) <= kOffPlane * glm::length(way);
-}
-
-namespace {
-
 bool faces(const scene::Light& light, const glm::vec3& position, const glm::vec3& normal) {
   return glm::dot(normal, scene::to_light(light, position)) > filters::kFacesLight && scene::shines_on(light, position);
 }
-
-}  // namespace
-
-ViewSurfaces read_view_surfaces(const render::GBuffer& gbuffer) {
-  return {render::read_image(gbuffer.position(), 4), render::read_image(gbuffer.normal(), 4)};
-}
-
-ViewReceivers make_view_receivers(const ViewSurfaces& surfaces, const scene::Light& light) {
-  const auto& [positions, normals] = surfaces;
-  const std::size_t pixels = positions.texels.size() / 4;
-  ViewReceivers receivers{{positions.width, positions.height, std::vector<truth::ReceiverPoint>(pixels)},
-                          std::vector<std::uint8_t>(pixels)};
-  visit_in_parallel(pixels, [&](std::size_t i) {
-    const float* p = &positions.texels[4 * i];
-    const float* n = &normals.texels[4 * i];
-    const glm::vec3 position(p[0], p[1], p[2]), normal(n[0], n[1], n[2]);
-    const bool is_surface = p[3] != 0.0f;
-    receivers.is_surface[i] = is_surface ? 1 : 0;
-    receivers.image.points[i] = {position, normal, is_surface && faces(light, position, normal)};
-  });
-  ContentHash hash;
-  hash.add_values(std::span<const float>(positions.texels));
-  hash.add_values(std::span<const float>(normals.texels));
-  hash.add_values(std::span<const std::uint8_t>(receivers.mask()));
-  receivers.image.content = hash.name();
-  return receivers;
-}
-
-ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::Light& light) {
-  return make_view_receivers(read_view_surfaces(gbuffer), light);
-}
-
-std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
-                                            const render::LightLayers& light) {
-  std::vector<TracedLayer> layers;
-  for (const render::LightSetup& each : light) {
-    TracedLayer& layer = layers.emplace_back(TracedLayer{each.frustum, {}, {}});
-    if (!each.frustum.is_layered()) continue;
-    layer.shares = render::read_layer_shares(shaders, gbuffer, each);
-    ContentHash hash;
-    hash.add_values(std::span<const float>(layer.shares));
-    layer.content = hash.name();
-  }
-  return layers;
-}
-
-std::size_t choose_layer(const std::vector<TracedLayer>& layers, std::size_t pixel) {
-  if (layers.size() == 1) return 0;
-  const auto most = std::ranges::max_element(layers, {}, [&](const TracedLayer& each) { return each.shares[pixel]; });
-  return static_cast<std::size_t>(most - layers.begin());
-}
-
-truth::TracedVisibility trace_layers(const std::vector<TracedLayer>& layers, const truth::ReceiverImage& receivers,
-                                     const LayerTrace& trace) {
-  if (layers.front().shares.empty()) return trace(receivers, scene::make_map_grid(layers.front().frustum), 0);
-  SharedTrace sum(receivers.points.size());
-  for (std::size_t i = 0; i < layers.size(); ++i)
-    sum.add(trace(keep_served(receivers, layers[i]), scene::make_map_grid(layers[i].frustum), i), layers[i].shares);
-  return sum.take();
-}
-
-namespace {
 
 constexpr float kRadiiPerTexel = 16.0f;  // of disks that differ from pixel to pixel
 
@@ -177,67 +87,6 @@ void compare_disks(ModelImages& images, const ModelLayer& layer, const ModelView
   });
 }
 
-}  // namespace
-
-ModelImages evaluate_model(const filters::FilterRequest& request, const std::vector<ModelLayer>& layers,
-                           const ModelView& view) {
-  const std::unique_ptr<filters::ScalarModel> model = filters::make_model(request.spec);
-  ModelImages images;
-  if (!model) return images;
-  const bool has_disks = !filters::find_kernel(request.spec, request.values);
-  const std::size_t pixels = view.pixels();
-  images.model.assign(pixels, 1.0);
-  if (has_disks) images.closer.assign(pixels, 1.0);
-  std::atomic<std::int64_t> excused = 0;
-  auto picture = filters::ScreenPicture::make(*model, request.spec, request.values, view.width, view.height);
-  for (const ModelLayer& layer : layers) {
-    const filters::ModelInput input{.spec = request.spec,
-                                    .values = request.values,
-                                    .map = layer.map,
-                                    .seed = view.seed,
-                                    .plane_max_tangent = view.plane_max_tangent};
-    const auto lookup = model->prepare(input, filters::Precision::kDouble);
-    if (has_disks) images.disk_radii_texels.emplace_back(pixels, 0.0f);
-    visit_in_parallel(layer.receivers.size(), [&](std::size_t i) {
-      const filters::Receiver& receiver = layer.receivers[i];
-      const std::size_t pixel = find_pixel(receiver, view.width, view.height);
-      const filters::ModelResult result = lookup->at(receiver);
-      put_share(images.model[pixel], receiver, result.visibility);
-      if (has_disks)
-        images.disk_radii_texels.back()[pixel] =
-            std::round(kRadiiPerTexel * static_cast<float>(result.disk_radius_texels)) / kRadiiPerTexel;
-      if (picture) picture->add(receiver, result);
-      if (result.excused) ++excused;
-    });
-    if (has_disks) compare_disks(images, layer, view);
-  }
-  if (picture) {
-    picture->filter(*model, request.spec, request.values, filters::Precision::kDouble);
-    excused = 0;
-    picture->visit_from_top([&](std::size_t i, const filters::ModelResult& result) {
-      images.model[i] = result.visibility;
-      if (result.excused) ++excused;
-    });
-  }
-  images.excused = excused;
-  return images;
-}
-
-std::vector<double> compare_kernel(const filters::Kernel& kernel, const std::vector<ModelLayer>& layers,
-                                   const ModelView& view) {
-  std::vector<double> image(view.pixels(), 1.0);
-  for (const ModelLayer& layer : layers) {
-    const filters::PercentageCloser closer(kernel, layer.map, view.plane_max_tangent);
-    visit_in_parallel(layer.receivers.size(), [&](std::size_t i) {
-      const filters::Receiver& receiver = layer.receivers[i];
-      put_share(image[find_pixel(receiver, view.width, view.height)], receiver, closer.at(receiver));
-    });
-  }
-  return image;
-}
-
-namespace {
-
 /// A pixel's footprint in the map, in texels.
 struct Footprint {
   glm::dvec2 centre{0.0};
@@ -250,21 +99,17 @@ struct Footprint {
 class PixelProjector {
  public:
   PixelProjector(const scene::Camera& camera, const scene::LightFrustum& frustum, int height, int map_size)
-      : eye_(camera.position_ws),
-        forward_(camera.forward_ws),
-        right_(glm::normalize(glm::cross(forward_, glm::dvec3(camera.up_ws)))),
-        up_(glm::cross(right_, forward_)),
-        orthographic_(camera.orthographic_height_m > 0.0f),
-        pixel_(orthographic_ ? static_cast<double>(camera.orthographic_height_m) / height
-                             : 2.0 * std::tan(0.5 * static_cast<double>(camera.vertical_fov_rad)) / height),
+      : axes_(camera),
+        is_flat_(axes_.half_height > 0.0),
+        pixel_(2.0 * (is_flat_ ? axes_.half_height : axes_.tangent) / height),
         frustum_(frustum),
         map_size_(map_size) {}
 
   Footprint project(const truth::ReceiverPoint& point) const {
     const glm::dvec3 position(point.position_ws), normal(point.normal_ws);
-    const glm::dvec3 from_eye = position - eye_;
-    const glm::dvec3 ray = orthographic_ ? forward_ : glm::normalize(from_eye);
-    const double side = orthographic_ ? pixel_ : pixel_ * glm::dot(from_eye, forward_);
+    const glm::dvec3 from_eye = position - axes_.eye;
+    const glm::dvec3 ray = is_flat_ ? axes_.forward : glm::normalize(from_eye);
+    const double side = is_flat_ ? pixel_ : pixel_ * glm::dot(from_eye, axes_.forward);
     // A plane seen edge on would have a footprint without bound.
     constexpr double kGrazing = 1e-6;
     const double facing = std::min(glm::dot(normal, ray), -kGrazing);
@@ -273,7 +118,7 @@ class PixelProjector {
       const glm::dvec3 on_plane = side * (across - ray * (glm::dot(normal, across) / facing));
       return glm::dvec2(glm::dot(along.u, on_plane), glm::dot(along.v, on_plane));
     };
-    return {glm::dvec2(frustum_.place(position, map_size_)), edge(right_), edge(up_)};
+    return {glm::dvec2(frustum_.place(position, map_size_)), edge(axes_.right), edge(axes_.up)};
   }
 
   bool is_in_map(const Footprint& texels) const {
@@ -282,8 +127,8 @@ class PixelProjector {
   }
 
  private:
-  glm::dvec3 eye_, forward_, right_, up_;
-  bool orthographic_;
+  scene::ViewAxes axes_;
+  bool is_flat_;
   double pixel_;  ///< side of a pixel: per metre ahead, or in metres where the camera is orthographic
   const scene::LightFrustum& frustum_;
   int map_size_;
@@ -352,7 +197,166 @@ records::CoverageRecord summarise_coverage(std::vector<float> densities, const s
   return record;
 }
 
+/// The size of a texel at a point, in the finest of the layers that hold it; metres. Infinity where none does.
+double find_texel_size(const std::vector<scene::LightFrustum>& layers, const glm::dvec3& point_ws, int map_size) {
+  double finest = std::numeric_limits<double>::infinity();
+  for (const scene::LightFrustum& layer : layers) {
+    const glm::dvec3 place = layer.place(point_ws, map_size);
+    const bool is_inside = place.x >= 0.0 && place.x <= map_size && place.y >= 0.0 && place.y <= map_size &&
+                           place.z >= 0.0 && place.z <= 1.0;
+    if (is_inside) finest = std::min(finest, layer.texel_size_at(point_ws));
+  }
+  return finest;
+}
+
+/// The value below which those lie that make up half of the sum of all. Requires one that is above 0.
+double find_weighted_median(std::vector<double> values) {
+  std::ranges::sort(values);
+  double sum = 0.0, below = 0.0;
+  for (const double value : values) sum += value;
+  for (const double value : values)
+    if ((below += value) >= 0.5 * sum) return value;
+  return values.back();
+}
+
 }  // namespace
+
+bool ViewReceivers::any_counts() const { return std::ranges::any_of(image.points, &truth::ReceiverPoint::counts); }
+
+images::Image ViewReceivers::to_image(const std::vector<float>& visibility) const {
+  images::Image result(image.width, image.height, 1);
+  for (std::size_t i = 0; i < visibility.size(); ++i)
+    result.texels[i] = image.points[i].counts ? visibility[i] : is_surface[i] ? 0.0f : 1.0f;
+  return result;
+}
+
+std::vector<std::uint8_t> ViewReceivers::mask() const {
+  std::vector<std::uint8_t> result;
+  for (const truth::ReceiverPoint& point : image.points) result.push_back(point.counts ? 1 : 0);
+  return result;
+}
+
+bool lie_on_one_surface(const truth::ReceiverPoint& a, const truth::ReceiverPoint& b) {
+  constexpr float kOffPlane = 0.05f, kCosine = 0.99f;
+  const glm::vec3 way = b.position_ws - a.position_ws;
+  return a.counts && b.counts && glm::dot(a.normal_ws, b.normal_ws) > kCosine &&
+         std::abs(glm::dot(way, a.normal_ws)) <= kOffPlane * glm::length(way);
+}
+
+ViewSurfaces read_view_surfaces(const render::GBuffer& gbuffer) {
+  return {render::read_image(gbuffer.position(), 4), render::read_image(gbuffer.normal(), 4)};
+}
+
+ViewReceivers make_view_receivers(const ViewSurfaces& surfaces, const scene::Light& light) {
+  const auto& [positions, normals] = surfaces;
+  const std::size_t pixels = positions.texels.size() / 4;
+  ViewReceivers receivers{{positions.width, positions.height, std::vector<truth::ReceiverPoint>(pixels)},
+                          std::vector<std::uint8_t>(pixels)};
+  visit_in_parallel(pixels, [&](std::size_t i) {
+    const float* p = &positions.texels[4 * i];
+    const float* n = &normals.texels[4 * i];
+    const glm::vec3 position(p[0], p[1], p[2]), normal(n[0], n[1], n[2]);
+    const bool is_surface = p[3] != 0.0f;
+    receivers.is_surface[i] = is_surface ? 1 : 0;
+    receivers.image.points[i] = {position, normal, is_surface && faces(light, position, normal)};
+  });
+  ContentHash hash;
+  hash.add_values(std::span<const float>(positions.texels));
+  hash.add_values(std::span<const float>(normals.texels));
+  hash.add_values(std::span<const std::uint8_t>(receivers.mask()));
+  receivers.image.content = hash.name();
+  return receivers;
+}
+
+ViewReceivers read_view_receivers(const render::GBuffer& gbuffer, const scene::Light& light) {
+  return make_view_receivers(read_view_surfaces(gbuffer), light);
+}
+
+std::vector<TracedLayer> list_traced_layers(render::ShaderLibrary& shaders, const render::GBuffer& gbuffer,
+                                            const render::LightLayers& light) {
+  std::vector<TracedLayer> layers;
+  for (const render::LightSetup& each : light) {
+    TracedLayer& layer = layers.emplace_back(TracedLayer{each.frustum, {}, {}});
+    if (!each.frustum.is_layered()) continue;
+    layer.shares = render::read_layer_shares(shaders, gbuffer, each);
+    ContentHash hash;
+    hash.add_values(std::span<const float>(layer.shares));
+    layer.content = hash.name();
+  }
+  return layers;
+}
+
+std::size_t choose_layer(const std::vector<TracedLayer>& layers, std::size_t pixel) {
+  if (layers.size() == 1) return 0;
+  const auto most = std::ranges::max_element(layers, {}, [&](const TracedLayer& each) { return each.shares[pixel]; });
+  return static_cast<std::size_t>(most - layers.begin());
+}
+
+truth::TracedVisibility trace_layers(const std::vector<TracedLayer>& layers, const truth::ReceiverImage& receivers,
+                                     const LayerTrace& trace) {
+  if (layers.front().shares.empty()) return trace(receivers, scene::make_map_grid(layers.front().frustum), 0);
+  SharedTrace sum(receivers.points.size());
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    sum.add(trace(keep_served(receivers, layers[i]), scene::make_map_grid(layers[i].frustum), i), layers[i].shares);
+  return sum.take();
+}
+
+ModelImages evaluate_model(const filters::FilterRequest& request, const std::vector<ModelLayer>& layers,
+                           const ModelView& view) {
+  const std::unique_ptr<filters::ScalarModel> model = filters::make_model(request.spec);
+  ModelImages images;
+  if (!model) return images;
+  const bool has_disks = !filters::find_kernel(request.spec, request.values);
+  const std::size_t pixels = view.pixels();
+  images.model.assign(pixels, 1.0);
+  if (has_disks) images.closer.assign(pixels, 1.0);
+  std::atomic<std::int64_t> excused = 0;
+  auto picture = filters::ScreenPicture::make(*model, request.spec, request.values, view.width, view.height);
+  for (const ModelLayer& layer : layers) {
+    const filters::ModelInput input{.spec = request.spec,
+                                    .values = request.values,
+                                    .map = layer.map,
+                                    .seed = view.seed,
+                                    .plane_max_tangent = view.plane_max_tangent};
+    const auto lookup = model->prepare(input, filters::Precision::kDouble);
+    if (has_disks) images.disk_radii_texels.emplace_back(pixels, 0.0f);
+    visit_in_parallel(layer.receivers.size(), [&](std::size_t i) {
+      const filters::Receiver& receiver = layer.receivers[i];
+      const std::size_t pixel = find_pixel(receiver, view.width, view.height);
+      const filters::ModelResult result = lookup->at(receiver);
+      put_share(images.model[pixel], receiver, result.visibility);
+      if (has_disks)
+        images.disk_radii_texels.back()[pixel] =
+            std::round(kRadiiPerTexel * static_cast<float>(result.disk_radius_texels)) / kRadiiPerTexel;
+      if (picture) picture->add(receiver, result);
+      if (result.excused) ++excused;
+    });
+    if (has_disks) compare_disks(images, layer, view);
+  }
+  if (picture) {
+    picture->filter(*model, request.spec, request.values, filters::Precision::kDouble);
+    excused = 0;
+    picture->visit_from_top([&](std::size_t i, const filters::ModelResult& result) {
+      images.model[i] = result.visibility;
+      if (result.excused) ++excused;
+    });
+  }
+  images.excused = excused;
+  return images;
+}
+
+std::vector<double> compare_kernel(const filters::Kernel& kernel, const std::vector<ModelLayer>& layers,
+                                   const ModelView& view) {
+  std::vector<double> image(view.pixels(), 1.0);
+  for (const ModelLayer& layer : layers) {
+    const filters::PercentageCloser closer(kernel, layer.map, view.plane_max_tangent);
+    visit_in_parallel(layer.receivers.size(), [&](std::size_t i) {
+      const filters::Receiver& receiver = layer.receivers[i];
+      put_share(image[find_pixel(receiver, view.width, view.height)], receiver, closer.at(receiver));
+    });
+  }
+  return image;
+}
 
 MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera& camera,
                              const std::vector<TracedLayer>& layers, const images::Image& depth_map) {
@@ -387,32 +391,6 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
   coverage.record.map_filled = static_cast<double>(filled) / static_cast<double>(depth_map.texels.size());
   return coverage;
 }
-
-namespace {
-
-/// The size of a texel at a point, in the finest of the layers that hold it; metres. Infinity where none does.
-double find_texel_size(const std::vector<scene::LightFrustum>& layers, const glm::dvec3& point_ws, int map_size) {
-  double finest = std::numeric_limits<double>::infinity();
-  for (const scene::LightFrustum& layer : layers) {
-    const glm::dvec3 place = layer.place(point_ws, map_size);
-    const bool is_inside = place.x >= 0.0 && place.x <= map_size && place.y >= 0.0 && place.y <= map_size &&
-                           place.z >= 0.0 && place.z <= 1.0;
-    if (is_inside) finest = std::min(finest, layer.texel_size_at(point_ws));
-  }
-  return finest;
-}
-
-/// The value below which those lie that make up half of the sum of all. Requires one that is above 0.
-double find_weighted_median(std::vector<double> values) {
-  std::ranges::sort(values);
-  double sum = 0.0, below = 0.0;
-  for (const double value : values) sum += value;
-  for (const double value : values)
-    if ((below += value) >= 0.5 * sum) return value;
-  return values.back();
-}
-
-}  // namespace
 
 std::optional<double> find_light_sigma(const scene::EdgeMeter& meter, const options::RunOptions& options,
                                        const MapFit& fit) {

@@ -12,8 +12,8 @@
 #include "harness/gl/context/context.h"
 #include "harness/gpu/gpu.h"
 #include "harness/render/bias.h"
+#include "harness/scene/lights/light.h"
 #include "harness/scene/lights/light_fit.h"
-#include "harness/scene/lights/light_kinds.h"
 #include "report/images/figure.h"
 
 namespace shadowbench::options {

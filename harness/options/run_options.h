@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "harness/options/options.h"
-#include "harness/scene/lights/light_kinds.h"
+#include "harness/scene/lights/light.h"
 
 namespace shadowbench::options {
 

@@ -189,60 +189,6 @@ images::Metadata describe_task(const options::RunOptions& options, const measure
   return metadata;
 }
 
-}  // namespace
-
-std::string exr_name(const options::RunOptions& options, const measure::SceneTask& task) {
-  return task_stem(options, task) + ".exr";
-}
-
-std::string picture_part(const std::string& label) { return label + ".picture"; }
-
-std::string error_part(const std::string& label, const records::ErrorPart& part) {
-  return fmt::format("{}.error.{}", label, part.id);
-}
-
-void take_float_images(measure::MeasuredCell& cell, std::vector<images::Part>& parts) {
-  const auto take = [&](const std::string& name, images::Image& image) {
-    if (const auto part = std::ranges::find(parts, name, &images::Part::name); part != parts.end())
-      image = std::move(part->image);
-  };
-  cell.error_parts.resize(records::list_error_parts().size());
-  const auto cascades = std::ranges::count_if(
-      parts, [&](const images::Part& part) { return part.name.starts_with(cell.label + ".cascade."); });
-  cell.cascades.resize(static_cast<std::size_t>(cascades));
-  visit_drawn(cell, {}, take);
-  visit_known(cell, take);
-  if (std::ranges::all_of(cell.error_parts, &images::Image::empty)) cell.error_parts.clear();
-}
-
-void write_float_images(const options::RunOptions& options, const measure::SceneTask& task,
-                        const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
-                        const gl::GlInfo& info) {
-  std::vector<images::Part> parts;
-  const auto add = [&](const std::string& name, const images::Image& image) { add_part(parts, name, image); };
-  const KeptParts kept = choose_parts(options, *task.scene);
-  for (const measure::MeasuredCell& cell : measured.cells) visit_drawn(cell, kept, add);
-  for (const measure::MeasuredCell& cell : measured.cells) visit_known(cell, add);
-  if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
-  if (kept.receivers) add_receiver_parts(parts, truth.receivers.image);
-  if (truth.absent.empty() && kept.receivers) add_part(parts, kBlockerPart, make_blocker_image(truth));
-  if (truth.absent.empty() && kept.picture) add_part(parts, kTruthPicturePart, truth.area_picture);
-  if (kept.receivers) parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
-  add_part(parts, kAmbientPart, measured.ambient);
-  images::write_exr(options.out / exr_name(options, task), parts, describe_task(options, task, measured, info));
-}
-
-void note_float_images(const options::RunOptions& options, const measure::SceneTask& task,
-                       measure::SceneMeasurement& measured) {
-  for (measure::MeasuredCell& cell : measured.cells) {
-    cell.record.images.exr = exr_name(options, task);
-    cell.record.images.parts = cell.label;
-    if (!options.pictures) cell.record.absent["images"] = "the run was made with --no-pictures";
-  }
-}
-
-namespace {
-
 /// Texels around those that receivers lie in, which kernels and penumbrae read.
 constexpr int kMarginTexels = 64;
 
@@ -307,6 +253,56 @@ live::Check make_check(measure::Renderer& renderer, const options::RunOptions& o
 }
 
 }  // namespace
+
+std::string exr_name(const options::RunOptions& options, const measure::SceneTask& task) {
+  return task_stem(options, task) + ".exr";
+}
+
+std::string picture_part(const std::string& label) { return label + ".picture"; }
+
+std::string error_part(const std::string& label, const records::ErrorPart& part) {
+  return fmt::format("{}.error.{}", label, part.id);
+}
+
+void take_float_images(measure::MeasuredCell& cell, std::vector<images::Part>& parts) {
+  const auto take = [&](const std::string& name, images::Image& image) {
+    if (const auto part = std::ranges::find(parts, name, &images::Part::name); part != parts.end())
+      image = std::move(part->image);
+  };
+  cell.error_parts.resize(records::list_error_parts().size());
+  const auto cascades = std::ranges::count_if(
+      parts, [&](const images::Part& part) { return part.name.starts_with(cell.label + ".cascade."); });
+  cell.cascades.resize(static_cast<std::size_t>(cascades));
+  visit_drawn(cell, {}, take);
+  visit_known(cell, take);
+  if (std::ranges::all_of(cell.error_parts, &images::Image::empty)) cell.error_parts.clear();
+}
+
+void write_float_images(const options::RunOptions& options, const measure::SceneTask& task,
+                        const measure::SceneMeasurement& measured, const measure::SceneTruth& truth,
+                        const gl::GlInfo& info) {
+  std::vector<images::Part> parts;
+  const auto add = [&](const std::string& name, const images::Image& image) { add_part(parts, name, image); };
+  const KeptParts kept = choose_parts(options, *task.scene);
+  for (const measure::MeasuredCell& cell : measured.cells) visit_drawn(cell, kept, add);
+  for (const measure::MeasuredCell& cell : measured.cells) visit_known(cell, add);
+  if (truth.absent.empty()) add_truth_parts(parts, truth, measured.masks);
+  if (kept.receivers) add_receiver_parts(parts, truth.receivers.image);
+  if (truth.absent.empty() && kept.receivers) add_part(parts, kBlockerPart, make_blocker_image(truth));
+  if (truth.absent.empty() && kept.picture) add_part(parts, kTruthPicturePart, truth.area_picture);
+  if (kept.receivers) parts.push_back({"depth_map", {"Z"}, measured.depth_map, false});
+  add_part(parts, kAmbientPart, measured.ambient);
+  images::write_exr(options.out / exr_name(options, task), parts, describe_task(options, task, measured, info));
+}
+
+void note_float_images(const options::RunOptions& options, const measure::SceneTask& task,
+                       measure::SceneMeasurement& measured) {
+  for (measure::MeasuredCell& cell : measured.cells) {
+    cell.record.images.exr = exr_name(options, task);
+    cell.record.images.parts = cell.label;
+    if (!options.pictures) cell.record.absent["images"] = "the run was made with --no-pictures";
+  }
+}
 
 void write_frames(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
                   measure::SceneAssets& assets, measure::SceneMeasurement& measured) {

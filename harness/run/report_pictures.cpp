@@ -13,7 +13,6 @@
 #include <tuple>
 
 #include "base/bytes.h"
-#include "harness/measure/scene_assets.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/picture_passes.h"
 #include "harness/run/float_images.h"
@@ -127,30 +126,6 @@ images::Grid make_grid(const std::vector<Lit>& lights, const records::GlRecord& 
   if (!grid.tiles.empty()) grid.exposure = choose_exposure(grid.tiles.front().picture);
   return grid;
 }
-
-}  // namespace
-
-void draw_all_lights(const options::RunOptions& options, const RunPlan& plan, const records::GlRecord& gl) {
-  for (std::vector<Lit>& lights : group_lights(plan)) {
-    if (!std::ranges::all_of(lights, [&](Lit& lit) { return read_lights(lit, options); })) continue;
-    const images::Grid grid = make_grid(lights, gl);
-    if (grid.tiles.empty()) continue;
-    const Lit& first = lights.front();
-    const std::string stem = task_stem(first.scene->options, first.task->task);
-    const std::string file = files::make_file_stem(scene::name_without_light(first.scene->scene)) +
-                             stem.substr(files::make_file_stem(first.scene->scene.name).size()) +
-                             ".all_lights.grid.png";
-    images::write_grid(options.out / file, grid);
-    for (Lit& lit : lights) {
-      for (records::CellRecord& cell : lit.cells) {
-        cell.images.all_lights = file;
-        records::write_cell(options.out, cell);
-      }
-    }
-  }
-}
-
-namespace {
 
 /// Samples of a part: their G-buffer takes 268 MB.
 constexpr int kMostSamples = 1 << 23;
@@ -289,6 +264,26 @@ std::vector<ShownCell> list_shown(const RunPlan& plan, std::vector<records::Cell
 }
 
 }  // namespace
+
+void draw_all_lights(const options::RunOptions& options, const RunPlan& plan, const records::GlRecord& gl) {
+  for (std::vector<Lit>& lights : group_lights(plan)) {
+    if (!std::ranges::all_of(lights, [&](Lit& lit) { return read_lights(lit, options); })) continue;
+    const images::Grid grid = make_grid(lights, gl);
+    if (grid.tiles.empty()) continue;
+    const Lit& first = lights.front();
+    const std::string stem = task_stem(first.scene->options, first.task->task);
+    const std::string file = files::make_file_stem(scene::name_without_light(first.scene->scene)) +
+                             stem.substr(files::make_file_stem(first.scene->scene.name).size()) +
+                             ".all_lights.grid.png";
+    images::write_grid(options.out / file, grid);
+    for (Lit& lit : lights) {
+      for (records::CellRecord& cell : lit.cells) {
+        cell.images.all_lights = file;
+        records::write_cell(options.out, cell);
+      }
+    }
+  }
+}
 
 void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan, truth::TruthCache& cache,
                                 std::vector<records::CellRecord>& cells) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -24,7 +23,6 @@ struct PlannedTask {
   measure::SceneTask task;            ///< its filters are those still to be measured
   std::vector<std::string> keys;      ///< of all its cells, measured or not
   std::vector<std::string> contents;  ///< of those still to be measured; names of all that a cell is made from
-  bool is_traced = false;             ///< an earlier run traced its truths, and the cache may have them
 };
 
 /// What a run is to measure, in the order of its records: picture size, scene, light, fit, view, map size, filter.
@@ -66,24 +64,5 @@ std::vector<scene::Scene> load_scenes(const options::RunOptions& options);
 /// What the user is to know of one light's scene before it is measured: the warnings of loading, which other lights of
 /// the scene repeat, and whether its light shows nothing.
 std::vector<std::string> list_scene_warnings(const options::RunOptions& options, const scene::Scene& scene);
-
-/// Gives the seconds that the cells of a task presumably take but for their timing, from the sizes of picture and map,
-/// the number of cores, and what the cache has.
-double presume_task_s(const PlannedScene& scene, const PlannedTask& task);
-
-/// The same of their timing.
-double presume_timing_s(const PlannedScene& scene, const PlannedTask& task);
-
-/// The same of the report at the end.
-double presume_report_s(const RunPlan& plan);
-
-/// What is known of a run's time before it begins.
-struct TimeForecast {
-  double seconds = 0.0;
-  std::string text;  ///< "; about 90 s: 16 s of timing, the rest ray tracing and images"
-};
-
-/// Forecasts the time of the cells that are left.
-TimeForecast forecast_time(const RunPlan& plan);
 
 }  // namespace shadowbench::run

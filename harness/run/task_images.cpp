@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
-#include "harness/measure/scene_assets.h"
 #include "harness/render/picture_passes.h"
 #include "report/files/file_name.h"
 #include "report/images/color_values.h"
@@ -96,55 +94,6 @@ FileJob plan_truth_pictures(const std::filesystem::path& out, const std::string&
          {"mask", images::make_image(truth.area.width, truth.area.height, truth.mask)}});
   };
 }
-
-}  // namespace
-
-images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images::Size size) {
-  const auto is_suspect = [](const measure::MeasuredCell& cell) { return !cell.record.suspect_of.empty(); };
-  const bool all_are = std::ranges::all_of(cells, is_suspect);
-  std::vector<const images::Image*> visibility;
-  std::size_t reference = 0;
-  for (const measure::MeasuredCell& cell : cells) {
-    if (is_suspect(cell) && !all_are) continue;
-    if (cell.record.filter == "none") reference = visibility.size();
-    visibility.push_back(&cell.visibility);
-  }
-  return images::find_hardest_edge(visibility, reference, size);
-}
-
-std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task) {
-  std::string name = task.scene->name;
-  if (task.scene->cameras.size() > 1) name += "." + task.camera->name;
-  if (options.map_sizes.size() > 1) name += fmt::format(".map{}", task.map_size);
-  if (options.fits.size() > 1)
-    name += "." + records::make_fit_stem(scene::describe_fit(options.fit), scene::describe_fits(options.fits));
-  if (options.sizes.size() > 1) name += fmt::format(".{}x{}", options.width, options.height);
-  return files::make_file_stem(name);
-}
-
-void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                         measure::MeasuredCell& cell, const std::vector<std::uint8_t>& mask) {
-  note_cell_pictures(task_stem(options, task), cell);
-  write_noted_pictures(options.out, cell, mask);
-}
-
-std::vector<FileJob> plan_pictures(const options::RunOptions& options, const measure::SceneTask& task,
-                                   measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
-  const std::string stem = task_stem(options, task);
-  std::vector<FileJob> jobs;
-  for (measure::MeasuredCell& cell : measured.cells) {
-    note_cell_pictures(stem, cell);
-    jobs.emplace_back([&out = options.out, &cell, &mask = truth.mask] { write_noted_pictures(out, cell, mask); });
-  }
-  if (truth.absent.empty()) jobs.push_back(plan_truth_pictures(options.out, stem, measured, truth));
-  return jobs;
-}
-
-std::string name_grid(const options::RunOptions& options, const measure::SceneTask& task) {
-  return task_stem(options, task) + (options.grid_width.in_inches ? ".grid.svg" : ".grid.png");
-}
-
-namespace {
 
 /// The picture to lay the texels over: unfiltered where there is one, so that aliasing shows; null where nothing was
 /// drawn.
@@ -244,6 +193,51 @@ class TilePainter {
 };
 
 }  // namespace
+
+images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images::Size size) {
+  const auto is_suspect = [](const measure::MeasuredCell& cell) { return !cell.record.suspect_of.empty(); };
+  const bool all_are = std::ranges::all_of(cells, is_suspect);
+  std::vector<const images::Image*> visibility;
+  std::size_t reference = 0;
+  for (const measure::MeasuredCell& cell : cells) {
+    if (is_suspect(cell) && !all_are) continue;
+    if (cell.record.filter == "none") reference = visibility.size();
+    visibility.push_back(&cell.visibility);
+  }
+  return images::find_hardest_edge(visibility, reference, size);
+}
+
+std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task) {
+  std::string name = task.scene->name;
+  if (task.scene->cameras.size() > 1) name += "." + task.camera->name;
+  if (options.map_sizes.size() > 1) name += fmt::format(".map{}", task.map_size);
+  if (options.fits.size() > 1)
+    name += "." + records::make_fit_stem(scene::describe_fit(options.fit), scene::describe_fits(options.fits));
+  if (options.sizes.size() > 1) name += fmt::format(".{}x{}", options.width, options.height);
+  return files::make_file_stem(name);
+}
+
+void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                         measure::MeasuredCell& cell, const std::vector<std::uint8_t>& mask) {
+  note_cell_pictures(task_stem(options, task), cell);
+  write_noted_pictures(options.out, cell, mask);
+}
+
+std::vector<FileJob> plan_pictures(const options::RunOptions& options, const measure::SceneTask& task,
+                                   measure::SceneMeasurement& measured, const measure::SceneTruth& truth) {
+  const std::string stem = task_stem(options, task);
+  std::vector<FileJob> jobs;
+  for (measure::MeasuredCell& cell : measured.cells) {
+    note_cell_pictures(stem, cell);
+    jobs.emplace_back([&out = options.out, &cell, &mask = truth.mask] { write_noted_pictures(out, cell, mask); });
+  }
+  if (truth.absent.empty()) jobs.push_back(plan_truth_pictures(options.out, stem, measured, truth));
+  return jobs;
+}
+
+std::string name_grid(const options::RunOptions& options, const measure::SceneTask& task) {
+  return task_stem(options, task) + (options.grid_width.in_inches ? ".grid.svg" : ".grid.png");
+}
 
 std::vector<FileJob> plan_map_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                                        measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,

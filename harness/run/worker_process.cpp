@@ -15,7 +15,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -139,6 +138,12 @@ measure::MeasuredCell read_cell(const options::RunOptions& options, const measur
   return cell;
 }
 
+void check_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
+                       const filters::FilterRequest& request, const WorkerScene& scene) {
+  const ScratchFolder folder(make_temporary_folder_path(options.out, "worker"));
+  run_filter_worker(make_worker_options(options, task, request, folder.path()), request, scene, "--check");
+}
+
 }  // namespace
 
 WorkerProcess::WorkerProcess(const std::vector<std::string>& arguments, const WorkerSetup& setup) {
@@ -240,16 +245,6 @@ measure::MeasuredCell measure_user_filter(const options::RunOptions& options, co
   live::copy_frames(own.out, options.out);
   return read_cell(own, task, request);
 }
-
-namespace {
-
-void check_user_filter(const options::RunOptions& options, const measure::SceneTask& task,
-                       const filters::FilterRequest& request, const WorkerScene& scene) {
-  const ScratchFolder folder(make_temporary_folder_path(options.out, "worker"));
-  run_filter_worker(make_worker_options(options, task, request, folder.path()), request, scene, "--check");
-}
-
-}  // namespace
 
 void check_user_filters(const RunPlan& plan, const std::string& backend) {
   std::set<std::string> checked;  // ids

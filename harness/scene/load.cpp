@@ -10,18 +10,15 @@
 #include <glm/gtx/component_wise.hpp>
 #include <map>
 #include <new>
-#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/text.h"
-#include "base/toml.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -274,39 +271,6 @@ class SceneBuilder {
   std::size_t corner_count_ = 0;
 };
 
-}  // namespace
-
-Camera read_camera(const TomlTable& table, const glm::dvec3& origin) {
-  table.require_known_keys({"name", "light", "position", "target", "up", "vertical_fov_deg", "orthographic_height"});
-  Camera camera;
-  camera.name = table.string("name", camera.name);
-  camera.light = table.string("light", "");
-  const glm::dvec3 position = table.vec3("position", kAnyNumber);
-  const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;
-  if (glm::length(ahead) == 0.0) throw table.error("target", "the camera's target is its position");
-  camera.position_ws = glm::vec3(position - origin);
-  camera.forward_ws = glm::vec3(is_unit(ahead) ? ahead : glm::normalize(ahead));
-  camera.up_ws = glm::vec3(table.vec3("up", kAnyNumber, glm::dvec3(0.0, 1.0, 0.0)));
-  if (!table.has("orthographic_height")) {
-    camera.vertical_fov_rad = static_cast<float>(glm::radians(table.number("vertical_fov_deg", kFovDeg, 45.0)));
-    return camera;
-  }
-  if (table.has("vertical_fov_deg"))
-    throw table.error("orthographic_height",
-                      table.title() + " has both a 'vertical_fov_deg' and an 'orthographic_height': give one");
-  camera.orthographic_height_m = table.number_f("orthographic_height", kPositive);
-  return camera;
-}
-
-Scene load_scene(const std::filesystem::path& file, double aspect, const std::optional<SkyAngles>& light) {
-  const TomlTable root = read_toml(file, "the scene");
-  return SceneBuilder(root, file).build({.aspect = aspect, .light = light});
-}
-
-std::string read_scene_title(const std::filesystem::path& file) { return read_toml(file, "the scene").string("title"); }
-
-namespace {
-
 namespace fs = std::filesystem;
 
 /// Scene files of a folder, by name.
@@ -420,25 +384,6 @@ std::vector<SceneInfo> with_titles(const std::vector<fs::path>& files) {
   return scenes;
 }
 
-}  // namespace
-
-std::vector<SceneInfo> list_scenes(const fs::path& folder) { return with_titles(scene_files(folder)); }
-
-std::vector<SceneInfo> list_teaching_scenes(const fs::path& folder) { return with_titles(teaching_files(folder)); }
-
-fs::path find_scene_file(const std::string& name_or_path, const fs::path& scenes_folder) {
-  if (!is_path(name_or_path)) return find_named(name_or_path, scenes_folder);
-  return is_folder(name_or_path) ? find_scene_in(name_or_path) : fs::path(name_or_path);
-}
-
-Scene load(const std::string& name_or_path, const LoadOptions& options) {
-  return load_file(find_scene_file(name_or_path, options.scenes_folder), options);
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-
 toml::array write_vec3(const glm::vec3& v) { return write_numbers(std::span(&v.x, 3)); }
 
 /// Degrees that are read back as the same angle: few digits where these do.
@@ -517,6 +462,48 @@ toml::table write_model(const ShownScene& shown, const fs::path& file) {
 }
 
 }  // namespace
+
+Camera read_camera(const TomlTable& table, const glm::dvec3& origin) {
+  table.require_known_keys({"name", "light", "position", "target", "up", "vertical_fov_deg", "orthographic_height"});
+  Camera camera;
+  camera.name = table.string("name", camera.name);
+  camera.light = table.string("light", "");
+  const glm::dvec3 position = table.vec3("position", kAnyNumber);
+  const glm::dvec3 ahead = table.vec3("target", kAnyNumber) - position;
+  if (glm::length(ahead) == 0.0) throw table.error("target", "the camera's target is its position");
+  camera.position_ws = glm::vec3(position - origin);
+  camera.forward_ws = glm::vec3(is_unit(ahead) ? ahead : glm::normalize(ahead));
+  camera.up_ws = glm::vec3(table.vec3("up", kAnyNumber, glm::dvec3(0.0, 1.0, 0.0)));
+  if (!table.has("orthographic_height")) {
+    camera.vertical_fov_rad = static_cast<float>(glm::radians(table.number("vertical_fov_deg", kFovDeg, 45.0)));
+    return camera;
+  }
+  if (table.has("vertical_fov_deg"))
+    throw table.error("orthographic_height",
+                      table.title() + " has both a 'vertical_fov_deg' and an 'orthographic_height': give one");
+  camera.orthographic_height_m = table.number_f("orthographic_height", kPositive);
+  return camera;
+}
+
+Scene load_scene(const std::filesystem::path& file, double aspect, const std::optional<SkyAngles>& light) {
+  const TomlTable root = read_toml(file, "the scene");
+  return SceneBuilder(root, file).build({.aspect = aspect, .light = light});
+}
+
+std::string read_scene_title(const std::filesystem::path& file) { return read_toml(file, "the scene").string("title"); }
+
+std::vector<SceneInfo> list_scenes(const fs::path& folder) { return with_titles(scene_files(folder)); }
+
+std::vector<SceneInfo> list_teaching_scenes(const fs::path& folder) { return with_titles(teaching_files(folder)); }
+
+fs::path find_scene_file(const std::string& name_or_path, const fs::path& scenes_folder) {
+  if (!is_path(name_or_path)) return find_named(name_or_path, scenes_folder);
+  return is_folder(name_or_path) ? find_scene_in(name_or_path) : fs::path(name_or_path);
+}
+
+Scene load(const std::string& name_or_path, const LoadOptions& options) {
+  return load_file(find_scene_file(name_or_path, options.scenes_folder), options);
+}
 
 std::string name_from(const fs::path& file, const fs::path& from) {
   const fs::path written = fs::absolute(from).lexically_normal().parent_path();

@@ -4,15 +4,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <tuple>
 #include <utility>
 
 namespace shadowbench::scene {
 namespace {
-
-constexpr std::size_t kLeafFaces = 16;
-constexpr double kCosineRounding = 1e-12;  // of a cosine: nearer to the limit, each face is looked at
 
 /// The inverse transpose times the determinant, which also exists for flattened meshes.
 glm::dmat3 cofactor_matrix(const glm::dmat3& m) {
@@ -48,8 +44,11 @@ class VertexTransform {
 
 using Position = std::tuple<float, float, float>;
 
-/// Where more faces meet, a tree sums their normals, since to compare each with each would take their square.
-constexpr std::size_t kFewFaces = 64;
+/// A triangle's normal times twice its area, and its unit normal, zero where it has no area.
+struct FaceNormal {
+  glm::dvec3 area_normal;
+  glm::dvec3 normal;
+};
 
 std::vector<FaceNormal> face_normals(const Mesh& mesh) {
   std::vector<FaceNormal> faces;
@@ -62,24 +61,6 @@ std::vector<FaceNormal> face_normals(const Mesh& mesh) {
   }
   return faces;
 }
-
-/// The faces that meet at a point.
-struct Meeting {
-  std::vector<std::size_t> faces;
-  std::optional<NormalTree> tree;
-
-  /// The sum of the area normals of those that turn little from `normal`.
-  glm::dvec3 sum(const std::vector<FaceNormal>& all, const glm::dvec3& normal, double least_cosine) {
-    if (faces.size() > kFewFaces) {
-      if (!tree) tree.emplace(all, faces);
-      return tree->sum(normal, least_cosine);
-    }
-    glm::dvec3 sum(0.0);
-    for (const std::size_t face : faces)
-      if (glm::dot(all[face].normal, normal) >= least_cosine) sum += all[face].area_normal;
-    return sum;
-  }
-};
 
 /// Numbers the places of a mesh's vertices, the same for vertices at the same place.
 std::vector<int> number_places(const Mesh& mesh) {
@@ -99,159 +80,6 @@ Mesh without_geometry(const Mesh& mesh) {
   copy.casts_shadow = mesh.casts_shadow;
   return copy;
 }
-
-}  // namespace
-
-glm::dvec3 area_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  return glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-}
-
-Mesh transform_mesh(Mesh mesh, const glm::dmat4& world_from_local) {
-  const VertexTransform transform(world_from_local);
-  for (Vertex& vertex : mesh.vertices) vertex = transform(vertex);
-  if (!transform.mirrors()) return mesh;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-  return mesh;
-}
-
-Mesh transform_mesh(Mesh mesh, const std::function<glm::dmat4(std::size_t vertex)>& world_from_local) {
-  std::vector<bool> mirrored;
-  mirrored.reserve(mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const VertexTransform transform(world_from_local(i));
-    mesh.vertices[i] = transform(mesh.vertices[i]);
-    mirrored.push_back(transform.mirrors());
-  }
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    if (mirrored[mesh.indices[i]]) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-  return mesh;
-}
-
-Mesh join_meshes(Mesh first, const Mesh& second) {
-  const auto offset = static_cast<std::uint32_t>(first.vertices.size());
-  first.vertices.insert(first.vertices.end(), second.vertices.begin(), second.vertices.end());
-  for (const std::uint32_t index : second.indices) first.indices.push_back(index + offset);
-  return first;
-}
-
-Mesh with_flat_normals(const Mesh& mesh) {
-  const std::vector<FaceNormal> faces = face_normals(mesh);
-  Mesh flat = without_geometry(mesh);
-  flat.vertices.reserve(mesh.indices.size());
-  flat.indices.reserve(mesh.indices.size());
-  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-    Vertex vertex = mesh.vertices[mesh.indices[i]];
-    vertex.normal_ws = glm::vec3(faces[i / 3].normal);
-    flat.vertices.push_back(vertex);
-    flat.indices.push_back(static_cast<std::uint32_t>(i));
-  }
-  return flat;
-}
-
-Mesh with_smooth_normals(const Mesh& mesh, double crease_deg) {
-  const double least_cosine = std::cos(glm::radians(crease_deg));
-  const std::vector<FaceNormal> faces = face_normals(mesh);
-  const auto position_of = [&](std::size_t corner) {
-    const glm::vec3& p = mesh.vertices[mesh.indices[corner]].position_ws;
-    return Position(p.x, p.y, p.z);
-  };
-  std::map<Position, Meeting> meetings;
-  for (std::size_t i = 0; i < mesh.indices.size(); ++i) meetings[position_of(i)].faces.push_back(i / 3);
-
-  Mesh smooth = with_flat_normals(mesh);
-  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-    const glm::dvec3 sum = meetings[position_of(i)].sum(faces, faces[i / 3].normal, least_cosine);
-    if (glm::length(sum) > 0.0) smooth.vertices[i].normal_ws = glm::vec3(glm::normalize(sum));
-  }
-  return smooth;
-}
-
-Mesh without_unused_vertices(Mesh mesh) {
-  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
-  std::vector<std::uint32_t> new_index(mesh.vertices.size(), kUnused);
-  std::vector<Vertex> used;
-  used.reserve(std::min(mesh.vertices.size(), mesh.indices.size()));
-  for (std::uint32_t& index : mesh.indices) {
-    if (new_index[index] == kUnused) {
-      new_index[index] = static_cast<std::uint32_t>(used.size());
-      used.push_back(mesh.vertices[index]);
-    }
-    index = new_index[index];
-  }
-  mesh.vertices = std::move(used);
-  return mesh;
-}
-
-bool is_closed(const Mesh& mesh) {
-  const std::vector<int> places = number_places(mesh);
-  std::map<std::pair<int, int>, int> balance;  // edges of lower to higher number count up, the others down
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const int corner[] = {places[mesh.indices[i]], places[mesh.indices[i + 1]], places[mesh.indices[i + 2]]};
-    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
-    for (int k = 0; k < 3; ++k) {
-      const int a = corner[k], b = corner[(k + 1) % 3];
-      balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
-    }
-  }
-  return !balance.empty() &&
-         std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
-}
-
-glm::dvec3 axis_least_parallel(const glm::dvec3& direction) {
-  const glm::dvec3 size = glm::abs(direction);
-  if (size.z <= size.x && size.z <= size.y) return {0.0, 0.0, 1.0};
-  return size.x <= size.y ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
-}
-
-NormalTree::NormalTree(const std::vector<FaceNormal>& all, const std::vector<std::size_t>& faces) {
-  for (const std::size_t face : faces) faces_.push_back(all[face]);
-  build(0, faces_.size());
-}
-
-void NormalTree::build(std::size_t begin, std::size_t end) {
-  const std::size_t at = nodes_.size();
-  Node node{begin, end, faces_[begin].normal, faces_[begin].normal};
-  for (std::size_t i = begin; i < end; ++i) {
-    node.low = glm::min(node.low, faces_[i].normal);
-    node.high = glm::max(node.high, faces_[i].normal);
-    node.sum += faces_[i].area_normal;
-  }
-  nodes_.push_back(node);
-  if (end - begin <= kLeafFaces) return;
-  const glm::dvec3 size = node.high - node.low;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const std::size_t middle = begin + (end - begin) / 2;
-  const auto place = [&](std::size_t i) { return faces_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(place(begin), place(middle), place(end),
-                   [&](const FaceNormal& a, const FaceNormal& b) { return a.normal[axis] < b.normal[axis]; });
-  build(begin, middle);
-  nodes_[at].second = nodes_.size();
-  build(middle, end);
-}
-
-glm::dvec3 NormalTree::sum(const glm::dvec3& direction, double least_cosine) const {
-  glm::dvec3 total(0.0);
-  std::vector<std::size_t> open{0};
-  while (!open.empty()) {
-    const std::size_t at = open.back();
-    const Node& node = nodes_[at];
-    open.pop_back();
-    const glm::dvec3 a = direction * node.low, b = direction * node.high;
-    const glm::dvec3 least = glm::min(a, b), most = glm::max(a, b);
-    if (most.x + most.y + most.z < least_cosine - kCosineRounding) continue;
-    if (least.x + least.y + least.z > least_cosine + kCosineRounding) {
-      total += node.sum;
-    } else if (node.second > 0) {
-      open.insert(open.end(), {node.second, at + 1});
-    } else {
-      for (std::size_t i = node.begin; i < node.end; ++i)
-        if (glm::dot(faces_[i].normal, direction) >= least_cosine) total += faces_[i].area_normal;
-    }
-  }
-  return total;
-}
-
-namespace {
 
 /// A rectangle that faces cross(edge_u, edge_v).
 struct Patch {
@@ -342,6 +170,122 @@ Mesh move_by(Mesh mesh, glm::vec3 offset) {
 }
 
 }  // namespace
+
+glm::dvec3 area_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  return glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+}
+
+Mesh transform_mesh(Mesh mesh, const glm::dmat4& world_from_local) {
+  const VertexTransform transform(world_from_local);
+  for (Vertex& vertex : mesh.vertices) vertex = transform(vertex);
+  if (!transform.mirrors()) return mesh;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  return mesh;
+}
+
+Mesh transform_mesh(Mesh mesh, const std::function<glm::dmat4(std::size_t vertex)>& world_from_local) {
+  std::vector<bool> mirrored;
+  mirrored.reserve(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const VertexTransform transform(world_from_local(i));
+    mesh.vertices[i] = transform(mesh.vertices[i]);
+    mirrored.push_back(transform.mirrors());
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    if (mirrored[mesh.indices[i]]) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  return mesh;
+}
+
+Mesh join_meshes(Mesh first, const Mesh& second) {
+  const auto offset = static_cast<std::uint32_t>(first.vertices.size());
+  first.vertices.insert(first.vertices.end(), second.vertices.begin(), second.vertices.end());
+  for (const std::uint32_t index : second.indices) first.indices.push_back(index + offset);
+  return first;
+}
+
+Mesh with_flat_normals(const Mesh& mesh) {
+  const std::vector<FaceNormal> faces = face_normals(mesh);
+  Mesh flat = without_geometry(mesh);
+  flat.vertices.reserve(mesh.indices.size());
+  flat.indices.reserve(mesh.indices.size());
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    Vertex vertex = mesh.vertices[mesh.indices[i]];
+    vertex.normal_ws = glm::vec3(faces[i / 3].normal);
+    flat.vertices.push_back(vertex);
+    flat.indices.push_back(static_cast<std::uint32_t>(i));
+  }
+  return flat;
+}
+
+Mesh with_smooth_normals(const Mesh& mesh, double crease_deg) {
+  constexpr std::size_t kFewFaces = 64;
+  const double crease_cosine = std::cos(glm::radians(crease_deg));
+  const std::vector<FaceNormal> faces = face_normals(mesh);
+  const auto position_of = [&](std::size_t corner) {
+    const glm::vec3& p = mesh.vertices[mesh.indices[corner]].position_ws;
+    return Position(p.x, p.y, p.z);
+  };
+  struct Meeting {
+    std::vector<std::size_t> faces;
+    glm::dvec3 sum{0.0};  ///< of all area normals
+  };
+  std::map<Position, Meeting> meetings;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    Meeting& meeting = meetings[position_of(i)];
+    meeting.faces.push_back(i / 3);
+    meeting.sum += faces[i / 3].area_normal;
+  }
+
+  Mesh smooth = with_flat_normals(mesh);
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    const Meeting& meeting = meetings[position_of(i)];
+    glm::dvec3 sum = meeting.sum;
+    if (meeting.faces.size() <= kFewFaces) {
+      sum = glm::dvec3(0.0);
+      for (const std::size_t face : meeting.faces)
+        if (glm::dot(faces[face].normal, faces[i / 3].normal) >= crease_cosine) sum += faces[face].area_normal;
+    }
+    if (glm::length(sum) > 0.0) smooth.vertices[i].normal_ws = glm::vec3(glm::normalize(sum));
+  }
+  return smooth;
+}
+
+Mesh without_unused_vertices(Mesh mesh) {
+  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+  std::vector<std::uint32_t> new_index(mesh.vertices.size(), kUnused);
+  std::vector<Vertex> used;
+  used.reserve(std::min(mesh.vertices.size(), mesh.indices.size()));
+  for (std::uint32_t& index : mesh.indices) {
+    if (new_index[index] == kUnused) {
+      new_index[index] = static_cast<std::uint32_t>(used.size());
+      used.push_back(mesh.vertices[index]);
+    }
+    index = new_index[index];
+  }
+  mesh.vertices = std::move(used);
+  return mesh;
+}
+
+bool is_closed(const Mesh& mesh) {
+  const std::vector<int> places = number_places(mesh);
+  std::map<std::pair<int, int>, int> balance;  // edges of lower to higher number count up, the others down
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const int corner[] = {places[mesh.indices[i]], places[mesh.indices[i + 1]], places[mesh.indices[i + 2]]};
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int a = corner[k], b = corner[(k + 1) % 3];
+      balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  }
+  return !balance.empty() &&
+         std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
+glm::dvec3 axis_least_parallel(const glm::dvec3& direction) {
+  const glm::dvec3 size = glm::abs(direction);
+  if (size.z <= size.x && size.z <= size.y) return {0.0, 0.0, 1.0};
+  return size.x <= size.y ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+}
 
 Mesh make_plane(glm::vec2 size_m, int cells) {
   const glm::vec3 corner(-0.5f * size_m.x, 0.0f, 0.5f * size_m.y);

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
-#include <vector>
 
 #include "harness/scene/scene.h"
 
@@ -25,7 +23,8 @@ Mesh join_meshes(Mesh first, const Mesh& second);
 Mesh with_flat_normals(const Mesh& mesh);
 
 /// Every corner the mean normal, weighted by area, of the faces around it that turn by less than `crease_deg`.
-/// Corners belong together where their positions are equal. Requires indices in range.
+/// Corners belong together where their positions are equal. Where more than 64 faces meet, all of them count: to
+/// compare each with each would take their square. Requires indices in range.
 Mesh with_smooth_normals(const Mesh& mesh, double crease_deg);
 
 /// Drops vertices that no triangle uses. Requires indices in range.
@@ -41,36 +40,6 @@ glm::dvec3 area_normal(const glm::vec3& a, const glm::vec3& b, const glm::vec3& 
 
 /// The coordinate axis that is least parallel to a direction.
 glm::dvec3 axis_least_parallel(const glm::dvec3& direction);
-
-/// A triangle's normal times twice its area, and its unit normal, zero where it has no area.
-struct FaceNormal {
-  glm::dvec3 area_normal;
-  glm::dvec3 normal;
-};
-
-/// Sums the normals of many faces within an angle of a direction, without a look at each: a k-d tree of unit normals.
-/// Cost: n log n to make; a sum takes some sqrt(n) steps at most where the normals are spread over the sphere.
-class NormalTree {
- public:
-  /// Requires one face or more.
-  NormalTree(const std::vector<FaceNormal>& all, const std::vector<std::size_t>& faces);
-
-  /// The sum of `area_normal` over the faces whose normal has at least this cosine with a unit direction.
-  glm::dvec3 sum(const glm::dvec3& direction, double least_cosine) const;
-
- private:
-  struct Node {
-    std::size_t begin = 0, end = 0;  ///< faces
-    glm::dvec3 low{0.0}, high{0.0};  ///< bounds of their normals
-    glm::dvec3 sum{0.0};
-    std::size_t second = 0;  ///< the second child, the first one follows its parent; 0: a leaf
-  };
-
-  std::vector<FaceNormal> faces_;
-  std::vector<Node> nodes_;
-
-  void build(std::size_t begin, std::size_t end);
-};
 
 /// Makes a rectangle in the plane y = 0, centred on the origin and facing +y.
 /// `size_m` is its extent along x and z; it has cells x cells quads, so that no triangle is a giant.

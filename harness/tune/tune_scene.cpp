@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "harness/measure/cell_analysis.h"
-#include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_truth.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/render/picture_passes.h"

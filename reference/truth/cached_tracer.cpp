@@ -120,11 +120,6 @@ void TruthCache::store(const std::string& name, const Layers& layers) {
   }
 }
 
-bool TruthCache::has(const std::string& name) const {
-  std::error_code ignored;
-  return !folder_.empty() && std::filesystem::is_regular_file(path_of(name), ignored);
-}
-
 void TruthCache::prune(std::uintmax_t max_bytes) const {
   if (!is_ours_) return;
   struct Entry {

@@ -32,9 +32,6 @@ class TruthCache {
 
   void store(const std::string& name, const Layers& layers);
 
-  /// Whether something is kept under a name; nobody reads whether it is whole.
-  bool has(const std::string& name) const;
-
   /// Deletes the files that were used longest ago until the folder holds at most `max_bytes`: no others than this class
   /// wrote, and in a folder of our own.
   void prune(std::uintmax_t max_bytes) const;

@@ -178,14 +178,6 @@ class MaterialReader {
   std::map<int, int> texture_of_image_;
 };
 
-}  // namespace
-
-GltfMaterials read_gltf_materials(const tinygltf::Model& model, const std::string& where) {
-  return MaterialReader(model, where).read();
-}
-
-namespace {
-
 constexpr std::size_t kMostCorners = std::size_t{3} << 25;
 
 /// Turns the list of a strip's or fan's corners into separate triangles.
@@ -458,6 +450,10 @@ class GltfImporter {
 };
 
 }  // namespace
+
+GltfMaterials read_gltf_materials(const tinygltf::Model& model, const std::string& where) {
+  return MaterialReader(model, where).read();
+}
 
 MeshFile import_gltf(const std::filesystem::path& file, const glm::dvec3& origin) {
   const tinygltf::Model source = parse_gltf(file);

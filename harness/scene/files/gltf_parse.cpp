@@ -233,62 +233,6 @@ bool parse_bytes(tinygltf::TinyGLTF& parser, tinygltf::Model* model, std::string
   }
 }
 
-}  // namespace
-
-bool is_harmless_extension(std::string_view extension) {
-  static const std::set<std::string_view> harmless = {
-#ifdef SHADOWBENCH_HAS_MESHOPT
-      "EXT_meshopt_compression",
-#endif
-      // Read.
-      "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_pbrSpecularGlossiness",
-      "KHR_materials_transmission", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_transform",
-      // How an opaque surface looks beside its colour, what moves, and what describes the file.
-      "KHR_animation_pointer", "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_dispersion",
-      "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_iridescence", "KHR_materials_sheen",
-      "KHR_materials_specular", "KHR_materials_unlit", "KHR_materials_variants", "KHR_xmp_json_ld"};
-  return harmless.contains(extension);
-}
-
-std::size_t read_whole_number(const tinygltf::Value& object, const std::string& key, const std::string& owner,
-                              const std::string& where) {
-  if (object.Has(key) && object.Get(key).IsInt() && object.Get(key).GetNumberAsInt() >= 0)
-    return static_cast<std::size_t>(object.Get(key).GetNumberAsInt());
-  fail_input(fmt::format("{} is compressed, but its extension has no whole number '{}' of 0 or more", owner, key),
-             where);
-}
-
-tinygltf::Model parse_gltf(const fs::path& file) {
-  constexpr int kDeepestJson = 200;
-  const std::string where = file.string();
-  std::vector<unsigned char> bytes = read_file_bytes(file);
-  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) fail_input("the file is larger than 4 GiB", where);
-  if (nesting_depth(json_of(bytes)) > kDeepestJson)
-    fail_input(fmt::format("its JSON is nested more than {} deep", kDeepestJson), where);
-  if (needs_mending(json_of(bytes))) bytes = with_json(bytes, mend_json(json_of(bytes), is_glb(bytes)));
-  FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
-  tinygltf::TinyGLTF parser;
-  parser.SetImageLoader(&keep_encoded, nullptr);
-  set_callbacks(parser, tinygltf::FsCallbacks{}, guard);
-  tinygltf::Model model;
-  std::string failure;
-  const bool parsed = parse_bytes(parser, &model, &failure, bytes, guard.folder);
-  if (!guard.refused.empty()) {
-    fail_input(fmt::format("it refers to '{}', outside its folder; such files are not read", guard.refused.front()),
-               where);
-  }
-  require_readable_extensions(model, where);
-  if (!parsed || !failure.empty()) fail_input("not valid glTF: " + one_line(failure), where);
-  require_version_2(model, where);
-  require_whole_names(model, where);
-#ifdef SHADOWBENCH_HAS_MESHOPT
-  model = unpack_meshopt(std::move(model), where);
-#endif
-  return model;
-}
-
-namespace {
-
 std::string describe(const tinygltf::Model& model, int node) {
   const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
   return name.empty() ? fmt::format("node {}", node) : fmt::format("node {} ('{}')", node, name);
@@ -412,6 +356,58 @@ class VertexPose {
 };
 
 }  // namespace
+
+bool is_harmless_extension(std::string_view extension) {
+  static const std::set<std::string_view> harmless = {
+#ifdef SHADOWBENCH_HAS_MESHOPT
+      "EXT_meshopt_compression",
+#endif
+      // Read.
+      "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_pbrSpecularGlossiness",
+      "KHR_materials_transmission", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_transform",
+      // How an opaque surface looks beside its colour, what moves, and what describes the file.
+      "KHR_animation_pointer", "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_dispersion",
+      "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_iridescence", "KHR_materials_sheen",
+      "KHR_materials_specular", "KHR_materials_unlit", "KHR_materials_variants", "KHR_xmp_json_ld"};
+  return harmless.contains(extension);
+}
+
+std::size_t read_whole_number(const tinygltf::Value& object, const std::string& key, const std::string& owner,
+                              const std::string& where) {
+  if (object.Has(key) && object.Get(key).IsInt() && object.Get(key).GetNumberAsInt() >= 0)
+    return static_cast<std::size_t>(object.Get(key).GetNumberAsInt());
+  fail_input(fmt::format("{} is compressed, but its extension has no whole number '{}' of 0 or more", owner, key),
+             where);
+}
+
+tinygltf::Model parse_gltf(const fs::path& file) {
+  constexpr int kDeepestJson = 200;
+  const std::string where = file.string();
+  std::vector<unsigned char> bytes = read_file_bytes(file);
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) fail_input("the file is larger than 4 GiB", where);
+  if (nesting_depth(json_of(bytes)) > kDeepestJson)
+    fail_input(fmt::format("its JSON is nested more than {} deep", kDeepestJson), where);
+  if (needs_mending(json_of(bytes))) bytes = with_json(bytes, mend_json(json_of(bytes), is_glb(bytes)));
+  FolderGuard guard{fs::absolute(file).lexically_normal().parent_path().string(), {}};
+  tinygltf::TinyGLTF parser;
+  parser.SetImageLoader(&keep_encoded, nullptr);
+  set_callbacks(parser, tinygltf::FsCallbacks{}, guard);
+  tinygltf::Model model;
+  std::string failure;
+  const bool parsed = parse_bytes(parser, &model, &failure, bytes, guard.folder);
+  if (!guard.refused.empty()) {
+    fail_input(fmt::format("it refers to '{}', outside its folder; such files are not read", guard.refused.front()),
+               where);
+  }
+  require_readable_extensions(model, where);
+  if (!parsed || !failure.empty()) fail_input("not valid glTF: " + one_line(failure), where);
+  require_version_2(model, where);
+  require_whole_names(model, where);
+#ifdef SHADOWBENCH_HAS_MESHOPT
+  model = unpack_meshopt(std::move(model), where);
+#endif
+  return model;
+}
 
 const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
   const auto wanted = static_cast<std::size_t>(std::max(0, model.defaultScene));

@@ -9,12 +9,11 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -76,66 +75,6 @@ void require_usable_size(const std::vector<unsigned char>& bytes, const std::str
              where);
 }
 
-}  // namespace
-
-bool is_mesh_file(const std::filesystem::path& file) {
-  const std::string extension = extension_of(file);
-  return is_gltf(extension) || extension == ".obj";
-}
-
-MeshFile import_mesh_file(const std::filesystem::path& file, const glm::dvec3& origin) {
-  const std::string extension = extension_of(file);
-  if (is_gltf(extension)) return import_gltf(file, origin);
-  if (extension == ".obj") return import_obj(file, origin);
-  fail_input(fmt::format("'{}' is no kind of model: use .gltf, .glb or .obj", extension), file.string());
-}
-
-Scene add_mesh_file(Scene scene, MeshFile file) {
-  const auto first_material = static_cast<int>(scene.materials.size());
-  const auto first_texture = static_cast<int>(scene.textures.size());
-  for (Material& material : file.materials) {
-    if (material.base_color_texture >= 0) material.base_color_texture += first_texture;
-    scene.materials.push_back(std::move(material));
-  }
-  for (Mesh& mesh : file.meshes) {
-    mesh.material += first_material;
-    scene.meshes.push_back(std::move(mesh));
-  }
-  scene.rounding_m = std::max(scene.rounding_m, file.rounding_m);
-  std::ranges::move(file.textures, std::back_inserter(scene.textures));
-  std::ranges::move(file.warnings, std::back_inserter(scene.warnings));
-  return scene;
-}
-
-Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
-                       const std::vector<Texture>& others) {
-  if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    fail_input(fmt::format("image '{}' has no usable size: {} bytes", name, bytes.size()), where);
-  require_usable_size(bytes, name, where, others);
-  tinygltf::Image image;
-  std::string failure;
-  std::string warning;
-  const bool decoded = tinygltf::LoadImageData(&image, 0, &failure, &warning, 0, 0, bytes.data(),
-                                               static_cast<int>(bytes.size()), nullptr);
-  if (!decoded || image.component != 4)
-    fail_input(fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
-  return {name, image.width, image.height, to_8_bits(image)};
-}
-
-std::optional<fs::path> resolve_inside(const fs::path& folder, std::string_view reference) {
-  if (reference.find('\0') != std::string_view::npos) return std::nullopt;
-  const fs::path relative = fs::path(reference).lexically_normal();
-  if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return std::nullopt;
-  std::error_code failure;
-  const fs::path here = folder.empty() ? "." : folder;  // what begins with no folder may be absent as a whole
-  const fs::path top = fs::weakly_canonical(here, failure);
-  const fs::path target = failure ? fs::path() : fs::weakly_canonical(here / relative, failure);
-  if (failure || !is_below(top, target)) return std::nullopt;
-  return folder / relative;
-}
-
-namespace {
-
 constexpr double kCreaseDeg = 45.0;
 constexpr std::size_t kMostCornersOfAFace = 2048;
 
@@ -195,30 +134,6 @@ Texture with_opacities(Texture picture, const std::vector<std::uint8_t>& opaciti
   return picture;
 }
 
-/// Reads material libraries from the model's own folder only.
-class LibraryReader : public tinyobj::MaterialReader {
- public:
-  LibraryReader(std::filesystem::path folder, std::string where)
-      : folder_(std::move(folder)), where_(std::move(where)) {}
-
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* index_of, std::string* warning, std::string* failure) override {
-    const std::optional<std::filesystem::path> file = resolve_inside(folder_, name);
-    if (!file) fail_input(fmt::format("mtllib '{}' lies outside its folder; such files are not read", name), where_);
-    if (!is_file(*file)) {
-      *warning += fmt::format("the material library '{}' is missing\n", name);
-      return true;
-    }
-    std::istringstream text(read_text(*file));
-    tinyobj::LoadMtl(index_of, materials, &text, warning, failure);
-    return true;
-  }
-
- private:
-  std::filesystem::path folder_;
-  std::string where_;
-};
-
 /// A number that the whole word is; nothing where it is none, or out of range.
 template <class T>
 std::optional<T> parse(const std::string& word) {
@@ -246,7 +161,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// What is left of a polygon while ears are cut off it. A convex one becomes a fan.
+/// What is left of a polygon while ears are cut off it; a convex one becomes a fan.
 /// Source: Eberly 2002, Triangulation by Ear Clipping.
 class EarClipper {
  public:
@@ -254,7 +169,6 @@ class EarClipper {
     std::iota(left_.begin(), left_.end(), std::size_t{0});
   }
 
-  /// What the parser cuts as well: along the shorter diagonal of four corners, which a dent may leave outside.
   bool is_convex() const {
     for (std::size_t i = 0; i < left_.size(); ++i)
       if (cross(place(i), place(i + 1), place(i + 2)) < 0.0) return false;
@@ -303,150 +217,196 @@ class EarClipper {
   }
 };
 
-/// The text of a file as the parser is to see it: its numbers are checked, and of its polygons, of which the parser
-/// loses parts, triangles are made.
-class ObjText {
- public:
-  ObjText(std::string text, std::string where) : text_(std::move(text)), where_(std::move(where)) {
-    for (Line line; line.begin < text_.size(); ++line.number) {
-      line.end = std::min(text_.find_first_of("\r\n", line.begin), text_.size());
-      line.known = vertices_.size();
-      read(line);
-      line.begin = line.end + (text_.compare(line.end, 2, "\r\n") == 0 ? 2 : 1);  // whatever system wrote the file
-    }
-  }
+/// The triangles of a polygon, three corners each: a convex one of four is cut along its shorter diagonal.
+std::vector<std::size_t> cut_polygon(const std::vector<glm::dvec3>& corners) {
+  if (corners.size() == 3) return {0, 1, 2};
+  EarClipper clipper(corners);
+  if (corners.size() != 4 || !clipper.is_convex()) return clipper.clip();
+  if (glm::distance(corners[0], corners[2]) < glm::distance(corners[1], corners[3])) return {0, 1, 2, 0, 2, 3};
+  return {0, 1, 3, 1, 2, 3};
+}
 
-  /// The vertices as they are written, before the parser rounds them.
-  const std::vector<glm::dvec3>& vertices() const { return vertices_; }
-
-  std::string with_triangles() const {
-    std::string text;
-    std::size_t done = 0;
-    for (const Line& polygon : polygons_) {
-      text.append(text_, done, polygon.begin - done).append(write_triangles(polygon));
-      done = polygon.end;
-    }
-    return text.append(text_, done);
-  }
-
- private:
-  struct Line {
-    std::size_t begin = 0, end = 0;  ///< in the text
-    std::size_t number = 1;
-    std::size_t known = 0;  ///< vertices before it, from which an index below 0 counts back
-  };
-
-  std::string text_, where_;
-  std::vector<glm::dvec3> vertices_;
-  std::vector<Line> polygons_;  ///< faces of more than three corners
-
-  [[noreturn]] void fail(const Line& line, const std::string& message) const {
-    fail_input(message, fmt::format("{}:{}", where_, line.number));
-  }
-
-  std::vector<std::string> list_words(const Line& line) const {
-    const std::string text = text_.substr(line.begin, line.end - line.begin);
-    std::istringstream words(text.substr(0, text.find('#')));
-    return {std::istream_iterator<std::string>(words), {}};
-  }
-
-  void read(const Line& line) {
-    const std::vector<std::string> words = list_words(line);
-    const std::string kind = words.empty() ? "" : words.front();
-    if (kind == "f" || kind == "l" || kind == "p")
-      for (std::size_t i = 1; i < words.size(); ++i) require_indices(line, words[i]);
-    if (kind == "f") note_polygon(line, words.size() - 1);
-    if (kind == "mtllib") replace_backslashes(line);
-    if (kind == "v" || kind == "vn" || kind == "vt") read_numbers(line, words);
-  }
-
-  /// Throws unless each part of a corner, as in 1/2/3 or 1//3, is empty or an index; the parser would read it as
-  /// another.
-  void require_indices(const Line& line, const std::string& corner) const {
-    for (const std::string& part : split_list(corner, "/"))
-      if (!part.empty() && !parse<int>(part))
-        fail(line,
-             fmt::format("'{}' is not an index: whole numbers are, up to {}", part, std::numeric_limits<int>::max()));
-  }
-
-  /// The parser takes a backslash for an escape, which only one before a space is meant to be.
-  void replace_backslashes(const Line& line) {
-    for (std::size_t i = line.begin; i + 1 < line.end; ++i)
-      if (text_[i] == '\\' && text_[i + 1] != ' ') text_[i] = '/';
-  }
-
-  void note_polygon(const Line& line, std::size_t corners) {
-    if (corners > kMostCornersOfAFace)
-      fail(line, fmt::format("this face has {} corners; at most {} are read: triangulate it in the modelling program",
-                             corners, kMostCornersOfAFace));
-    if (corners > 3) polygons_.push_back(line);
-  }
-
-  /// Throws unless all are finite numbers; the parser would read anything else as 0.
-  void read_numbers(const Line& line, const std::vector<std::string>& words) {
-    std::vector<double> numbers;
-    for (std::size_t i = 1; i < words.size(); ++i) {
-      const std::optional<double> number = parse<double>(words[i]);
-      if (!number || !std::isfinite(*number)) fail(line, fmt::format("'{}' is not a finite number", words[i]));
-      numbers.push_back(*number);
-    }
-    const std::size_t least = words.front() == "vt" ? 1 : 3;
-    if (numbers.size() < least)
-      fail(line, fmt::format("expected at least {} numbers, found {}", least, numbers.size()));
-    if (words.front() == "v") vertices_.emplace_back(numbers[0], numbers[1], numbers[2]);
-  }
-
-  std::string write_triangles(const Line& polygon) const {
-    const std::vector<std::string> words = list_words(polygon);
-    std::vector<glm::dvec3> corners;
-    for (std::size_t i = 1; i < words.size(); ++i) corners.push_back(find_vertex(polygon, words[i]));
-    EarClipper clipper(corners);
-    if (corners.size() == 4 && clipper.is_convex()) return text_.substr(polygon.begin, polygon.end - polygon.begin);
-    std::string lines;
-    const std::vector<std::size_t> triangles = clipper.clip();
-    for (std::size_t i = 0; i < triangles.size(); i += 3)
-      lines += fmt::format("{}f {} {} {}", i > 0 ? "\n" : "", words[triangles[i] + 1], words[triangles[i + 1] + 1],
-                           words[triangles[i + 2] + 1]);
-    return lines;
-  }
-
-  const glm::dvec3& find_vertex(const Line& line, const std::string& corner) const {
-    const long index = std::strtol(corner.c_str(), nullptr, 10);
-    const long at = index < 0 ? static_cast<long>(line.known) + index : index - 1;
-    if (at >= 0 && static_cast<std::size_t>(at) < vertices_.size()) return vertices_[static_cast<std::size_t>(at)];
-    fail(line, fmt::format("a face uses vertex {}, but there are {}", index, vertices_.size()));
-  }
-};
-
-/// Builds a model from a file, part by part.
+/// Builds a model from a file's lines: first its vertices, which faces may name before they come, then all else.
 class ObjImporter {
  public:
   ObjImporter(std::filesystem::path file, const glm::dvec3& origin)
-      : file_(std::move(file)), where_(file_.string()), origin_(origin) {
-    const ObjText source(read_text(file_), where_);
-    vertices_ = source.vertices();
-    std::istringstream text(source.with_triangles());
-    LibraryReader libraries(file_.parent_path(), where_);
-    std::string failure;
-    const bool parsed =
-        tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning_, &failure, &text, &libraries, true);
-    if (!parsed || !failure.empty()) fail("not a valid .obj file: " + failure.substr(0, failure.find('\n')));
-    if (vertices_.size() != attributes_.vertices.size() / 3)
-      fail("a line has something before its 'v': its vertices cannot be counted");
-  }
+      : file_(std::move(file)), where_(file_.string()), origin_(origin), text_(read_text(file_)) {}
 
   MeshFile import() {
+    visit_lines([&](const std::vector<std::string>& words, const std::string&) { read_numbers(words); });
+    visit_lines([&](const std::vector<std::string>& words, const std::string& rest) { read_line(words, rest); });
+    finish_shape();
     for (const tinyobj::material_t& material : materials_) add_material(material);
     result_.materials.push_back({.name = "default"});
-    for (const tinyobj::shape_t& shape : shapes_) add_shape(shape);
-    std::istringstream warnings(warning_);
-    for (std::string line; std::getline(warnings, line);)
-      if (!line.empty()) result_.warnings.push_back(line);
+    for (Mesh& mesh : result_.meshes) mesh.material = std::min(mesh.material, static_cast<int>(materials_.size()));
     return std::move(result_);
   }
 
  private:
+  /// A texture's index, -1 for none, and what its alpha means.
+  struct Picture {
+    int texture = -1;
+    AlphaMode alpha_mode = AlphaMode::kOpaque;
+  };
+
+  static constexpr int kNoMaterial = std::numeric_limits<int>::max();
+
+  std::filesystem::path file_;
+  std::string where_;
+  glm::dvec3 origin_;
+  std::string text_;
+  std::size_t line_ = 0;  ///< the number of the one that is read
+  std::vector<glm::dvec3> places_;
+  std::vector<glm::vec3> normals_;
+  std::vector<glm::vec2> uvs_;
+  std::size_t known_places_ = 0, known_normals_ = 0, known_uvs_ = 0;  ///< before the line: indices below 0 count back
+  std::vector<tinyobj::material_t> materials_;
+  std::map<std::string, int> material_of_;
+  std::set<std::string> libraries_, warned_;
+  int material_ = kNoMaterial;  ///< of the next faces
+  std::string name_;            ///< of the shape
+  std::map<int, Mesh> shape_;   ///< by material
+  bool has_normals_ = true;     ///< at each of its corners
+  MeshFile result_;
+  std::map<std::pair<std::string, std::string>, Picture> pictures_;
+
   [[noreturn]] void fail(const std::string& message) const { fail_input(message, where_); }
+  [[noreturn]] void fail_line(const std::string& message) const {
+    fail_input(message, fmt::format("{}:{}", where_, line_));
+  }
+
+  void warn(const std::string& message) {
+    if (warned_.insert(message).second) result_.warnings.push_back(message);
+  }
+
+  /// Calls `visit` with each line's words, comments left out, and with all that follows the first word.
+  template <class Visit>
+  void visit_lines(const Visit& visit) {
+    line_ = 0;
+    for (std::size_t begin = 0; begin < text_.size();) {
+      const std::size_t end = std::min(text_.find_first_of("\r\n", begin), text_.size());
+      const std::string line = text_.substr(begin, end - begin);
+      begin = end + (text_.compare(end, 2, "\r\n") == 0 ? 2 : 1);  // whatever system wrote the file
+      ++line_;
+      std::istringstream stream(line.substr(0, line.find('#')));
+      const std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
+      if (words.empty()) continue;
+      std::string rest = line.substr(line.find(words[0]) + words[0].size());
+      rest.erase(0, rest.find_first_not_of(" \t"));
+      rest.erase(rest.find_last_not_of(" \t") + 1);
+      visit(words, rest);
+    }
+  }
+
+  void read_numbers(const std::vector<std::string>& words) {
+    const std::string& kind = words[0];
+    if (kind != "v" && kind != "vn" && kind != "vt") return;
+    std::vector<double> numbers;
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const std::optional<double> number = parse<double>(words[i]);
+      if (!number || !std::isfinite(*number)) fail_line(fmt::format("'{}' is not a finite number", words[i]));
+      numbers.push_back(*number);
+    }
+    const std::size_t least = kind == "vt" ? 1 : 3;
+    if (numbers.size() < least) fail_line(fmt::format("expected at least {} numbers, found {}", least, numbers.size()));
+    numbers.resize(3);
+    const glm::dvec3 all(numbers[0], numbers[1], numbers[2]);
+    if (kind == "v") places_.push_back(all);
+    if (kind == "vn") normals_.emplace_back(all);
+    if (kind == "vt") uvs_.emplace_back(all.x, 1.0 - all.y);
+  }
+
+  void read_line(const std::vector<std::string>& words, const std::string& rest) {
+    const std::string& kind = words[0];
+    known_places_ += kind == "v";
+    known_normals_ += kind == "vn";
+    known_uvs_ += kind == "vt";
+    if (kind == "f") add_face(words);
+    if (kind == "mtllib") load_libraries(rest);
+    if (kind == "usemtl") {
+      const auto found = material_of_.find(rest);
+      if (found == material_of_.end()) warn(fmt::format("no material library has the material '{}'", rest));
+      material_ = found != material_of_.end() ? found->second : kNoMaterial;
+    }
+    if (kind != "g" && kind != "o") return;
+    finish_shape();
+    name_ = rest;
+  }
+
+  /// Names are parted by spaces that no backslash goes before; any other backslash is a slash of Windows.
+  void load_libraries(std::string names) {
+    for (std::size_t at = 0; (at = names.find("\\ ", at)) != names.npos;) names.replace(at, 2, "\n");
+    for (std::string name : split_list(with_slashes(names), " ")) {
+      std::ranges::replace(name, '\n', ' ');
+      if (!name.empty() && libraries_.insert(name).second) load_library(name);
+    }
+  }
+
+  void load_library(const std::string& name) {
+    const std::optional<std::filesystem::path> file = resolve_inside(file_.parent_path(), name);
+    if (!file) fail(fmt::format("mtllib '{}' lies outside its folder; such files are not read", name));
+    if (!is_file(*file)) return warn(fmt::format("the material library '{}' is missing", name));
+    std::istringstream text(read_text(*file));
+    std::string warnings, failure;
+    tinyobj::LoadMtl(&material_of_, &materials_, &text, &warnings, &failure);
+    if (!failure.empty()) fail("not a valid .obj file: " + failure.substr(0, failure.find('\n')));
+    for (const std::string& line : split_list(warnings, "\n"))
+      if (!line.empty()) warn(line);
+  }
+
+  /// A corner is 1, 1/2, 1//3 or 1/2/3: indices of a vertex, a texture coordinate and a normal.
+  void add_face(const std::vector<std::string>& words) {
+    const std::size_t count = words.size() - 1;
+    if (count > kMostCornersOfAFace)
+      fail_line(fmt::format("this face has {} corners; at most {} are read: triangulate it in the modelling program",
+                            count, kMostCornersOfAFace));
+    std::vector<Vertex> corners;
+    std::vector<glm::dvec3> places;
+    bool has_normals = true;
+    for (std::size_t i = 1; i <= count; ++i) {
+      std::vector<std::string> parts = split_list(words[i], "/");
+      parts.resize(3);
+      Vertex& corner = corners.emplace_back();
+      places.push_back(
+          places_[*find_index(parts[0].empty() ? "0" : parts[0], known_places_, places_.size(), "vertex")]);
+      corner.position_ws = glm::vec3(places.back() - origin_);
+      if (const auto uv = find_index(parts[1], known_uvs_, uvs_.size(), "texture coordinate")) corner.uv = uvs_[*uv];
+      const auto normal = find_index(parts[2], known_normals_, normals_.size(), "normal");
+      if (normal) corner.normal_ws = normals_[*normal];
+      has_normals = has_normals && normal;
+    }
+    if (count < 3) return warn("faces of fewer than three corners are left out");
+    has_normals_ = has_normals_ && has_normals;
+    Mesh& mesh = shape_[material_];
+    for (const std::size_t corner : cut_polygon(places)) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+      mesh.vertices.push_back(corners[corner]);
+    }
+  }
+
+  /// Nothing for an empty part.
+  std::optional<std::size_t> find_index(const std::string& part, std::size_t known, std::size_t count,
+                                        const char* what) const {
+    if (part.empty()) return std::nullopt;
+    const std::optional<int> index = parse<int>(part);
+    if (!index)
+      fail_line(
+          fmt::format("'{}' is not an index: whole numbers are, up to {}", part, std::numeric_limits<int>::max()));
+    const std::int64_t at = *index < 0 ? static_cast<std::int64_t>(known) + *index : std::int64_t{*index} - 1;
+    if (at >= 0 && at < static_cast<std::int64_t>(count)) return static_cast<std::size_t>(at);
+    fail_line(fmt::format("a face uses {} {}, but there are {}", what, *index, count));
+  }
+
+  /// One mesh for each material of the shape.
+  void finish_shape() {
+    for (auto& [material, mesh] : shape_) {
+      mesh.material = material;
+      mesh.name = name_.empty() ? file_.stem().string() : name_;
+      result_.meshes.push_back(has_normals_ ? std::move(mesh) : with_smooth_normals(mesh, kCreaseDeg));
+    }
+    shape_.clear();
+    has_normals_ = true;
+  }
 
   void add_material(const tinyobj::material_t& source) {
     Material material;
@@ -459,12 +419,6 @@ class ObjImporter {
       result_.warnings.push_back(fmt::format("material '{}' blends; cameras see it opaque", material.name));
     result_.materials.push_back(material);
   }
-
-  /// A texture's index, -1 for none, and what its alpha means.
-  struct Picture {
-    int texture = -1;
-    AlphaMode alpha_mode = AlphaMode::kOpaque;
-  };
 
   /// The texture of two pictures, by their names, which may be empty: map_Kd, whose own alpha does not count, and
   /// map_d. One that several materials show is there once.
@@ -506,60 +460,65 @@ class ObjImporter {
   Texture read_picture(const std::filesystem::path& file, const std::string& name) const {
     return decode_texture(read_file_bytes(file), name, where_, result_.textures);
   }
-
-  /// Adds one mesh per material of the shape.
-  void add_shape(const tinyobj::shape_t& shape) {
-    std::map<int, Mesh> mesh_of;
-    bool has_normals = true;
-    for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
-      const std::size_t face = i / 3;
-      const int wanted = face < shape.mesh.material_ids.size() ? shape.mesh.material_ids[face] : -1;
-      const bool known = wanted >= 0 && static_cast<std::size_t>(wanted) < materials_.size();
-      const int material = known ? wanted : static_cast<int>(materials_.size());
-      Mesh& mesh = mesh_of[material];
-      mesh.material = material;
-      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
-      mesh.vertices.push_back(read_corner(shape.mesh.indices[i], shape.name));
-      has_normals = has_normals && shape.mesh.indices[i].normal_index >= 0;
-    }
-    for (auto& [material, mesh] : mesh_of) {
-      mesh.name = shape.name.empty() ? file_.stem().string() : shape.name;
-      result_.meshes.push_back(has_normals ? std::move(mesh) : with_smooth_normals(mesh, kCreaseDeg));
-    }
-  }
-
-  Vertex read_corner(const tinyobj::index_t& corner, const std::string& name) const {
-    const tinyobj::attrib_t& all = attributes_;
-    const auto check = [&](int index, std::size_t count, const char* what) {
-      if (index >= 0 && static_cast<std::size_t>(index) < count) return static_cast<std::size_t>(index);
-      fail(fmt::format("a face of '{}' uses {} {}, but there are {}", name, what, index + 1, count));
-    };
-    Vertex vertex;
-    vertex.position_ws = glm::vec3(vertices_[check(corner.vertex_index, vertices_.size(), "vertex")] - origin_);
-    if (corner.normal_index >= 0) {
-      const std::size_t n = 3 * check(corner.normal_index, all.normals.size() / 3, "normal");
-      vertex.normal_ws = {all.normals[n], all.normals[n + 1], all.normals[n + 2]};
-    }
-    if (corner.texcoord_index >= 0) {
-      const std::size_t t = 2 * check(corner.texcoord_index, all.texcoords.size() / 2, "texture coordinate");
-      vertex.uv = {all.texcoords[t], 1.0f - all.texcoords[t + 1]};
-    }
-    return vertex;
-  }
-
-  std::filesystem::path file_;
-  std::string where_;
-  glm::dvec3 origin_;
-  std::vector<glm::dvec3> vertices_;  ///< as written; the parser's are rounded
-  tinyobj::attrib_t attributes_;
-  std::vector<tinyobj::shape_t> shapes_;
-  std::vector<tinyobj::material_t> materials_;
-  std::string warning_;
-  MeshFile result_;
-  std::map<std::pair<std::string, std::string>, Picture> pictures_;
 };
 
 }  // namespace
+
+bool is_mesh_file(const std::filesystem::path& file) {
+  const std::string extension = extension_of(file);
+  return is_gltf(extension) || extension == ".obj";
+}
+
+MeshFile import_mesh_file(const std::filesystem::path& file, const glm::dvec3& origin) {
+  const std::string extension = extension_of(file);
+  if (is_gltf(extension)) return import_gltf(file, origin);
+  if (extension == ".obj") return import_obj(file, origin);
+  fail_input(fmt::format("'{}' is no kind of model: use .gltf, .glb or .obj", extension), file.string());
+}
+
+Scene add_mesh_file(Scene scene, MeshFile file) {
+  const auto first_material = static_cast<int>(scene.materials.size());
+  const auto first_texture = static_cast<int>(scene.textures.size());
+  for (Material& material : file.materials) {
+    if (material.base_color_texture >= 0) material.base_color_texture += first_texture;
+    scene.materials.push_back(std::move(material));
+  }
+  for (Mesh& mesh : file.meshes) {
+    mesh.material += first_material;
+    scene.meshes.push_back(std::move(mesh));
+  }
+  scene.rounding_m = std::max(scene.rounding_m, file.rounding_m);
+  std::ranges::move(file.textures, std::back_inserter(scene.textures));
+  std::ranges::move(file.warnings, std::back_inserter(scene.warnings));
+  return scene;
+}
+
+Texture decode_texture(const std::vector<unsigned char>& bytes, const std::string& name, const std::string& where,
+                       const std::vector<Texture>& others) {
+  if (bytes.empty() || bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    fail_input(fmt::format("image '{}' has no usable size: {} bytes", name, bytes.size()), where);
+  require_usable_size(bytes, name, where, others);
+  tinygltf::Image image;
+  std::string failure;
+  std::string warning;
+  const bool decoded = tinygltf::LoadImageData(&image, 0, &failure, &warning, 0, 0, bytes.data(),
+                                               static_cast<int>(bytes.size()), nullptr);
+  if (!decoded || image.component != 4)
+    fail_input(fmt::format("image '{}' cannot be decoded: use PNG or JPEG", name), where);
+  return {name, image.width, image.height, to_8_bits(image)};
+}
+
+std::optional<fs::path> resolve_inside(const fs::path& folder, std::string_view reference) {
+  if (reference.find('\0') != std::string_view::npos) return std::nullopt;
+  const fs::path relative = fs::path(reference).lexically_normal();
+  if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return std::nullopt;
+  std::error_code failure;
+  const fs::path here = folder.empty() ? "." : folder;  // what begins with no folder may be absent as a whole
+  const fs::path top = fs::weakly_canonical(here, failure);
+  const fs::path target = failure ? fs::path() : fs::weakly_canonical(here / relative, failure);
+  if (failure || !is_below(top, target)) return std::nullopt;
+  return folder / relative;
+}
 
 MeshFile import_obj(const std::filesystem::path& file, const glm::dvec3& origin) {
   return ObjImporter(file, origin).import();

@@ -5,28 +5,91 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <glm/gtx/rotate_vector.hpp>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "base/bytes.h"
 #include "base/error.h"
 #include "harness/scene/files/mesh_file.h"
 #include "harness/scene/lights/light_fit.h"
-#include "harness/scene/lights/light_kinds.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {
 namespace {
 
+constexpr double kLeastCone_deg = 0.1;
+
+template <class... Cases>
+struct Overloads : Cases... {
+  using Cases::operator()...;
+};
+
+/// Calls the case of the light's kind.
+template <class AnyLight, class... Cases>
+auto by_kind(AnyLight& light, Cases... cases) {
+  return std::visit(Overloads<Cases...>{cases...}, light.kind);
+}
+
+/// What a number of a light is. It tells the unit that a picture's metadata write behind its name, and the order of the
+/// window's sliders: sizes, angles, places.
+enum class NumberRole { kDirection, kPlace, kSize, kReach, kAngle };
+
+/// A number of a light, or those of a vector. Scene files, metadata, names of cells and sliders say what the list of
+/// its kind has.
+struct LightNumber {
+  std::string key;  ///< in a scene file: "cone_deg"
+  NumberRole role;
+  std::span<float> values;        ///< of the light that was asked
+  std::optional<Range> slider{};  ///< what it may be set to; a place may be anything
+  bool is_used = true;            ///< else the light has another in its place, a size for a radius
+};
+
+/// All numbers of a light.
+std::vector<LightNumber> list_numbers(Light& light) {
+  using Numbers = std::vector<LightNumber>;
+  return by_kind(
+      light,
+      [](Sun& sun) {
+        return Numbers{{"direction", NumberRole::kDirection, {&sun.direction_ws.x, 3}},
+                       {"angular_diameter_deg", NumberRole::kAngle, {&sun.angular_diameter_deg, 1}, Range{0.0, 20.0}}};
+      },
+      [](Spot& spot) {
+        const bool flat = spot.is_rectangle();
+        return Numbers{{"position", NumberRole::kPlace, {&spot.position_ws.x, 3}},
+                       {"target", NumberRole::kPlace, {&spot.target_ws.x, 3}},
+                       {"radius", NumberRole::kSize, {&spot.radius_m, 1}, Range{0.0, 1.0}, !flat},
+                       {"cone_deg", NumberRole::kAngle, {&spot.cone_deg, 1}, Range{1.0, double{kWidestCone_deg}}},
+                       {"inner_cone_deg", NumberRole::kAngle, {&spot.inner_cone_deg, 1}},
+                       {"size", NumberRole::kSize, {&spot.size_m.x, 2}, Range{0.01, 2.0}, flat}};
+      },
+      [](PointLight& point) {
+        return Numbers{{"position", NumberRole::kPlace, {&point.position_ws.x, 3}},
+                       {"radius", NumberRole::kSize, {&point.radius_m, 1}, Range{0.0, 1.0}},
+                       {"reference", NumberRole::kReach, {&point.reference_m, 1}}};
+      });
+}
+
+Beam make_beam(const Spot& spot) {
+  const glm::dvec3 way = glm::dvec3(spot.target_ws) - glm::dvec3(spot.position_ws);
+  const auto half_cosine = [](float degrees) { return std::cos(0.5 * glm::radians(static_cast<double>(degrees))); };
+  return {glm::dvec3(spot.position_ws), glm::normalize(way), half_cosine(spot.inner_cone_deg),
+          half_cosine(spot.cone_deg), glm::length(way)};
+}
+
+/// Without an edge; its axis says nothing, unless it is a face's of a cube.
+Beam make_beam(const PointLight& point, const glm::dvec3& axis = {0.0, -1.0, 0.0}) {
+  constexpr double kEveryCosine = -2.0;
+  return {glm::dvec3(point.position_ws), axis, kEveryCosine, kEveryCosine, static_cast<double>(point.reference_m)};
+}
+
 Beam make_face_beam(const PointLight& point, int face) {
-  Beam beam = *find_beam(point);
-  beam.axis_ws = glm::dvec3(0.0);
-  beam.axis_ws[face / 2] = face % 2 == 0 ? 1.0 : -1.0;
-  return beam;
+  glm::dvec3 axis(0.0);
+  axis[face / 2] = face % 2 == 0 ? 1.0 : -1.0;
+  return make_beam(point, axis);
 }
 
 AxisExtent find_extent_of_faces(const PointLight& point, const Scene& scene, double tangent) {
@@ -65,73 +128,7 @@ std::vector<LightFrustum> fit_paraboloids(const PointLight& point, const Scene& 
   return halves;
 }
 
-}  // namespace
-
-PointLight read_point(const TomlTable& table) {
-  require_light_keys(table, {"position", "radius", "reference"});
-  PointLight point;
-  point.position_ws = glm::vec3(table.vec3("position", kAnyNumber));
-  point.radius_m = table.number_f("radius", {0.0, 1000.0}, static_cast<double>(point.radius_m));
-  point.reference_m = table.number_f("reference", kPositive, 1.0);
-  return point;
-}
-
-PointLight checked_light(const PointLight& point, const std::string& where) {
-  const glm::vec3& p = point.position_ws;
-  if (std::isfinite(p.x + p.y + p.z) && std::isfinite(point.radius_m) && point.radius_m >= 0.0f &&
-      std::isfinite(point.reference_m) && point.reference_m > 0.0f)
-    return point;
-  fail_input(fmt::format("the point light stands at ({}, {}, {}), with a radius of {} m and a reference of {} m: the "
-                         "place must be finite, the radius 0 or more, the reference more than 0",
-                         p.x, p.y, p.z, point.radius_m, point.reference_m),
-             where);
-}
-
-std::optional<Beam> find_beam(const PointLight& point) {
-  constexpr double kEveryCosine = -2.0;
-  return Beam{glm::dvec3(point.position_ws),
-              {0.0, -1.0, 0.0},
-              kEveryCosine,
-              kEveryCosine,
-              static_cast<double>(point.reference_m)};
-}
-
-truth::AreaLight make_area_light(const PointLight& point) {
-  return truth::AreaLight::make_sphere(glm::dvec3(point.position_ws), static_cast<double>(point.radius_m));
-}
-
-glm::vec3 to_light(const PointLight& point, const glm::vec3& point_ws) {
-  return glm::normalize(point.position_ws - point_ws);
-}
-
-double light_size(const PointLight& point) { return 2.0 * static_cast<double>(point.radius_m); }
-
-void turn_light(PointLight& point, const LightTurn& turn) {
-  const float distance = glm::length(point.position_ws);
-  if (distance > 0.0f) point.position_ws = -distance * turn(-point.position_ws / distance);
-}
-
-void aim_light(PointLight& point, const glm::vec3& center_ws) {
-  const float distance = glm::distance(center_ws, point.position_ws);
-  if (distance > 0.0f) point.reference_m = distance;
-}
-
-std::string describe_light(const PointLight& point) {
-  return fmt::format("a point light, a sphere of {:.3g} m", 2.0f * point.radius_m);
-}
-
-std::vector<LightNumber> list_numbers(PointLight& point) {
-  return {{"position", NumberRole::kPlace, {&point.position_ws.x, 3}},
-          {"radius", NumberRole::kSize, {&point.radius_m, 1}, Range{0.0, 1.0}},
-          {"reference", NumberRole::kReach, {&point.reference_m, 1}}};
-}
-
-int count_layers(const PointLight&, const MapWindow*, const FitRule& rule) {
-  return rule.mode == FitMode::kParaboloid ? kHalfSpheres : kCubeFaces;
-}
-
-std::vector<LightFrustum> fit_layers(const PointLight& point, const MapWindow*, const Scene& scene,
-                                     const FitRequest& request) {
+std::vector<LightFrustum> fit_point(const PointLight& point, const Scene& scene, const FitRequest& request) {
   if (request.mode == FitMode::kParaboloid) return fit_paraboloids(point, scene, request);
   const double tangent = pad_tangent(1.0, request);
   const AxisExtent extent = find_extent_of_faces(point, scene, tangent);
@@ -144,19 +141,24 @@ std::vector<LightFrustum> fit_layers(const PointLight& point, const MapWindow*, 
   return faces;
 }
 
-namespace {
+std::vector<LightFrustum> fit_spot(const Spot& spot, const Scene& scene, const FitRequest& request) {
+  const Beam beam = make_beam(spot);
+  const double tangent = pad_tangent(std::tan(0.5 * glm::radians(static_cast<double>(spot.cone_deg))), request);
+  return {fit_perspective(beam, tangent, find_extent(scene, look_along(beam), tangent), request)};
+}
 
-constexpr double kLeastCone_deg = 0.1;
+/// Refuses the keys of a [light] that neither all lights have nor one of this kind.
+void require_light_keys(const TomlTable& table, const std::vector<std::string>& own) {
+  table.require_known_keys({"type", "name", "color", "intensity"}, own);
+}
 
-bool is_rectangle(const Spot& spot) { return spot.size_m.x > 0.0f && spot.size_m.y > 0.0f; }
-
-}  // namespace
-
-double Beam::cone_at(const glm::dvec3& point_ws) const {
-  const glm::dvec3 way = point_ws - position_ws;
-  const double cosine = glm::dot(way, axis_ws) / std::max(glm::length(way), std::numeric_limits<double>::min());
-  const double ramp = std::clamp((cosine - cos_outer) / std::max(cos_inner - cos_outer, 1e-4), 0.0, 1.0);
-  return ramp * ramp;
+PointLight read_point(const TomlTable& table) {
+  require_light_keys(table, {"position", "radius", "reference"});
+  PointLight point;
+  point.position_ws = glm::vec3(table.vec3("position", kAnyNumber));
+  point.radius_m = table.number_f("radius", {0.0, 1000.0}, static_cast<double>(point.radius_m));
+  point.reference_m = table.number_f("reference", kPositive, 1.0);
+  return point;
 }
 
 Spot read_spot(const TomlTable& table) {
@@ -178,81 +180,27 @@ Spot read_spot(const TomlTable& table) {
   return spot;
 }
 
-std::optional<Beam> find_beam(const Spot& spot) {
-  const glm::dvec3 way = glm::dvec3(spot.target_ws) - glm::dvec3(spot.position_ws);
-  const auto half_cosine = [](float degrees) { return std::cos(0.5 * glm::radians(static_cast<double>(degrees))); };
-  return Beam{glm::dvec3(spot.position_ws), glm::normalize(way), half_cosine(spot.inner_cone_deg),
-              half_cosine(spot.cone_deg), glm::length(way)};
-}
-
-double light_size(const Spot& spot) {
-  if (!is_rectangle(spot)) return 2.0 * static_cast<double>(spot.radius_m);
-  return 2.0 * std::sqrt(static_cast<double>(spot.size_m.x) * static_cast<double>(spot.size_m.y) / std::numbers::pi);
-}
-
-truth::AreaLight make_area_light(const Spot& spot) {
-  const Beam beam = *find_beam(spot);
-  if (is_rectangle(spot)) {
-    const glm::dmat3 axes = glm::transpose(light_rotation(beam.axis_ws));
-    return truth::AreaLight::make_rectangle(beam.position_ws, 0.5 * static_cast<double>(spot.size_m.x) * axes[0],
-                                            0.5 * static_cast<double>(spot.size_m.y) * axes[1]);
+glm::dvec3 read_sun_direction(const TomlTable& table) {
+  const bool by_angles = table.has("azimuth_deg") || table.has("elevation_deg");
+  if (table.has("direction") == by_angles) {
+    throw table.error("direction",
+                      "[light] needs a direction: either 'direction', or 'azimuth_deg' and 'elevation_deg'");
   }
-  return truth::AreaLight::make_disk(beam.position_ws, beam.axis_ws, static_cast<double>(spot.radius_m));
+  if (by_angles) {
+    const double azimuth = table.number("azimuth_deg", {-360.0, 360.0});
+    return light_direction(azimuth, table.number("elevation_deg", {-90.0, 90.0}));
+  }
+  const glm::dvec3 direction = table.vec3("direction", kAnyNumber);
+  if (glm::length(direction) > 0.0) return direction;
+  throw table.error("direction", "the light has no direction: 'direction' is [0, 0, 0]");
 }
 
-glm::vec3 to_light(const Spot& spot, const glm::vec3& point_ws) { return glm::normalize(spot.position_ws - point_ws); }
-
-void turn_light(Spot& spot, const LightTurn& turn) {
-  const glm::vec3 way = spot.target_ws - spot.position_ws;
-  spot.position_ws = spot.target_ws - glm::length(way) * turn(glm::normalize(way));
+Sun read_sun(const TomlTable& table) {
+  require_light_keys(table, {"direction", "azimuth_deg", "elevation_deg", "angular_diameter_deg", "map_center",
+                             "map_width", "map_near", "map_far"});
+  const glm::vec3 direction(read_sun_direction(table));
+  return {direction, table.number_f("angular_diameter_deg", {0.0, 90.0}, Sun().angular_diameter_deg)};
 }
-
-void aim_light(Spot& spot, const glm::vec3& center_ws) {
-  const glm::vec3 ahead = spot.target_ws - spot.position_ws;
-  const float distance = glm::dot(center_ws - spot.position_ws, ahead);
-  if (distance > 0.0f) spot.target_ws = spot.position_ws + distance * ahead;
-}
-
-Spot checked_light(const Spot& spot, const std::string& where) {
-  unit_direction(spot.target_ws - spot.position_ws, "the light", where);
-  const double cone = static_cast<double>(spot.cone_deg);
-  if (cone >= kLeastCone_deg && cone <= double{kWidestCone_deg} && spot.inner_cone_deg >= 0.0f &&
-      spot.inner_cone_deg <= spot.cone_deg && spot.radius_m >= 0.0f && std::isfinite(spot.radius_m) &&
-      glm::all(glm::greaterThanEqual(spot.size_m, glm::vec2(0.0f))) && std::isfinite(spot.size_m.x + spot.size_m.y))
-    return spot;
-  fail_input(fmt::format("the spot light has a cone of {} degrees, {} within, and a radius of {} m: the cone must lie "
-                         "within {} .. {}, and the inner one within it",
-                         spot.cone_deg, spot.inner_cone_deg, spot.radius_m, kLeastCone_deg, kWidestCone_deg),
-             where);
-}
-
-std::string describe_light(const Spot& spot) {
-  const std::string size = is_rectangle(spot) ? fmt::format("{:.3g} x {:.3g}", spot.size_m.x, spot.size_m.y)
-                                              : fmt::format("{:.3g}", 2.0f * spot.radius_m);
-  return fmt::format("a spot light of {} m, {:.3g} m from its target", size,
-                     glm::distance(spot.position_ws, spot.target_ws));
-}
-
-std::vector<LightNumber> list_numbers(Spot& spot) {
-  const bool flat = is_rectangle(spot);
-  return {{"position", NumberRole::kPlace, {&spot.position_ws.x, 3}},
-          {"target", NumberRole::kPlace, {&spot.target_ws.x, 3}},
-          {"radius", NumberRole::kSize, {&spot.radius_m, 1}, Range{0.0, 1.0}, !flat},
-          {"cone_deg", NumberRole::kAngle, {&spot.cone_deg, 1}, Range{1.0, double{kWidestCone_deg}}},
-          {"inner_cone_deg", NumberRole::kAngle, {&spot.inner_cone_deg, 1}},
-          {"size", NumberRole::kSize, {&spot.size_m.x, 2}, Range{0.01, 2.0}, flat}};
-}
-
-int count_layers(const Spot&, const MapWindow*, const FitRule&) { return 1; }
-
-std::vector<LightFrustum> fit_layers(const Spot& spot, const MapWindow*, const Scene& scene,
-                                     const FitRequest& request) {
-  const Beam beam = *find_beam(spot);
-  const double tangent = pad_tangent(std::tan(0.5 * glm::radians(static_cast<double>(spot.cone_deg))), request);
-  return {fit_perspective(beam, tangent, find_extent(scene, look_along(beam), tangent), request)};
-}
-
-namespace {
 
 std::optional<MapWindow> read_map_window(const TomlTable& table) {
   if (!table.has("map_width")) {
@@ -282,11 +230,16 @@ const std::vector<std::pair<std::string, LightKind (*)(const TomlTable&)>>& list
   return readers;
 }
 
-std::vector<LightNumber> list_numbers(Light& light) {
-  return std::visit([](auto& kind) { return list_numbers(kind); }, light.kind);
-}
-
 }  // namespace
+
+bool Spot::is_rectangle() const { return size_m.x > 0.0f && size_m.y > 0.0f; }
+
+double Beam::cone_at(const glm::dvec3& point_ws) const {
+  const glm::dvec3 way = point_ws - position_ws;
+  const double cosine = glm::dot(way, axis_ws) / std::max(glm::length(way), std::numeric_limits<double>::min());
+  const double ramp = std::clamp((cosine - cos_outer) / std::max(cos_inner - cos_outer, 1e-4), 0.0, 1.0);
+  return ramp * ramp;
+}
 
 toml::array write_place(const glm::vec3& place_ws, const glm::dvec3& origin) {
   toml::array written;
@@ -295,10 +248,6 @@ toml::array write_place(const glm::vec3& place_ws, const glm::dvec3& origin) {
 }
 
 std::string write_vector(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
-
-void require_light_keys(const TomlTable& table, const std::vector<std::string>& own) {
-  table.require_known_keys({"type", "name", "color", "intensity"}, own);
-}
 
 std::vector<LightSlider> list_sliders(Light& light) {
   constexpr const char* kAxes[][3] = {{""}, {" u", " v"}, {" x", " y", " z"}};
@@ -317,12 +266,23 @@ std::vector<LightSlider> list_sliders(Light& light) {
   return sliders;
 }
 
+glm::dvec3 light_direction(double azimuth_deg, double elevation_deg) {
+  const double azimuth = glm::radians(azimuth_deg);
+  const double elevation = glm::radians(elevation_deg);
+  return -glm::dvec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                     std::cos(elevation) * std::cos(azimuth));
+}
+
 glm::vec3 to_light(const Light& light, const glm::vec3& point_ws) {
-  return std::visit([&](const auto& kind) { return to_light(kind, point_ws); }, light.kind);
+  return by_kind(
+      light, [](const Sun& sun) { return -sun.direction_ws; },
+      [&](const auto& lamp) { return glm::normalize(lamp.position_ws - point_ws); });
 }
 
 std::optional<Beam> find_beam(const Light& light) {
-  return std::visit([](const auto& kind) { return find_beam(kind); }, light.kind);
+  return by_kind(
+      light, [](const Sun&) { return std::optional<Beam>(); },
+      [](const auto& lamp) { return std::optional(make_beam(lamp)); });
 }
 
 bool shines_on(const Light& light, const glm::vec3& point_ws) {
@@ -331,7 +291,15 @@ bool shines_on(const Light& light, const glm::vec3& point_ws) {
 }
 
 double light_size(const Light& light) {
-  return std::visit([](const auto& kind) { return light_size(kind); }, light.kind);
+  return by_kind(
+      light,
+      [](const Sun& sun) { return 2.0 * std::tan(0.5 * glm::radians(static_cast<double>(sun.angular_diameter_deg))); },
+      [](const Spot& spot) {
+        if (!spot.is_rectangle()) return 2.0 * static_cast<double>(spot.radius_m);
+        const double area = static_cast<double>(spot.size_m.x) * static_cast<double>(spot.size_m.y);
+        return 2.0 * std::sqrt(area / std::numbers::pi);
+      },
+      [](const PointLight& point) { return 2.0 * static_cast<double>(point.radius_m); });
 }
 
 double penumbra_width(const Light& light, const glm::vec3& receiver_ws, double occluder_m) {
@@ -342,11 +310,35 @@ double penumbra_width(const Light& light, const glm::vec3& receiver_ws, double o
 }
 
 truth::AreaLight make_area_light(const Light& light) {
-  return std::visit([](const auto& kind) { return make_area_light(kind); }, light.kind);
+  return by_kind(
+      light,
+      [](const Sun& sun) {
+        return truth::AreaLight::make_sun(-glm::dvec3(sun.direction_ws), static_cast<double>(sun.angular_diameter_deg));
+      },
+      [](const Spot& spot) {
+        const Beam beam = make_beam(spot);
+        if (!spot.is_rectangle())
+          return truth::AreaLight::make_disk(beam.position_ws, beam.axis_ws, static_cast<double>(spot.radius_m));
+        const glm::dmat3 axes = glm::transpose(light_rotation(beam.axis_ws));
+        return truth::AreaLight::make_rectangle(beam.position_ws, 0.5 * static_cast<double>(spot.size_m.x) * axes[0],
+                                                0.5 * static_cast<double>(spot.size_m.y) * axes[1]);
+      },
+      [](const PointLight& point) {
+        return truth::AreaLight::make_sphere(glm::dvec3(point.position_ws), static_cast<double>(point.radius_m));
+      });
 }
 
 Light turn_light(Light light, const LightTurn& turn) {
-  std::visit([&](auto& kind) { turn_light(kind, turn); }, light.kind);
+  by_kind(
+      light, [&](Sun& sun) { sun.direction_ws = turn(sun.direction_ws); },
+      [&](Spot& spot) {
+        const glm::vec3 way = spot.target_ws - spot.position_ws;
+        spot.position_ws = spot.target_ws - glm::length(way) * turn(glm::normalize(way));
+      },
+      [&](PointLight& point) {
+        const float distance = glm::length(point.position_ws);
+        if (distance > 0.0f) point.position_ws = -distance * turn(-point.position_ws / distance);
+      });
   return light;
 }
 
@@ -447,23 +439,86 @@ Light with_gltf_extras(const Light& light, const toml::table& extras, const std:
 }
 
 Light aim_light(Light light, const glm::vec3& center_ws) {
-  std::visit([&](auto& kind) { aim_light(kind, center_ws); }, light.kind);
+  by_kind(
+      light, [](Sun&) {},
+      [&](Spot& spot) {
+        const glm::vec3 ahead = spot.target_ws - spot.position_ws;
+        const float distance = glm::dot(center_ws - spot.position_ws, ahead);
+        if (distance > 0.0f) spot.target_ws = spot.position_ws + distance * ahead;
+      },
+      [&](PointLight& point) {
+        const float distance = glm::distance(center_ws, point.position_ws);
+        if (distance > 0.0f) point.reference_m = distance;
+      });
   return light;
 }
 
 Light checked_light(Light light, const std::string& where) {
-  light.kind = std::visit([&](const auto& kind) -> LightKind { return checked_light(kind, where); }, light.kind);
-  const bool shines = std::isfinite(light.color.r + light.color.g + light.color.b) &&
-                      glm::all(glm::greaterThanEqual(light.color, glm::vec3(0.0f))) && std::isfinite(light.intensity) &&
-                      light.intensity >= 0.0f;
-  if (shines) return light;
-  fail_input(fmt::format("the light has colour ({}, {}, {}), intensity {}", light.color.r, light.color.g, light.color.b,
-                         light.intensity),
-             where);
+  const auto require = [&](bool holds, const std::string& what) {
+    if (!holds) fail_input(what, where);
+  };
+  by_kind(
+      light,
+      [&](Sun& sun) {
+        sun.direction_ws = unit_direction(sun.direction_ws, "the light", where);
+        require(sun.angular_diameter_deg >= 0.0f && sun.angular_diameter_deg < 180.0f,
+                fmt::format("the light's angular diameter is {} degrees", sun.angular_diameter_deg));
+      },
+      [&](Spot& spot) {
+        unit_direction(spot.target_ws - spot.position_ws, "the light", where);
+        const double cone = static_cast<double>(spot.cone_deg);
+        require(cone >= kLeastCone_deg && cone <= double{kWidestCone_deg} && spot.inner_cone_deg >= 0.0f &&
+                    spot.inner_cone_deg <= spot.cone_deg && spot.radius_m >= 0.0f && std::isfinite(spot.radius_m) &&
+                    glm::all(glm::greaterThanEqual(spot.size_m, glm::vec2(0.0f))) &&
+                    std::isfinite(spot.size_m.x + spot.size_m.y),
+                fmt::format("the spot light has a cone of {} degrees, {} within, and a radius of {} m: the cone must "
+                            "lie within {} .. {}, and the inner one within it",
+                            spot.cone_deg, spot.inner_cone_deg, spot.radius_m, kLeastCone_deg, kWidestCone_deg));
+      },
+      [&](PointLight& point) {
+        const glm::vec3& p = point.position_ws;
+        require(std::isfinite(p.x + p.y + p.z) && std::isfinite(point.radius_m) && point.radius_m >= 0.0f &&
+                    std::isfinite(point.reference_m) && point.reference_m > 0.0f,
+                fmt::format("the point light stands at ({}, {}, {}), with a radius of {} m and a reference of {} m: "
+                            "the place must be finite, the radius 0 or more, the reference more than 0",
+                            p.x, p.y, p.z, point.radius_m, point.reference_m));
+      });
+  require(std::isfinite(light.color.r + light.color.g + light.color.b) &&
+              glm::all(glm::greaterThanEqual(light.color, glm::vec3(0.0f))) && std::isfinite(light.intensity) &&
+              light.intensity >= 0.0f,
+          fmt::format("the light has colour ({}, {}, {}), intensity {}", light.color.r, light.color.g, light.color.b,
+                      light.intensity));
+  return light;
 }
 
 std::string describe_light(const Light& light) {
-  return std::visit([](const auto& kind) { return describe_light(kind); }, light.kind);
+  return by_kind(
+      light, [](const Sun& sun) { return fmt::format("a sun of {:.3g} degrees", sun.angular_diameter_deg); },
+      [](const Spot& spot) {
+        const std::string size = spot.is_rectangle() ? fmt::format("{:.3g} x {:.3g}", spot.size_m.x, spot.size_m.y)
+                                                     : fmt::format("{:.3g}", 2.0f * spot.radius_m);
+        return fmt::format("a spot light of {} m, {:.3g} m from its target", size,
+                           glm::distance(spot.position_ws, spot.target_ws));
+      },
+      [](const PointLight& point) {
+        return fmt::format("a point light, a sphere of {:.3g} m", 2.0f * point.radius_m);
+      });
+}
+
+int count_layers(const Light& light, const FitRule& rule) {
+  return by_kind(
+      light, [&](const Sun&) { return rule.mode == FitMode::kCascades && !light.map_window ? rule.cascades.count : 1; },
+      [](const Spot&) { return 1; },
+      [&](const PointLight&) { return rule.mode == FitMode::kParaboloid ? kHalfSpheres : kCubeFaces; });
+}
+
+std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& request) {
+  const Light& light = request.light ? *request.light : scene.light;
+  return by_kind(
+      light,
+      [&](const Sun& sun) { return fit_sun(sun, light.map_window ? &*light.map_window : nullptr, scene, request); },
+      [&](const Spot& spot) { return fit_spot(spot, scene, request); },
+      [&](const PointLight& point) { return fit_point(point, scene, request); });
 }
 
 LightMetadata light_metadata(Light light) {

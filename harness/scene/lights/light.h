@@ -1,18 +1,85 @@
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "harness/scene/lights/light_kinds.h"
+#include "base/toml.h"
 #include "reference/truth/area_light.h"
 
 namespace shadowbench::scene {
 
-/// The kinds of light: each has a file of its own, with the functions that every kind has.
+/// The cone that a lamp in the scene lights.
+struct Beam {
+  glm::dvec3 position_ws{0.0};
+  glm::dvec3 axis_ws{0.0, -1.0, 0.0};  ///< the way the light travels, unit length
+  double cos_inner = 1.0;              ///< full strength within this angle of the axis
+  double cos_outer = 0.0;              ///< none beyond this one
+  double reference_m = 1.0;            ///< where its strength is 1
+
+  /// Whether there is a direction that gets no light.
+  bool has_edge() const { return cos_outer > -1.0; }
+  /// The share of the cone's light that goes to a point, 0 .. 1: the square of a ramp between both angles, of cosines.
+  /// Source: Khronos, KHR_lights_punctual, "Inner and Outer Cone Angles". 0 for the light's own place.
+  double cone_at(const glm::dvec3& point_ws) const;
+};
+
+/// A part of a linear colour.
+inline constexpr Range kColor{0.0, 1.0};
+
+/// Maps unit vectors.
+using LightTurn = std::function<glm::vec3(const glm::vec3&)>;
+
+/// What a picture's metadata say of a light, by name.
+using LightMetadata = std::map<std::string, std::variant<double, std::string>>;
+
+/// "1 2 3", for texts that name a light.
+std::string write_vector(const glm::vec3& v);
+
+/// A sphere in the scene that shines all around.
+struct PointLight {
+  glm::vec3 position_ws{0.0f, 1.0f, 0.0f};
+  float radius_m = 0.05f;    ///< of the sphere; 0: a point
+  float reference_m = 1.0f;  ///< where its light is as strong as a sun's
+};
+
+/// A lamp that stands in the scene: a disk or a rectangle that faces its target, whose light fills a cone with a soft
+/// edge.
+struct Spot {
+  glm::vec3 position_ws{0.0f, 1.0f, 0.0f};
+  glm::vec3 target_ws{0.0f};     ///< the cone's axis leads there, and its light is as strong there as a sun's
+  float cone_deg = 60.0f;        ///< from edge to edge; no light beyond
+  float inner_cone_deg = 45.0f;  ///< the same, full strength within
+  float radius_m = 0.05f;        ///< of the disk; 0: a point
+  glm::vec2 size_m{0.0f};        ///< sides of a rectangle in place of the disk, along the map's u and v; 0: the disk
+
+  bool is_rectangle() const;
+};
+
+/// A cone must be narrower than a half-space: its map is drawn through one perspective.
+inline constexpr float kWidestCone_deg = 170.0f;
+
+/// A directional light: a disk at infinity.
+struct Sun {
+  glm::vec3 direction_ws{0.0f, -1.0f, 0.0f};  ///< the way the light travels, unit length
+  float angular_diameter_deg = 0.53f;         ///< seen from the scene; 0: a point at infinity
+};
+
+/// A place in the sky, or where something is seen from: azimuth 0 is +z, 90 is +x; degrees.
+struct SkyAngles {
+  double azimuth_deg = 0.0;
+  double elevation_deg = 0.0;
+};
+
+/// The way light travels that comes from a place in the sky, see SkyAngles.
+glm::dvec3 light_direction(double azimuth_deg, double elevation_deg);
+
+/// The kinds of light. What differs between them has a case for each in light.cpp; the compiler names what is missing.
 using LightKind = std::variant<Sun, Spot, PointLight>;
 
 /// A light's map that is not fitted to the scene: it may leave receivers outside.
@@ -78,6 +145,9 @@ struct LightSlider {
 
 /// The numbers of a light beside its direction: its size first.
 std::vector<LightSlider> list_sliders(Light& light);
+
+/// A place of a scene as its file has it, relative to the scene's origin.
+toml::array write_place(const glm::vec3& place_ws, const glm::dvec3& origin);
 
 /// What the [light] of a scene file says of it. Reads back with the same origin.
 toml::table write_light(Light light, const glm::dvec3& origin = glm::dvec3(0.0));

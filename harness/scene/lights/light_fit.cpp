@@ -4,10 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <charconv>
-#include <cmath>
 #include <functional>
 #include <glm/gtx/component_wise.hpp>
 #include <iterator>
@@ -112,43 +110,6 @@ CascadeRule parse_cascades(std::string_view text) {
   return rule;
 }
 
-}  // namespace
-
-std::vector<std::string> list_fit_names() { return {kFitNames.begin(), kFitNames.end()}; }
-
-std::string_view name_of(FitMode mode) { return kFitNames[static_cast<std::size_t>(mode)]; }
-
-std::string describe_fit(const FitRule& rule) {
-  if (rule.mode != FitMode::kCascades) return std::string(name_of(rule.mode));
-  const CascadeRule& cascades = rule.cascades;
-  const std::string split = cascades.splits.empty() ? fmt::format("split={}", cascades.split)
-                                                    : fmt::format("splits={}", fmt::join(cascades.splits, "/"));
-  std::string text = fmt::format("cascades:count={},{},blend={},depths={}", cascades.count, split, cascades.blend,
-                                 cascades.seen ? "seen" : "all");
-  if (cascades.near_m > 0.0) text += fmt::format(",near={}", cascades.near_m);
-  if (cascades.far_m > 0.0) text += fmt::format(",far={}", cascades.far_m);
-  return text;
-}
-
-std::set<std::string> describe_fits(const std::vector<FitRule>& rules) {
-  std::set<std::string> all;
-  for (const FitRule& rule : rules) all.insert(describe_fit(rule));
-  return all;
-}
-
-FitRule parse_fit_rule(std::string_view text) {
-  const std::string_view name = text.substr(0, text.find(':'));
-  const auto found = std::find(kFitNames.begin(), kFitNames.end(), name);
-  if (found == kFitNames.end()) refuse(fmt::format("unknown fit '{}'; there are {}", name, fmt::join(kFitNames, ", ")));
-  FitRule rule{static_cast<FitMode>(found - kFitNames.begin()), {}};
-  if (name.size() == text.size()) return rule;
-  if (rule.mode != FitMode::kCascades) refuse(fmt::format("'{}' takes no values; only cascades do", name));
-  rule.cascades = parse_cascades(text.substr(name.size() + 1));
-  return rule;
-}
-
-namespace {
-
 /// A direction as a paraboloid sees it: along the light's right and up, and along its axis.
 struct Ray {
   double distance_m;
@@ -218,8 +179,6 @@ std::string name_shape(const LightFrustum& frustum) {
                      fmt::join(std::span(&clip_from_world[0][0], 16), " "));
 }
 
-const MapWindow* find_window(const Light& light) { return light.map_window ? &*light.map_window : nullptr; }
-
 /// Depth is computed in float, and a near plane at the lamp would leave none of it for the scene.
 PerspectiveMap make_planes(const Beam& beam, const AxisExtent& extent) {
   constexpr double kPadding = 1e-3, kLeastNear = 1.0 / 500.0;
@@ -237,7 +196,78 @@ bool is_alike(const LayerShare& a, const LayerShare& b) {
          is_near(one->fade_out_begin, other->fade_out_begin) && is_near(one->fade_out_end, other->fade_out_end);
 }
 
+/// A plane; points with dot(normal, p) + offset >= 0 are inside.
+struct HalfSpace {
+  glm::dvec3 normal;
+  double offset;
+  double distance(const glm::dvec3& p) const { return glm::dot(normal, p) + offset; }
+};
+
+std::vector<HalfSpace> bound_view(const Camera& camera, double aspect, const std::optional<DepthSpan>& span) {
+  const auto [eye, forward, right, up, half_height, tangent] = ViewAxes(camera);
+  std::vector<HalfSpace> bounds;
+  const auto add = [&bounds, &eye = eye](const glm::dvec3& normal, double offset) {
+    bounds.push_back({normal, offset - glm::dot(normal, eye)});
+  };
+  for (const double side : {-1.0, 1.0}) {
+    add(side * right + (half_height > 0.0 ? 0.0 : tangent * aspect) * forward, half_height * aspect);
+    add(side * up + (half_height > 0.0 ? 0.0 : tangent) * forward, half_height);
+  }
+  if (!(half_height > 0.0)) add(forward, 0.0);
+  if (span) {
+    add(forward, -span->near_m);
+    add(-forward, span->far_m);
+  }
+  return bounds;
+}
+
+using Polygon = std::vector<glm::dvec3>;
+
+Polygon cut(const Polygon& polygon, const HalfSpace& bound) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double da = bound.distance(a), db = bound.distance(b);
+    if (da >= 0.0) kept.push_back(a);
+    if ((da >= 0.0) != (db >= 0.0)) kept.push_back(a + (b - a) * (da / (da - db)));
+  }
+  return kept;
+}
+
 }  // namespace
+
+std::vector<std::string> list_fit_names() { return {kFitNames.begin(), kFitNames.end()}; }
+
+std::string_view name_of(FitMode mode) { return kFitNames[static_cast<std::size_t>(mode)]; }
+
+std::string describe_fit(const FitRule& rule) {
+  if (rule.mode != FitMode::kCascades) return std::string(name_of(rule.mode));
+  const CascadeRule& cascades = rule.cascades;
+  const std::string split = cascades.splits.empty() ? fmt::format("split={}", cascades.split)
+                                                    : fmt::format("splits={}", fmt::join(cascades.splits, "/"));
+  std::string text = fmt::format("cascades:count={},{},blend={},depths={}", cascades.count, split, cascades.blend,
+                                 cascades.seen ? "seen" : "all");
+  if (cascades.near_m > 0.0) text += fmt::format(",near={}", cascades.near_m);
+  if (cascades.far_m > 0.0) text += fmt::format(",far={}", cascades.far_m);
+  return text;
+}
+
+std::set<std::string> describe_fits(const std::vector<FitRule>& rules) {
+  std::set<std::string> all;
+  for (const FitRule& rule : rules) all.insert(describe_fit(rule));
+  return all;
+}
+
+FitRule parse_fit_rule(std::string_view text) {
+  const std::string_view name = text.substr(0, text.find(':'));
+  const auto found = std::find(kFitNames.begin(), kFitNames.end(), name);
+  if (found == kFitNames.end()) refuse(fmt::format("unknown fit '{}'; there are {}", name, fmt::join(kFitNames, ", ")));
+  FitRule rule{static_cast<FitMode>(found - kFitNames.begin()), {}};
+  if (name.size() == text.size()) return rule;
+  if (rule.mode != FitMode::kCascades) refuse(fmt::format("'{}' takes no values; only cascades do", name));
+  rule.cascades = parse_cascades(text.substr(name.size() + 1));
+  return rule;
+}
 
 truth::TexelGradients find_gradients(const LightFrustum& frustum, const glm::dvec3& point_ws) {
   if (frustum.shape == MapShape::kParaboloid) return find_paraboloid_gradients(frustum, point_ws);
@@ -328,11 +358,6 @@ LightFrustum fit_light(const Scene& scene, const FitRequest& request) {
   return std::move(layers.front());
 }
 
-std::vector<LightFrustum> fit_layers(const Scene& scene, const FitRequest& request) {
-  const Light& light = request.light ? *request.light : scene.light;
-  return std::visit([&](const auto& kind) { return fit_layers(kind, find_window(light), scene, request); }, light.kind);
-}
-
 bool follows_camera(const Light& light, const FitRule& rule) {
   return rule.follows_view() && !light.map_window && !find_beam(light);
 }
@@ -343,10 +368,6 @@ bool has_same_grid(const LightFrustum& a, const LightFrustum& b) {
   if (std::abs(a.texel_size_ws - b.texel_size_ws) > kRounding * a.texel_size_ws) return false;
   const glm::dvec2 moved = glm::dvec2(a.light_from_world[3] - b.light_from_world[3]) / a.texel_size_ws;
   return glm::compMax(glm::abs(moved - glm::round(moved))) < kRounding;
-}
-
-int count_layers(const Light& light, const FitRule& rule) {
-  return std::visit([&](const auto& kind) { return count_layers(kind, find_window(light), rule); }, light.kind);
 }
 
 AxisExtent AxisExtent::joined(const AxisExtent& other) const {
@@ -397,48 +418,6 @@ LightFrustum fit_perspective(const Beam& beam, double tangent, const AxisExtent&
   set_perspective(fit, tangent, 2.0 * request.shift_texels / static_cast<double>(request.map_size));
   return fit;
 }
-
-namespace {
-
-/// A plane; points with dot(normal, p) + offset >= 0 are inside.
-struct HalfSpace {
-  glm::dvec3 normal;
-  double offset;
-  double distance(const glm::dvec3& p) const { return glm::dot(normal, p) + offset; }
-};
-
-std::vector<HalfSpace> bound_view(const Camera& camera, double aspect, const std::optional<DepthSpan>& span) {
-  const auto [eye, forward, right, up, half_height, tangent] = ViewAxes(camera);
-  std::vector<HalfSpace> bounds;
-  const auto add = [&bounds, &eye = eye](const glm::dvec3& normal, double offset) {
-    bounds.push_back({normal, offset - glm::dot(normal, eye)});
-  };
-  for (const double side : {-1.0, 1.0}) {
-    add(side * right + (half_height > 0.0 ? 0.0 : tangent * aspect) * forward, half_height * aspect);
-    add(side * up + (half_height > 0.0 ? 0.0 : tangent) * forward, half_height);
-  }
-  if (!(half_height > 0.0)) add(forward, 0.0);
-  if (span) {
-    add(forward, -span->near_m);
-    add(-forward, span->far_m);
-  }
-  return bounds;
-}
-
-using Polygon = std::vector<glm::dvec3>;
-
-Polygon cut(const Polygon& polygon, const HalfSpace& bound) {
-  Polygon kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    const double da = bound.distance(a), db = bound.distance(b);
-    if (da >= 0.0) kept.push_back(a);
-    if ((da >= 0.0) != (db >= 0.0)) kept.push_back(a + (b - a) * (da / (da - db)));
-  }
-  return kept;
-}
-
-}  // namespace
 
 double view_depth(const Camera& camera, const glm::dvec3& point_ws) {
   return glm::dot(point_ws - glm::dvec3(camera.position_ws), glm::dvec3(camera.forward_ws));

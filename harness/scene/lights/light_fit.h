@@ -307,6 +307,15 @@ LightFrustum fit_perspective(const Beam& beam, double tangent, const AxisExtent&
 /// Requires 0 < near_m < far_m.
 std::vector<double> split_depths(const CascadeRule& rule, double near_m, double far_m);
 
+/// The layers of a sun's map: see fit_layers().
+std::vector<LightFrustum> fit_sun(const Sun& sun, const MapWindow* window, const Scene& scene,
+                                  const FitRequest& request);
+
+/// An orthographic frustum over these receivers, in world space, with the casters between them and the light; without
+/// any, over the whole scene.
+LightFrustum fit_sun_over(const Sun& sun, const Scene& scene, const FitRequest& request,
+                          const std::vector<glm::dvec3>& receivers);
+
 /// Fits the sun's map to what the camera sees as FitMode::kView does, but with more texels where the camera is near:
 /// u and v go through a projection whose lines of equal w are across the view direction. Depth stays linear along the
 /// light, so that every filter works as ever. Of each method this is what makes it different:

@@ -38,8 +38,7 @@ class Sweep : public FaultTest {
 
 TEST_F(Sweep, MeasuresTheProduct_AndTheCommandLineHasTheLastWord) {
   Outcome outcome = succeed("run e.toml --out out");
-  EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " cells; "));
-  EXPECT_THAT(outcome.err, HasSubstr("of timing, the rest ray tracing and images"));
+  EXPECT_THAT(outcome.err, HasSubstr(std::to_string(kCells) + " cells\n"));
   const json all = read_results();
   EXPECT_EQ(all["cells"].size(), kCells);
   EXPECT_EQ(all["experiment"]["title"], "small");
@@ -266,10 +265,7 @@ TEST_F(Sweep, TooManyCells_AskForYes) {
         "'esm'\n"
         "c = {linear = [1, 2000], count = 2001}\n");
   expect_refusal("run huge.toml --out out", 2, {"2001 cells", "--yes"});
-  expect_refusal("run e.toml --rounds auto --budget 100 --out out", 2, {"48 cells", "1 h 20 min", "--yes"});
-  // So large a picture takes more than an hour on any machine that draws with its processor.
-  expect_refusal("run e.toml --rounds 10000 --size 3840x2160 --out out", 2,
-                 {"48 cells", "of timing", "--yes", "fewer --rounds"});
+  expect_refusal("run e.toml --rounds auto --budget 100 --out out", 2, {"48 cells", "--yes", "--budget"});
   EXPECT_FALSE(exists("out"));
   succeed("run e.toml --rounds auto --budget 100 --precision 1 --yes --out out");
 }

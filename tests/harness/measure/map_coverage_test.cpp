@@ -144,7 +144,8 @@ TEST(MapCoverage, ReceiversOutsideTheMap_HaveNoSay) {
 /// Under a lamp a pixel covers what its corners, projected one by one, enclose.
 TEST(MapCoverage, OfALamp_IsThatOfThePixelsCorners) {
   scene::LightFrustum frustum;
-  const scene::Spot spot{{0.6f, 3.0f, -0.8f}, {0.0f, 0.0f, 0.2f}, 100.0f, 90.0f, 0.0f};
+  scene::Light spot;
+  spot.kind = scene::Spot{{0.6f, 3.0f, -0.8f}, {0.0f, 0.0f, 0.2f}, 100.0f, 90.0f, 0.0f};
   const scene::Beam beam = *find_beam(spot);
   frustum.light_from_world = glm::dmat4(scene::light_rotation(beam.axis_ws));
   frustum.light_from_world[3] = frustum.light_from_world * glm::dvec4(-beam.position_ws, 1.0);

@@ -12,7 +12,6 @@
 #include "harness/scene/complete.h"
 #include "harness/scene/lights/light.h"
 #include "harness/scene/lights/light_fit.h"
-#include "harness/scene/lights/light_kinds.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "tests/harness/scene/gltf_parts.h"
@@ -109,7 +108,9 @@ TEST(SpotFit, NothingInTheCone_AndThingsAtTheLamp_StillGiveAFrustum) {
 }
 
 TEST(Beam, FadesFromTheInnerConeToTheOuter) {
-  const Beam beam = *find_beam(Spot{{0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 60.0f, 40.0f, 0.0f});
+  Light light;
+  light.kind = Spot{{0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 60.0f, 40.0f, 0.0f};
+  const Beam beam = *find_beam(light);
   const auto at = [&](double degrees) { return beam.cone_at({2.0 * std::tan(glm::radians(degrees)), 0.0, 0.0}); };
   EXPECT_EQ(at(0.0), 1.0);
   EXPECT_EQ(at(19.9), 1.0);
