@@ -281,7 +281,7 @@ images::Image score(records::CellRecord& record, const ScoredImages& drawn, cons
     flip.texels = metrics::measure_flip(*seen, *truth.area_seen);
   }
   record.error.flip = find_mean(flip.texels, {});
-  const images::Rect tile = images::find_hardest_tile(flip);
+  const images::Rect tile = images::find_largest_tile(flip);
   record.images.hardest = records::TileRecord{tile.x, tile.y, tile.width, tile.height};
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.truth = {truth.standard_error, truth.unanimous, truth.weight_rmse, truth.lit, truth.penumbra};

@@ -150,6 +150,65 @@ std::string warn_of_variance(const FilterRequest& request, const TexelHealth& he
       advise(remedies));
 }
 
+/// A filter's encoded map as it was read back, in the terms of metrics::check_texels.
+class ReadMap {
+ public:
+  /// Reads the map of a filter back, of a 16-bit float store before its blur, too: there a GL may saturate, and the
+  /// blur hides it. Requires a filter that encodes, and that its map was made.
+  ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer = 0);
+
+  /// What is looked at; the object must outlive it.
+  metrics::StoredMap stored() const;
+
+ private:
+  filters::FilterRequest request_;
+  render::EncodedTexels texels_;
+  std::optional<render::EncodedTexels> before_blur_;
+  int radius_ = 0;
+  std::optional<glm::vec4> border_;
+};
+
+ReadMap::ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer)
+    : request_(filter.request()),
+      texels_(filter.encoded_map(layer)->read()),
+      radius_(filter.encoded_map(layer)->blur_radius_texels()),
+      border_(filter.encoded_map(layer)->blurred_border()) {
+  const bool is_half = filters::store_precision(store_of(request_.values)) == filters::StorePrecision::kHalf;
+  if (is_half) before_blur_ = filter.encoded_map(layer)->read_before_blur(map, layer);
+}
+
+metrics::StoredMap ReadMap::stored() const {
+  metrics::StoredMap stored{texels_.values, texels_.channels, largest_number(request_.values),
+                            request_.spec.holds_moments};
+  if (before_blur_) stored.before_blur = before_blur_->values;
+  stored.blur_radius_texels = radius_;
+  if (border_) stored.border = std::span(&border_->x, static_cast<std::size_t>(texels_.channels));
+  return stored;
+}
+
+/// Looks through all layers of a filter's encoded map. Requires a filter that encodes, and that its map was made.
+metrics::TexelHealth check_map(render::FilterPasses& filter, const render::ShadowMap& map) {
+  metrics::TexelHealth health = metrics::check_texels(ReadMap(filter, map).stored());
+  for (int layer = 1; layer < filter.layers(); ++layer)
+    health.add(metrics::check_texels(ReadMap(filter, map, layer).stored()));
+  return health;
+}
+
+/// Names the store with as many channels and the other float precision; nothing where the filter does not offer
+/// it.
+std::optional<std::string> find_other_store(const filters::FilterRequest& request) {
+  const filters::ParamSpec* param = request.spec.find_param("store");
+  if (!param) return std::nullopt;
+  const std::string own = filters::text_or(request.values, "store", "");
+  for (const filters::ParamValue& choice : param->choices) {
+    const std::string other = filters::to_string(choice);
+    const bool floats = own.ends_with("f") && other.ends_with("f");
+    if (!floats || filters::store_channels(own) != filters::store_channels(other)) continue;
+    if (filters::store_precision(own) != filters::store_precision(other)) return other;
+  }
+  return std::nullopt;
+}
+
 /// Puts a layer of a map into a picture of all, side by side; rows from top to bottom.
 void put_layer(images::Image& image, int layer, const std::vector<float>& values) {
   const int side = image.height;
@@ -177,31 +236,6 @@ constexpr const char* kReadsDepth = "the filter reads the depth map itself";
 
 }  // namespace
 
-ReadMap::ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer)
-    : request_(filter.request()),
-      texels_(filter.encoded_map(layer)->read()),
-      radius_(filter.encoded_map(layer)->blur_radius_texels()),
-      border_(filter.encoded_map(layer)->blurred_border()) {
-  const bool is_half = filters::store_precision(store_of(request_.values)) == filters::StorePrecision::kHalf;
-  if (is_half) before_blur_ = filter.encoded_map(layer)->read_before_blur(map, layer);
-}
-
-metrics::StoredMap ReadMap::stored() const {
-  metrics::StoredMap stored{texels_.values, texels_.channels, largest_number(request_.values),
-                            request_.spec.holds_moments};
-  if (before_blur_) stored.before_blur = before_blur_->values;
-  stored.blur_radius_texels = radius_;
-  if (border_) stored.border = std::span(&border_->x, static_cast<std::size_t>(texels_.channels));
-  return stored;
-}
-
-metrics::TexelHealth check_map(render::FilterPasses& filter, const render::ShadowMap& map) {
-  metrics::TexelHealth health = metrics::check_texels(ReadMap(filter, map).stored());
-  for (int layer = 1; layer < filter.layers(); ++layer)
-    health.add(metrics::check_texels(ReadMap(filter, map, layer).stored()));
-  return health;
-}
-
 std::int64_t count_broken_texels(render::FilterPasses& filter, const render::ShadowMap& map) {
   return filter.encoded_map() ? check_map(filter, map).broken() : 0;
 }
@@ -226,19 +260,6 @@ std::vector<std::string> list_exceeded_limits(const std::string& name, const Fil
   if (*health.lowest_variance < -filters::number(request.values, request.spec.variance_floor))
     warnings.push_back(name + ": " + warn_of_variance(request, health, trial));
   return warnings;
-}
-
-std::optional<std::string> find_other_store(const filters::FilterRequest& request) {
-  const filters::ParamSpec* param = request.spec.find_param("store");
-  if (!param) return std::nullopt;
-  const std::string own = filters::text_or(request.values, "store", "");
-  for (const filters::ParamValue& choice : param->choices) {
-    const std::string other = filters::to_string(choice);
-    const bool floats = own.ends_with("f") && other.ends_with("f");
-    if (!floats || filters::store_channels(own) != filters::store_channels(other)) continue;
-    if (filters::store_precision(own) != filters::store_precision(other)) return other;
-  }
-  return std::nullopt;
 }
 
 MapTrial StabilityMeter::make_trial(const filters::FilterRequest& request) const {

@@ -17,29 +17,6 @@ namespace shadowbench::measure {
 /// Makes a filter's encoded map with other parameters, and gives the health of its texels.
 using MapTrial = std::function<metrics::TexelHealth(const filters::ParamValues&)>;
 
-/// A filter's encoded map as it was read back, in the terms of metrics::check_texels.
-class ReadMap {
- public:
-  /// Reads the map of a filter back, of a 16-bit float store before its blur, too: there a GL may saturate, and the
-  /// blur hides it. Requires a filter that encodes, and that its map was made.
-  ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer = 0);
-
-  /// What is looked at; the object must outlive it.
-  metrics::StoredMap stored() const;
-
-  int side() const { return texels_.side; }
-
- private:
-  filters::FilterRequest request_;
-  render::EncodedTexels texels_;
-  std::optional<render::EncodedTexels> before_blur_;
-  int radius_ = 0;
-  std::optional<glm::vec4> border_;
-};
-
-/// Looks through all layers of a filter's encoded map. Requires a filter that encodes, and that its map was made.
-metrics::TexelHealth check_map(render::FilterPasses& filter, const render::ShadowMap& map);
-
 /// Counts the texels of a filter's encoded map that overflowed or are NaN; 0 for filters that read depth. Requires that
 /// its map was made.
 std::int64_t count_broken_texels(render::FilterPasses& filter, const render::ShadowMap& map);
@@ -87,10 +64,6 @@ class StabilityMeter {
   metrics::BoundCheck compare_with_closer(const MeasuredCell& cell, const filters::ScalarModel& model,
                                           const render::LightLayers& light);
 };
-
-/// Names the store with as many channels and the other float precision; nothing where the filter does not offer
-/// it.
-std::optional<std::string> find_other_store(const filters::FilterRequest& request);
 
 /// Draws where a cell's numbers break and notes the path in its record; nothing where it has no such images.
 /// Throws Error(kOutput).

@@ -208,6 +208,16 @@ class Rounds {
   }
 };
 
+/// Makes passes that are timed; of no function none is made.
+TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup,
+                       std::function<void()> screen = {}) {
+  const auto make = [timer](std::function<void()> pass) -> std::function<double()> {
+    if (!pass) return {};
+    return [timer, pass = std::move(pass)] { return gl::time_ms(timer, pass); };
+  };
+  return {make(std::move(prefilter)), make(std::move(lookup)), make(std::move(screen))};
+}
+
 /// In records.
 std::string name_of(StopReason reason) {
   constexpr const char* kNames[] = {"rounds", "precise", "budget"};
@@ -239,15 +249,6 @@ std::vector<double> add_moving(const std::vector<double>& map, const FilterTimes
   std::vector<double> sum = times.lookup;
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += map[i] + (times.prefilter.empty() ? 0.0 : times.prefilter[i]);
   return sum;
-}
-
-TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup,
-                       std::function<void()> screen) {
-  const auto make = [timer](std::function<void()> pass) -> std::function<double()> {
-    if (!pass) return {};
-    return [timer, pass = std::move(pass)] { return gl::time_ms(timer, pass); };
-  };
-  return {make(std::move(prefilter)), make(std::move(lookup)), make(std::move(screen))};
 }
 
 RoundTimes run_rounds(const TimedPasses& passes, const RoundPlan& plan) { return Rounds(passes, plan).run(); }

@@ -60,10 +60,6 @@ struct TimedFilter {
   std::function<double()> screen = {};  ///< empty for filters without screen passes
 };
 
-/// Makes passes that are timed; of no function none is made.
-TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std::function<void()> lookup,
-                       std::function<void()> screen = {});
-
 /// What takes turns in timed rounds; each gives its time in milliseconds.
 struct TimedPasses {
   std::vector<TimedFilter> filters = {};
@@ -80,13 +76,10 @@ struct RoundPlan {
 };
 
 /// Times interleaved rounds: every round draws the map and runs each filter once, in a shuffled order, so that drift of
-/// the machine's speed hits all of them alike. After a prefilter three lookups go untimed, and the fourth is timed:
-/// right after a prefilter, a CPU's lookups are up to 1.6 times as slow as in a frame of lookups alone. One
-/// round warms up and is not counted; none where `drawn_ms` spends the budget already. A filter drops out when its
-/// ratios to the reference, of the lookup and of map, prefilter and lookup, are precise enough; the reference stays as
-/// long as any other. When the budget is spent, all stop, but not before three rounds, or one where no more may be.
-/// Requires at least one filter. Cost: (rounds + 1) times the sum of all passes, lookups of prefiltered maps four
-/// times.
+/// the machine's speed hits all alike. After a prefilter three lookups go untimed, and the fourth is timed: a CPU's are
+/// up to 1.6 times as slow at first. One round warms up, unless `drawn_ms` spends the budget already. A filter drops
+/// out when its ratios to the reference, of the lookup and of all passes, are precise enough. When the budget is spent,
+/// all stop, but not before three rounds, or one where no more may be. Requires at least one filter.
 RoundTimes run_rounds(const TimedPasses& passes, const RoundPlan& plan);
 
 /// Runs a filter's passes once, into `target`, and gives their time in milliseconds.

@@ -30,18 +30,15 @@ struct CountedLayer {
   std::vector<PixelReads> pixels;
 };
 
-/// Counts the bytes that a filter's lookups fetch through each cache: the mean over the receivers.
+/// Counts the bytes that a filter's lookups fetch through each cache: the mean over the receivers. Nothing where the
+/// filter has no scalar model, or no layer a receiver.
 ///
-/// A line of L bytes holds L / (bytes of a texel) texels of one map, in a block as near to a square as powers of two
-/// allow, the wider side along u. A texel has the bytes of its map's format. Receivers are asked in tiles of 8x8
-/// pixels, row by row of tiles from the top; a tile reads each of its lines once. The cache is empty at first,
-/// associates fully, and drops the line that was not read for the longest time; every line that it does not hold is
-/// fetched. Not counted: reads outside a map, which are none; what the passes before the lookup read and write.
-///
-/// Nothing where the filter has no scalar model, or no layer a receiver.
-/// Cost: the model's prefilter in single precision, and some of its lookups. The receivers of a tile are asked in an
-/// order that spreads them over it, until 8 in a row, with 128 reads, bring no new line: all of them where a filter
-/// reads no more than four texels. The README says how little that misses.
+/// A line holds a block of texels of one map as near to a square as powers of two allow. Receivers are asked in tiles
+/// of 8x8 pixels, row by row from the top; a tile reads each of its lines once. The cache is empty at first, associates
+/// fully, and drops the line that was not read for the longest time. Reads outside a map, and what the passes before
+/// the lookup read and write, are not counted.
+/// Cost: the model's prefilter in single precision, and some of its lookups: a tile's receivers are asked in an order
+/// that spreads them over it, until 8 in a row, with 128 reads, bring no new line.
 std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
                                                      const std::vector<ModelLayer>& layers, const ModelView& view,
                                                      std::span<const CacheShape> caches);

@@ -152,16 +152,11 @@ struct MapCoverage {
   records::CoverageRecord record;                       ///< empty fields where no receiver in the map faces the light
 };
 
-/// Lays the pixels of a view out in the map.
-///
-/// A pixel's footprint is the parallelogram that its sides cut out of its receiver's tangent plane, seen from the
-/// camera; it follows from camera, position and geometric normal (first order: the plane is the surface), so no
-/// neighbour of another surface has a say. Its area along the light, over a texel's area, is the texels per pixel.
-/// `map_used` is the share of the map's area under footprints, counted in cells of 1/512 of its side, or in texels
-/// where it has fewer; a footprint wider than 64 cells counts where its centre lies. `map_filled` is the share of the
-/// texels of `depth_map` that are nearer than 1. Cost: 0.05 s for half a million pixels on one core, and one pass over
-/// the map.
-/// Of a map with layers a pixel falls in the one that serves most of it; layers stand side by side, as in `depth_map`.
+/// Lays the pixels of a view out in the map. A pixel's footprint is the parallelogram that its sides cut out of its
+/// receiver's tangent plane; its area along the light, over a texel's area, is the texels per pixel. `map_used` is the
+/// share of the map's area under footprints, in cells of 1/512 of its side, or texels where it has fewer; a footprint
+/// wider than 64 cells counts where its centre lies. `map_filled` is the share of the texels of `depth_map` that are
+/// nearer than 1. A pixel falls in the layer that serves most of it; layers stand side by side, as in `depth_map`.
 MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera& camera,
                              const std::vector<TracedLayer>& layers, const images::Image& depth_map);
 

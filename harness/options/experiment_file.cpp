@@ -215,19 +215,14 @@ void insert(toml::table& table, const std::string& key, const std::vector<std::s
 
 }  // namespace
 
-std::vector<std::string> list_experiments(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 std::filesystem::path find_experiment(const std::filesystem::path& folder, const std::string& name) {
   if (std::filesystem::path(name).extension() == ".toml") return name;
-  const std::vector<std::string> known = list_experiments(folder);
-  if (std::find(known.begin(), known.end(), name) != known.end()) return folder / (name + ".toml");
+  std::vector<std::string> known;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".toml") known.push_back(entry.path().stem().string());
+  std::ranges::sort(known);
+  if (std::ranges::count(known, name) > 0) return folder / (name + ".toml");
   const std::optional<std::string> nearest = nearest_name(name, known);
   throw Error(
       ErrorKind::kUsage,

@@ -47,9 +47,6 @@ struct Experiment {
   std::vector<Engine> engines;       ///< whose pictures are scored once the run is done
 };
 
-/// Names the experiments of a folder.
-std::vector<std::string> list_experiments(const std::filesystem::path& folder);
-
 /// Finds an experiment: a path that ends in .toml, or the name of one that comes with the program.
 /// Throws Error(kUsage) for an unknown name; the message holds the nearest name, or all of them.
 std::filesystem::path find_experiment(const std::filesystem::path& folder, const std::string& name);

@@ -208,29 +208,26 @@ std::vector<float> cut(const std::vector<float>& texels, int width, int channels
 
 /// The texels of a map of `size` that hold these receivers, as far as they lie in `rect` of the picture, and a margin.
 images::Rect find_texels(const std::vector<filters::Receiver>& receivers, const images::Rect& rect, int size) {
-  int left = size, right = -1, bottom = size, top = -1;
+  glm::ivec2 low(size), high(-1);
   for (const filters::Receiver& receiver : receivers) {
     const glm::ivec2 within = receiver.pixel - glm::ivec2(rect.x, rect.y);
     if (within.x < 0 || within.y < 0 || within.x >= rect.width || within.y >= rect.height) continue;
     const glm::ivec2 texel(receiver.uv * static_cast<float>(size));
-    left = std::min(left, texel.x);
-    right = std::max(right, texel.x);
-    bottom = std::min(bottom, texel.y);
-    top = std::max(top, texel.y);
+    low = glm::min(low, texel);
+    high = glm::max(high, texel);
   }
-  if (right < left) return {};
-  left = std::clamp(left - kMarginTexels, 0, size - 1);
-  bottom = std::clamp(bottom - kMarginTexels, 0, size - 1);
-  return {left, bottom, std::clamp(right + kMarginTexels, left, size - 1) + 1 - left,
-          std::clamp(top + kMarginTexels, bottom, size - 1) + 1 - bottom};
+  if (high.x < low.x) return {};
+  low = glm::clamp(low - kMarginTexels, 0, size - 1);
+  high = glm::clamp(high + kMarginTexels, low, glm::ivec2(size - 1));
+  return {low.x, low.y, high.x + 1 - low.x, high.y + 1 - low.y};
 }
 
 live::Check make_check(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
-                       measure::SceneAssets& assets, const images::Rect& hardest) {
+                       measure::SceneAssets& assets, const images::Rect& disputed) {
   const render::GBuffer& gbuffer = assets.gbuffer(*task.camera);
   const measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
   const bool is_whole = renderer.recorder->lacks_vertices();
-  const images::Rect rect = is_whole ? images::Rect{0, 0, gbuffer.width(), gbuffer.height()} : hardest;
+  const images::Rect rect = is_whole ? images::Rect{0, 0, gbuffer.width(), gbuffer.height()} : disputed;
   live::Check check{rect, {}, is_whole};
   const images::Rect below = flip(rect, gbuffer.height());
   const auto add = [&](const gl::Texture& texture, const std::vector<float>& texels, int channels,

@@ -156,6 +156,14 @@ int choose_layer_size(const PlannedScene& planned, int map_size) {
   return size;
 }
 
+/// The views of a scene that were asked for; all where none was.
+std::vector<const scene::Camera*> choose_views(const options::RunOptions& options, const scene::Scene& scene) {
+  std::vector<const scene::Camera*> views;
+  for (const scene::Camera& camera : scene.cameras)
+    if (options.views.empty() || std::ranges::count(options.views, camera.name) > 0) views.push_back(&camera);
+  return views;
+}
+
 class Planner {
  public:
   Planner(const options::RunOptions& options, const std::string& renderer) : options_(options), renderer_(renderer) {}
@@ -323,16 +331,6 @@ std::string describe_test_without_effect(const options::RunOptions& options, con
 
 RunPlan make_plan(const options::RunOptions& options, const std::string& renderer) {
   return Planner(options, renderer).plan();
-}
-
-std::vector<const scene::Camera*> choose_views(const options::RunOptions& options, const scene::Scene& scene) {
-  std::vector<const scene::Camera*> views;
-  for (const scene::Camera& camera : scene.cameras) {
-    const bool wanted = options.views.empty() ||
-                        std::find(options.views.begin(), options.views.end(), camera.name) != options.views.end();
-    if (wanted) views.push_back(&camera);
-  }
-  return views;
 }
 
 std::string name_view(const PlannedScene& planned, const scene::Camera& camera) {

@@ -41,9 +41,6 @@ struct RunPlan {
 /// has, scenes or cells of one name, a shard of nothing.
 RunPlan make_plan(const options::RunOptions& options, const std::string& renderer);
 
-/// The views of a scene that were asked for; all where none was.
-std::vector<const scene::Camera*> choose_views(const options::RunOptions& options, const scene::Scene& scene);
-
 /// Names all that the truth of a view depends on, and its picture's size: geometry, textures, light and camera.
 std::string name_view(const PlannedScene& planned, const scene::Camera& camera);
 

@@ -204,7 +204,7 @@ images::Rect choose_crop(const std::vector<measure::MeasuredCell>& cells, images
     if (cell.record.filter == "none") reference = visibility.size();
     visibility.push_back(&cell.visibility);
   }
-  return images::find_hardest_edge(visibility, reference, size);
+  return images::find_disputed_edge(visibility, reference, size);
 }
 
 std::string task_stem(const options::RunOptions& options, const measure::SceneTask& task) {

@@ -157,6 +157,24 @@ Scene thinned(Scene shape) {
   return shape;
 }
 
+/// The place of a floor at that height, under the meshes and the shadows that the scene's light throws on it.
+Floor place_floor(const Scene& scene, float ground_y) {
+  constexpr float kBorder = 0.15f;
+  Bounds covered;
+  for (const glm::dvec3& p : points_to_show(scene, ground_y)) covered.add(glm::vec3(p.x, ground_y, p.z));
+  const glm::vec3 size = covered.max - covered.min;
+  const float border = 2.0f * kBorder * std::max(size.x, size.z);
+  return {{size.x + border, size.z + border}, 0.5f * (covered.min + covered.max)};
+}
+
+/// Just below the meshes: near enough to look like contact, far enough not to coincide.
+float ground_height(const Scene& scene) {
+  constexpr float kGap = 5e-4f;
+  const Bounds bounds = scene.bounds();
+  const float away_from_rounding = 1e-6f * std::abs(bounds.min.y);
+  return bounds.min.y - std::max(kGap * glm::length(bounds.max - bounds.min), away_from_rounding);
+}
+
 /// Counts edges in views of one scene.
 class ViewSearch {
  public:
@@ -200,6 +218,19 @@ struct Attempt {
   SkyAngles sun;
   std::vector<SkyAngles> cameras;
 };
+
+bool is_much_longer(const Bounds& bounds) {
+  const glm::vec3 size = bounds.max - bounds.min;
+  return long_axis_deg(bounds) && std::max(size.x, size.z) > kElongated * size.y;
+}
+
+/// Whether a scene that is much longer than wide and high is seen from its long side, where it is a thin line.
+bool would_be_thin(const Bounds& bounds, const SkyAngles& from) {
+  constexpr double kFarthestOffDeg = 35.0;
+  if (!is_much_longer(bounds)) return false;
+  return std::abs(std::cos(glm::radians(from.azimuth_deg - *long_axis_deg(bounds)))) <=
+         std::cos(glm::radians(kFarthestOffDeg));
+}
 
 /// All views of a scene, or of a part of it, that are worth a try; the usual one comes first, whatever it is.
 std::vector<Attempt> list_attempts(const Scene& framed, const ViewFreedom& free, const ViewAngles& usual) {
@@ -254,11 +285,6 @@ double measure_way(const SceneRay& ray, const truth::ReceiverPoint& met, const B
       way = std::min(way,
                      (static_cast<double>(step > 0.0 ? bounds.max[axis] : bounds.min[axis]) - ray.origin[axis]) / step);
   return way;
-}
-
-bool is_much_longer(const Bounds& bounds) {
-  const glm::vec3 size = bounds.max - bounds.min;
-  return long_axis_deg(bounds) && std::max(size.x, size.z) > kElongated * size.y;
 }
 
 /// Gives a scene that one walks through its camera, where that shows the edge of a shadow.
@@ -316,6 +342,12 @@ Scene with_placed_lights(Scene scene, const Completion& completion) {
   place(scene.light);
   std::ranges::for_each(scene.other_lights, place);
   return scene;
+}
+
+/// The camera of a choice, for a picture of the given width / height.
+Camera frame_choice(const Scene& scene, const ViewChoice& choice, double aspect, const ViewFreedom& free) {
+  const Scene shape = make_shape(scene, choice.near_light);
+  return frame_camera(shape, choice.angles.camera, aspect, free.ground_y);
 }
 
 /// Chooses what is free of the view of one light: `lit` is the scene with that light alone.
@@ -531,32 +563,9 @@ std::optional<Camera> find_walk_through(const Scene& scene) {
   return camera;
 }
 
-bool would_be_thin(const Bounds& bounds, const SkyAngles& from) {
-  constexpr double kFarthestOffDeg = 35.0;
-  if (!is_much_longer(bounds)) return false;
-  return std::abs(std::cos(glm::radians(from.azimuth_deg - *long_axis_deg(bounds)))) <=
-         std::cos(glm::radians(kFarthestOffDeg));
-}
-
 ViewAngles usual_view(const Bounds& bounds) {
   const double azimuth_deg = camera_azimuth_deg(bounds);
   return {{azimuth_deg, kCameraElevationDeg}, {azimuth_deg + kSunFromCameraDeg, kSunElevationDeg}};
-}
-
-float ground_height(const Scene& scene) {
-  constexpr float kGap = 5e-4f;
-  const Bounds bounds = scene.bounds();
-  const float away_from_rounding = 1e-6f * std::abs(bounds.min.y);
-  return bounds.min.y - std::max(kGap * glm::length(bounds.max - bounds.min), away_from_rounding);
-}
-
-Floor place_floor(const Scene& scene, float ground_y) {
-  constexpr float kBorder = 0.15f;
-  Bounds covered;
-  for (const glm::dvec3& p : points_to_show(scene, ground_y)) covered.add(glm::vec3(p.x, ground_y, p.z));
-  const glm::vec3 size = covered.max - covered.min;
-  const float border = 2.0f * kBorder * std::max(size.x, size.z);
-  return {{size.x + border, size.z + border}, 0.5f * (covered.min + covered.max)};
 }
 
 Mesh make_floor(const Floor& floor) {
@@ -599,11 +608,6 @@ ViewChoice choose_view(const Scene& scene, const ViewFreedom& free) {
   choice.is_usual = !(choice.edges.share() > choice.usual_edges.share());
   if (choice.is_usual) choice.angles = usual, choice.edges = choice.usual_edges, choice.near_light.clear();
   return choice;
-}
-
-Camera frame_choice(const Scene& scene, const ViewChoice& choice, double aspect, const ViewFreedom& free) {
-  const Scene shape = make_shape(scene, choice.near_light);
-  return frame_camera(shape, choice.angles.camera, aspect, free.ground_y);
 }
 
 std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free, const std::string& light) {

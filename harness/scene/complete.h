@@ -101,9 +101,6 @@ struct ViewAngles {
 /// shadows fall to the left.
 ViewAngles usual_view(const Bounds& bounds);
 
-/// Whether a scene that is much longer than wide and high is seen from its long side, where it is a thin line.
-bool would_be_thin(const Bounds& bounds, const SkyAngles& from);
-
 /// Returns a camera that looks at the scene's meshes from a place around them, as near as it can while every vertex
 /// stays inside a picture of the given width / height. Where `ground_y` is given, the shadows that the meshes throw on
 /// that plane are inside as well.
@@ -114,12 +111,6 @@ Camera frame_camera(const Scene& scene, const SkyAngles& from, double aspect, st
 /// one sees farthest, looking along that way. Eyes are 1.7 m high, but 1/20 to 1/4 of the scene's height. Nothing where
 /// the scene has no floor under most of its middle. Cost: 4096 rays.
 std::optional<Camera> find_walk_through(const Scene& scene);
-
-/// Returns the height of a floor just below the meshes: near enough to look like contact, far enough not to coincide.
-float ground_height(const Scene& scene);
-
-/// Returns the place of a floor at that height, under the meshes and the shadows that the scene's light throws on it.
-Floor place_floor(const Scene& scene, float ground_y);
 
 /// How many quads a floor has along each side.
 inline constexpr int kFloorCells = 32;
@@ -148,22 +139,12 @@ struct ViewFreedom {
 };
 
 /// Chooses camera and sun so that edges of the light's shadows touch as many of the surfaces as they can
-/// (EdgeCount::share).
-///
-/// Tried are eight directions of the camera in two heights with each of eight directions of the sun in two heights, or
-/// what of it is free; of a lamp that stands in the scene each direction twice: of the whole scene, and of what it
-/// shines on near by. Views towards the light, and those that would be thin (would_be_thin), are left out. The usual
-/// view is the first, whatever it is, and stays the choice unless another is better; of equal ones the first is taken.
-/// What is counted is a picture of 16:9, so that the directions do not depend on a picture's size. Of several cameras
-/// of the scene itself all are counted, of several lights the first. A scene of more than 2^20 triangles gets the usual
-/// view.
-///
-/// Requires validated geometry, and cameras where they are not free. Cost: 0.6 s of CPU time for 300 000 triangles, 1.0
-/// s with a floor.
+/// (EdgeCount::share): of eight directions of each in two heights, or what of it is free; of a lamp that stands in the
+/// scene each also of what it shines on near by. Views towards the light and thin ones are left out. The usual view
+/// stays unless another is better. Counts are of a picture of 16:9, so that the directions do not depend on a picture's
+/// size; of all cameras of the scene, and of its first light. More than 2^20 triangles get the usual view.
+/// Requires validated geometry, and cameras where they are not free. Cost: 0.6 s of CPU time for 300 000 triangles.
 ViewChoice choose_view(const Scene& scene, const ViewFreedom& free);
-
-/// The camera of a choice, for a picture of the given width / height.
-Camera frame_choice(const Scene& scene, const ViewChoice& choice, double aspect, const ViewFreedom& free);
 
 /// The choice in words, for the user; where no edge is seen, with what to do. `light` names the one of several.
 std::string describe_choice(const ViewChoice& choice, const ViewFreedom& free, const std::string& light = {});
@@ -176,12 +157,9 @@ struct Completion {
   std::optional<SkyAngles> light{};  ///< put every light there
 };
 
-/// Returns a checked scene that has all it lacked: a sun, a camera for each light that has none, by choose_view(),
-/// which a note names, and a floor. The camera of a scene that is three times as long as wide and high, with a floor of
-/// its own, is that of find_walk_through(), if it shows the edge of a shadow. Of several lights each has its camera,
-/// called as the light. Cameras and lights that the scene has, and a place that was asked for, stay as they are; lights
-/// of intensity 0 are left out with a warning.
-///
+/// Returns a checked scene that has all it lacked: a sun, a camera for each light that has none, called as the light
+/// where there are several (choose_view(), or find_walk_through() in a long scene with a floor of its own), and a
+/// floor. What the scene has, and a place that was asked for, stays; lights of intensity 0 are left out with a warning.
 /// Requires validated geometry. Throws kInput, at `where`, as validate() does.
 Scene complete(Scene scene, Completion completion, const std::string& where);
 

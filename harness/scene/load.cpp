@@ -380,7 +380,8 @@ Scene load_file(const fs::path& file, const LoadOptions& options) {
 
 std::vector<SceneInfo> with_titles(const std::vector<fs::path>& files) {
   std::vector<SceneInfo> scenes;
-  for (const fs::path& file : files) scenes.push_back({file.stem().string(), read_scene_title(file), file});
+  for (const fs::path& file : files)
+    scenes.push_back({file.stem().string(), read_toml(file, "the scene").string("title"), file});
   return scenes;
 }
 
@@ -489,8 +490,6 @@ Scene load_scene(const std::filesystem::path& file, double aspect, const std::op
   const TomlTable root = read_toml(file, "the scene");
   return SceneBuilder(root, file).build({.aspect = aspect, .light = light});
 }
-
-std::string read_scene_title(const std::filesystem::path& file) { return read_toml(file, "the scene").string("title"); }
 
 std::vector<SceneInfo> list_scenes(const fs::path& folder) { return with_titles(scene_files(folder)); }
 

@@ -57,9 +57,6 @@ Scene load_scene(const std::filesystem::path& file, double aspect = 16.0 / 9.0,
 /// kInput.
 Camera read_camera(const TomlTable& table, const glm::dvec3& origin = glm::dvec3(0.0));
 
-/// Reads a scene file's title alone. Throws as load_scene does.
-std::string read_scene_title(const std::filesystem::path& file);
-
 /// A scene as it is shown: that of a file, looked at and lit in another way.
 struct ShownScene {
   std::filesystem::path source;  ///< the scene file or bare model

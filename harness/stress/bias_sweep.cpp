@@ -250,7 +250,7 @@ class BiasSweep {
     images.push_back(&truth);
     grid.mask = images::make_image(truth.width, truth.height, rig_.truth().mask);
     grid.crop =
-        images::find_hardest_edge(images, images.size() - 1, images::choose_crop_size({truth.width, truth.height}));
+        images::find_disputed_edge(images, images.size() - 1, images::choose_crop_size({truth.width, truth.height}));
     grid.columns = static_cast<int>(grid.tiles.size());
     const std::string light = scene_.light.name.empty() ? "" : files::make_file_stem(scene_.light.name) + ".";
     mode.picture = fmt::format("bias.{}{}.png", light, mode.mode);

@@ -212,7 +212,7 @@ Size choose_crop_size(Size picture) {
   return {width, std::clamp(width * 3 / 4, 1, std::max(1, picture.height))};
 }
 
-Rect find_hardest_edge(const std::vector<const Image*>& visibility, std::size_t reference, Size size) {
+Rect find_disputed_edge(const std::vector<const Image*>& visibility, std::size_t reference, Size size) {
   std::vector<const Image*> images;
   std::copy_if(visibility.begin(), visibility.end(), std::back_inserter(images),
                [](const Image* image) { return image != nullptr && !image->empty(); });
@@ -234,7 +234,7 @@ Rect find_hardest_edge(const std::vector<const Image*>& visibility, std::size_t 
   });
 }
 
-Rect find_hardest_tile(const Image& values) {
+Rect find_largest_tile(const Image& values) {
   SummedArea sums(values.width, values.height);
   for (int y = 0; y < values.height; ++y)
     for (int x = 0; x < values.width; ++x) sums.set(x, y, reference_at(values, x, y));

@@ -59,10 +59,10 @@ Size choose_crop_size(Size picture);
 ///
 /// `visibility`: 1 channel each, of one size; null or empty images are left out. `reference` is an index into it.
 /// Returns a rectangle of `size`, clipped to the images; an empty one where there are no images.
-Rect find_hardest_edge(const std::vector<const Image*>& visibility, std::size_t reference, Size size);
+Rect find_disputed_edge(const std::vector<const Image*>& visibility, std::size_t reference, Size size);
 
 /// Finds the square, a sixteenth of the picture wide, with the largest mean. Values that are not finite count as 0;
 /// ties go to the topmost, then leftmost one. `values`: 1 channel.
-Rect find_hardest_tile(const Image& values);
+Rect find_largest_tile(const Image& values);
 
 }  // namespace shadowbench::images

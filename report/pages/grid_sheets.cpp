@@ -125,9 +125,9 @@ class GridMaker {
     std::vector<const images::Image*> compared = {find_image(images_, kTruth)};
     for (const records::CellRecord* cell : cells_)
       if (!is_suspect(*cell)) compared.push_back(find_image(images_, name_part(*cell)));
-    crop_ = images::find_hardest_edge(compared, 0, images::kSheetCrop);
+    crop_ = images::find_disputed_edge(compared, 0, images::kSheetCrop);
     if (crop_.width == 0 && !images_.empty())  // all are suspect
-      crop_ = images::find_hardest_edge({&images_.begin()->second}, 0, images::kSheetCrop);
+      crop_ = images::find_disputed_edge({&images_.begin()->second}, 0, images::kSheetCrop);
     std::vector<images::Image> errors;
     std::vector<const images::Image*> counted;
     for (const records::CellRecord* cell : cells_)

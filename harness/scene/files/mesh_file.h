@@ -38,15 +38,10 @@ bool is_mesh_file(const std::filesystem::path& file);
 /// is missing, malformed or of another kind.
 MeshFile import_mesh_file(const std::filesystem::path& file, const glm::dvec3& origin = glm::dvec3(0.0));
 
-/// Reads a glTF 2.0 file (.gltf or .glb): its default scene, node transforms applied.
-///
-/// Reads triangles, strips and fans with indices of any type, quantised and compressed ones (EXT_meshopt_compression)
-/// too, as often as EXT_mesh_gpu_instancing says, unless KHR_node_visibility hides them,
-/// and skins as their joints stand at rest; materials as read_gltf_materials() does; perspective and orthographic
-/// cameras, and the lights of KHR_lights_punctual (their colour; all but those of 0 have intensity 1, because every
-/// picture has the same exposure). Missing normals become flat ones. Warns about what it leaves out: lights of other
-/// kinds, morph targets, lines and points. Throws kInput for a file that is malformed, refers outside its folder,
-/// or requires an extension that is not read.
+/// Reads a glTF 2.0 file (.gltf or .glb): its default scene, node transforms applied, skins at rest; README.md of
+/// harness/scene names the extensions. Lights have intensity 1, or 0, because every picture has the same exposure.
+/// Missing normals become flat ones. Warns about what it leaves out. Throws kInput for a file that is malformed, refers
+/// outside its folder, or requires an extension that is not read.
 MeshFile import_gltf(const std::filesystem::path& file, const glm::dvec3& origin = glm::dvec3(0.0));
 
 /// Reads a Wavefront .obj file, and the diffuse colours, opacity (d, Tr, map_d) and textures of its material library.

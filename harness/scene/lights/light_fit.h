@@ -241,24 +241,16 @@ truth::TexelGradients find_gradients(const LightFrustum& frustum, const glm::dve
 /// Where a filter's kernel lies in the world.
 truth::MapGrid make_map_grid(const LightFrustum& frustum);
 
-/// Fits the frustum of a light's map to a validated scene.
+/// Fits the frustum of a light's map to a validated scene; texels are square.
 ///
-/// `pad_texels` of the map stay free on every side, so that a kernel of that half-width around any point of the scene
-/// stays inside the map. Texels are square. Depth runs from the vertex nearest to the light to the farthest one,
-/// whether it casts or not, so that every receiver's depth lies inside (0,1), even in 16 bits; a scene without depth
-/// gets a thousandth of the map's width. A light with a map window gets exactly that: no padding, and receivers may lie
-/// outside and beyond the far plane.
-///
-/// FitMode::kView encloses every point that the camera sees, hidden ones too. Its depth runs from the nearest caster
-/// over the map to the farthest point in view. A camera that sees nothing gets the tight fit.
+/// `pad_texels` of the map stay free on every side, for kernels of that half-width. Depth runs from the vertex nearest
+/// to the light to the farthest one, so that every receiver's depth lies inside (0,1), even in 16 bits. A light with a
+/// map window gets exactly that: receivers may lie outside and beyond the far plane. FitMode::kView encloses every
+/// point that the camera sees, hidden ones too, and the casters before them; FitMode::kCascades does so for each slice
+/// of the view, with `snap` around a sphere that holds the slice. A camera that sees nothing gets the tight fit.
 ///
 /// With `snap`, the map's origin lies a whole number of texels from the world's origin, and a texel's size is rounded
-/// up to a power of 2^(1/8), at most 9 % larger: while the camera moves by less than a texel the grid stays where it
-/// is, and the edges of shadows do not crawl. That costs one texel of the map's side.
-///
-/// FitMode::kCascades fits a layer to each slice of the view as FitMode::kView does; with `snap` around a sphere that
-/// holds the slice of the camera's own frustum, whose size does not change when the camera turns. A light in the scene
-/// has nothing to split: it is fitted as ever.
+/// up to a power of 2^(1/8): edges do not crawl while the camera moves. That costs one texel of the map's side.
 ///
 /// Requires a camera for a fit that follows the view. Throws kUsage where the padding leaves no texel for the scene.
 /// Cost: one or two passes over the vertices.

@@ -319,7 +319,7 @@ TEST(HardestEdge, TheEdgeThatFiltersDisagreeOn_IsFound) {
     *other.at(60, y) = 0.4f;
     *other.at(59, y) = 0.6f;
   }
-  const Rect crop = find_hardest_edge({&reference, &other}, 0, {12, 9});
+  const Rect crop = find_disputed_edge({&reference, &other}, 0, {12, 9});
   EXPECT_TRUE(contains(crop, 59, 25));
   EXPECT_TRUE(contains(crop, 60, 29));
   EXPECT_EQ(crop.width, 12);
@@ -332,7 +332,7 @@ TEST(HardestEdge, DisagreementWithoutAnEdge_IsPassedOver) {
   for (int y = 0; y < 10; ++y)
     for (int x = 66; x < 78; ++x) *other.at(x, y) = 0.0f;  // acne far from any edge
   *other.at(20, 30) = 0.5f;
-  EXPECT_TRUE(contains(find_hardest_edge({&reference, &other}, 0, {5, 5}), 20, 30));
+  EXPECT_TRUE(contains(find_disputed_edge({&reference, &other}, 0, {5, 5}), 20, 30));
 }
 
 TEST(HardestEdge, WithoutAnyEdge_HoldsTheDisagreement) {
@@ -340,7 +340,7 @@ TEST(HardestEdge, WithoutAnyEdge_HoldsTheDisagreement) {
   std::fill(lit.texels.begin(), lit.texels.end(), 1.0f);
   Image other = lit;
   *other.at(55, 20) = 0.0f;
-  EXPECT_TRUE(contains(find_hardest_edge({&lit, &other}, 0, {5, 5}), 55, 20));
+  EXPECT_TRUE(contains(find_disputed_edge({&lit, &other}, 0, {5, 5}), 55, 20));
 }
 
 TEST(HardestEdge, TexelThatIsNotFinite_DoesNotSpoilTheSearch) {
@@ -348,7 +348,7 @@ TEST(HardestEdge, TexelThatIsNotFinite_DoesNotSpoilTheSearch) {
   Image other = reference;
   *other.at(2, 2) = std::numeric_limits<float>::quiet_NaN();
   *other.at(20, 30) = 0.5f;
-  EXPECT_TRUE(contains(find_hardest_edge({&reference, &other}, 0, {5, 5}), 20, 30));
+  EXPECT_TRUE(contains(find_disputed_edge({&reference, &other}, 0, {5, 5}), 20, 30));
 }
 
 TEST(HardestEdge, FailedFilters_AreLeftOut) {
@@ -356,13 +356,13 @@ TEST(HardestEdge, FailedFilters_AreLeftOut) {
   Image other = reference;
   *other.at(20, 30) = 0.5f;
   const Image empty;
-  EXPECT_TRUE(contains(find_hardest_edge({&empty, nullptr, &reference, &other}, 0, {5, 5}), 20, 30));
-  EXPECT_EQ(find_hardest_edge({&empty}, 0, {5, 5}).width, 0);
+  EXPECT_TRUE(contains(find_disputed_edge({&empty, nullptr, &reference, &other}, 0, {5, 5}), 20, 30));
+  EXPECT_EQ(find_disputed_edge({&empty}, 0, {5, 5}).width, 0);
 }
 
 TEST(HardestEdge, CropLargerThanTheImage_IsCutToIt) {
   const Image reference = make_two_edges();
-  const Rect crop = find_hardest_edge({&reference}, 0, {500, 500});
+  const Rect crop = find_disputed_edge({&reference}, 0, {500, 500});
   EXPECT_EQ(crop.width, 80);
   EXPECT_EQ(crop.height, 40);
 }

@@ -64,7 +64,7 @@ inline images::Grid make_grid(int tiles, int width, int height) {
   }
   std::vector<const images::Image*> visibility;
   for (const images::GridTile& tile : grid.tiles) visibility.push_back(&tile.visibility);
-  grid.crop = images::find_hardest_edge(visibility, 0, images::choose_crop_size({width, height}));
+  grid.crop = images::find_disputed_edge(visibility, 0, images::choose_crop_size({width, height}));
   return grid;
 }
 
