@@ -17,7 +17,7 @@ const kTitles = {
   "ANGLE (Intel, Intel(R) Iris(R) Xe Graphics (0x00009A49) Direct3D11 vs_5_0 ps_5_0, D3D11)": "Intel Iris Xe Graphics",
   "ANGLE (Qualcomm, Qualcomm(R) Adreno(TM) X1-85 GPU (0x36334330) Direct3D11 vs_5_0 ps_5_0, D3D11)": "Qualcomm Adreno X1-85 GPU",
   // Firefox, which rounds names.
-  "NVIDIA GeForce GTX 980, or similar": "NVIDIA GeForce GTX 980",
+  "ANGLE (Intel, Intel(R) HD Graphics 400 Direct3D11 vs_5_0 ps_5_0), or similar": "Intel HD Graphics 400",
   // macOS and iOS.
   "ANGLE (Apple, ANGLE Metal Renderer: Apple M1 Pro, Unspecified Version)": "Apple M1 Pro",
   "ANGLE (Intel Inc., Intel(R) Iris(TM) Plus Graphics OpenGL Engine, OpenGL 4.1)": "Intel Iris Plus Graphics",
@@ -26,7 +26,9 @@ const kTitles = {
   "ANGLE (Qualcomm, Adreno (TM) 740, OpenGL ES 3.2)": "Adreno 740",
   "ANGLE (ARM, Mali-G715, OpenGL ES 3.2)": "Mali-G715",
   "ANGLE (Samsung Electronics Co., Ltd., Vulkan 1.3.279 (Samsung Xclipse 940 (0x00000000)), Samsung driver)": "Samsung Xclipse 940",
+  "ANGLE (Samsung Xclipse 920) on Vulkan 1.1.179": "Samsung Xclipse 920",
   // Linux.
+  "Mesa DRI Intel(R) HD Graphics 520 (Skylake GT2)": "Intel HD Graphics 520",
   "NVIDIA GeForce RTX 3080/PCIe/SSE2": "NVIDIA GeForce RTX 3080",
   "ANGLE (NVIDIA, Vulkan 1.3.242 (NVIDIA NVIDIA GeForce RTX 3070 (0x00002484)), NVIDIA-535.54.3)": "NVIDIA GeForce RTX 3070",
   "ANGLE (Intel, Mesa Intel(R) UHD Graphics 620 (KBL GT2), OpenGL 4.6)": "Intel UHD Graphics 620",
@@ -36,6 +38,7 @@ const kTitles = {
   "ANGLE (Mesa, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5)": "llvmpipe",
   // What is not known stays as it is.
   "WebKit WebGL": "WebKit WebGL",
+  "ANGLE ()": "ANGLE ()",
   "<img src=x onerror=alert(1)>": "<img src=x onerror=alert(1)>",
   "": "",
 };
