@@ -78,6 +78,12 @@ test("WhereNothingAgreesWithTheRun_MeasuringSaysSo", () => withBrowser(kMesa, as
   await close();
 }));
 
+test("WithoutWebGl_MeasuringSaysSo", () => withBrowser(["--disable-gpu", "--disable-3d-apis"], async (browser) => {
+  const { page, close } = await open(pageOf("untrue"), { browser });
+  await measureInVain(page, "no WebGL 2");
+  await close();
+}));
+
 test("TheAnswersPicture_OpensLiveAtItsSceneAndFilter", () => withBrowser(kMesa, async (browser) => {
   const { page, messages, close } = await open(pageOf("several"), { browser });
   const pick = page.locator(".picks button").last(), wanted = await pick.evaluate(({ dataset }) => [Number(dataset.place), -1, Number(dataset.index)]);
