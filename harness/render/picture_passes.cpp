@@ -86,6 +86,14 @@ void DisplayPass::clear_window(const glm::ivec2& size, const glm::vec3& color) {
   glClear(GL_COLOR_BUFFER_BIT);
 }
 
+images::Image DisplayPass::read_window(const glm::ivec2& corner, const glm::ivec2& size) {
+  images::Image image(size.x, size.y, 3);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  for (int y = 0; y < size.y; ++y)
+    glReadPixels(corner.x, corner.y + size.y - 1 - y, size.x, 1, GL_RGB, GL_FLOAT, image.at(0, y));
+  return image;
+}
+
 void DisplayPass::draw(ShaderLibrary& shaders, const std::array<DisplayedValues, 2>& sides, const DisplayPlace& place,
                        ImageTarget* target) {
   if (target)

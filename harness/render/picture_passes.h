@@ -78,6 +78,9 @@ class DisplayPass {
   /// Fills the window of the context with one colour.
   static void clear_window(const glm::ivec2& size, const glm::vec3& color);
 
+  /// A part of that window, sRGB, rows top to bottom; `corner` is its lower left one.
+  static images::Image read_window(const glm::ivec2& corner, const glm::ivec2& size);
+
  private:
   gl::Texture grey_;
   gl::Texture diverging_;

@@ -25,7 +25,6 @@ constexpr float kPanelWidth = 380.0f;
 constexpr float kStatusHeight = 24.0f;
 constexpr double kSecondsBeforeFull = 0.12;  ///< before what was dragged is drawn in full again, while it is still held
 constexpr int kLinesOfFault = 4;
-constexpr double kShareOfNewest = 0.25;  ///< in what a frame is said to take
 constexpr const char* kHowToUseScene = ".toml, for 'shadowbench view' and 'run --scene'";
 constexpr ImU32 kDividerColor = IM_COL32(255, 200, 40, 255);
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
@@ -77,7 +76,6 @@ Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path o
       scenes_(bench, Widgets(log)),
       settings_(bench, Widgets(log), [this] { save_state("scene", save_scene); }),
       meter_(bench),
-      errors_(bench),
       magnifier_(bench, display_, Widgets(log)),
       map_(bench, layers_, display_, Widgets(log)),
       full_size_(bench.state().options.width, bench.state().options.height) {}
@@ -98,53 +96,29 @@ PicturePlace Gui::place() const {
   return {glm::max(corner, glm::vec2(0.0f)), magnified * full.x / static_cast<float>(pixels.x), pixels};
 }
 
+/// The picture's lower left corner in the window's framebuffer.
+glm::ivec2 Gui::gl_corner() const {
+  const PicturePlace at = place();
+  return {static_cast<int>(at.corner.x),
+          window_.size().y - static_cast<int>(at.corner.y) - static_cast<int>(at.size().y)};
+}
+
 /// The picture takes the size of the window where it may, and half of it while something is dragged.
 void Gui::fit_picture(double now_s) {
   const bool is_held = ImGui::IsAnyMouseDown() || input_.is_flying();
   if (is_held && (bench_.changes().camera || bench_.changes().light)) moved_s_ = now_s;
-  const bool is_moving = is_held && now_s - moved_s_ < kSecondsBeforeFull;
-  if (!is_moving) draw_finely();
-  const glm::ivec2 area(free_area());
-  if (!keeps_size_ && !fine_ && area != full_size_) {
-    full_size_ = area;
-    bench_.change({.camera = true, .light = true}, [&](ViewSettings& settings) {
-      settings.options.width = area.x;
-      settings.options.height = area.y;
-      settings.options.sizes = {{area.x, area.y}};
-    });
-  }
-  if (is_moving) draw_coarsely();
+  if (!keeps_size_) full_size_ = free_area();
+  resize(is_held && now_s - moved_s_ < kSecondsBeforeFull);
 }
 
-/// Draws a quarter of the pixels, and of the map's texels where the map is filtered anew for every frame.
-void Gui::draw_coarsely() {
-  if (fine_) return;
-  fine_ = bench_.state();
-  const auto is_filtered = [](const Side& side) {
-    return !side.truth && (side.filter.spec.has_encode || !side.filter.spec.passes.empty());
-  };
-  const bool map =
-      (bench_.changes().light || fine_->options.fit.follows_view()) && std::ranges::any_of(fine_->sides, is_filtered);
-  Changes changes{.camera = true, .light = true};
-  if (map) changes = Changes::all();
-  bench_.change(changes, [&](ViewSettings& settings) { halve(settings, map); });
-}
-
-void Gui::draw_finely() {
-  if (!fine_) return;
-  const bool map = fine_->map_size() != bench_.state().map_size();
-  bench_.change(map ? Changes::all() : Changes{.camera = true, .light = true}, [&](ViewSettings& settings) {
-    settings.options = fine_->options;
-    settings.sides = fine_->sides;
+void Gui::resize(bool halves) {
+  const glm::ivec2 size = halves ? glm::max(full_size_ / 2, glm::ivec2(1)) : full_size_;
+  if (size == glm::ivec2(bench_.state().options.width, bench_.state().options.height)) return;
+  bench_.change({.camera = true}, [&](ViewSettings& settings) {
+    settings.options.width = size.x;
+    settings.options.height = size.y;
+    settings.options.sizes = {{size.x, size.y}};
   });
-  fine_.reset();
-}
-
-void Gui::note_frame(double ms, bool is_drawn) {
-  const int compiled = bench_.renderer().shaders.compiled();
-  if (std::exchange(compiled_, compiled) != compiled || (was_drawn_ && !is_drawn)) return;
-  frame_ms_ = frame_ms_ == 0.0 || is_drawn != was_drawn_ ? ms : std::lerp(frame_ms_, ms, kShareOfNewest);
-  was_drawn_ = is_drawn;
 }
 
 void Gui::lay_out(double now_s) {
@@ -152,7 +126,7 @@ void Gui::lay_out(double now_s) {
   const std::vector<Window::KeyPress> keys = window_.take_keys();
   // What is chosen or saved is not the half that is drawn at present.
   if (!keys.empty() || ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseReleased(ImGuiMouseButton_Left))
-    draw_finely();
+    resize(false);
   for (const Window::KeyPress& press : keys) obey(press);
   input_.take(place(), look_, seconds);
   if (look_.panels) {
@@ -234,20 +208,19 @@ void Gui::lay_out_help() {
 
 void Gui::draw_picture() {
   is_timing_ = look_.panels && meter_.step();
-  errors_.step(last_s_);
   const Layer& layer = Layers::list()[look_.layer];
   const PicturePlace at = place();
   // Half a column more than is seen: the divider may stand within one. The magnifier shows both sides anywhere.
   const int divider = static_cast<int>(at.divider_column(look_)), all = at.pixels.x;
   shown_[0] = layers_.show(layer, 0, look_.error_scale, {0, look_.magnifier ? all : std::min(divider + 1, all)});
   shown_[1] = layers_.show(layer, 1, look_.error_scale, {look_.magnifier ? 0 : std::max(divider - 1, 0), all});
-  save_wanted_picture();
   lay_out_inspection();
-  const glm::ivec2 window = window_.size(), size(at.size());
-  render::DisplayPass::clear_window(window, glm::vec3(0.08f));
-  const glm::ivec2 corner(static_cast<int>(at.corner.x), window.y - static_cast<int>(at.corner.y) - size.y);
+  render::DisplayPass::clear_window(window_.size(), glm::vec3(0.08f));
   display_.draw(bench_.renderer().shaders, {shown_[0].values, shown_[1].values},
-                {.corner = corner, .size = size, .magnified = at.magnified, .divider = at.divider_column(look_)});
+                {.corner = gl_corner(),
+                 .size = glm::ivec2(at.size()),
+                 .magnified = at.magnified,
+                 .divider = at.divider_column(look_)});
   draw_divider();
   lay_out_captions();
   lay_out_faults();
@@ -276,16 +249,19 @@ void Gui::draw_divider() {
   log_.note_widget("divider", {x, at.corner.y}, {x, at.corner.y + at.size().y});
 }
 
-/// Says what a side is, how far from the truth, and what keeps a layer from being shown.
+/// Says what a side is, and how far from the truth, or what keeps a layer from being shown.
 std::string Gui::make_caption(std::size_t side) const {
   const Side& named = bench_.state().sides[side];
-  if (named.truth && bench_.stage().truth() == nullptr) return "no truth yet, lit everywhere: " + shown_[side].absent;
-  std::string text = named.truth ? "ray-traced truth" : named.label();
-  if (const std::string error = errors_.describe(side); !error.empty()) text += ", " + error;
-  return shown_[side].absent.empty() ? text : text + ": " + shown_[side].absent;
+  const std::string &absent = shown_[side].absent, text = named.truth ? "ray-traced truth" : named.label();
+  if (named.truth && bench_.stage().truth() == nullptr) return absent + "; all is shown lit";
+  if (!absent.empty()) return text + ": " + absent;
+  if (named.truth) return text;
+  if (const auto rmse = bench_.rmse(side)) return fmt::format("{}, RMSE {:.4f}", text, *rmse);
+  const std::string missing = bench_.explain_no_truth();
+  return text + (missing.empty() ? ", RMSE ..." : ", no RMSE: " + missing);
 }
 
-/// The captions of both sides, that of a hidden one in grey; below them what colours mean; and what a frame takes.
+/// The captions of both sides, a hidden side's in grey; below them what colours mean.
 void Gui::lay_out_captions() {
   const PicturePlace at = place();
   const float edge = 0.6f * ImGui::GetFontSize();
@@ -300,12 +276,6 @@ void Gui::lay_out_captions() {
     below = std::max(below, at.corner.y + size.y + 2.0f * edge);
   }
   lay_out_scales({at.corner.x + edge, below + 0.3f * ImGui::GetFontSize()});
-  if (frame_ms_ == 0.0) return;
-  const std::string speed = fmt::format("{:.0f} frames a second ({:.0f} ms), {} x {} pixels, map {}", 1e3 / frame_ms_,
-                                        frame_ms_, at.pixels.x, at.pixels.y, bench_.state().map_size());
-  const glm::vec2 size = text_size(speed);
-  draw_caption({at.corner.x + at.size().x - size.x - edge, at.corner.y + at.size().y - 1.8f * ImGui::GetFontSize()},
-               speed, size);
 }
 
 /// What colours mean, with the side: once where they mean the same on both sides.
@@ -374,7 +344,7 @@ void Gui::save_state(const std::string& what,
 void Gui::save_wanted_picture() {
   if (!wants_picture_) return;
   const bool is_incomplete = std::ranges::any_of(shown_, [](const ShownLayer& each) { return !each.absent.empty(); });
-  if (fine_ || (is_incomplete && bench_.is_busy())) {
+  if (is_halved() || (is_incomplete && bench_.is_busy())) {
     saved_ = "the picture is saved when all of it is there";
     return;
   }
@@ -382,37 +352,27 @@ void Gui::save_wanted_picture() {
   save("picture", [this](const std::filesystem::path& stem) { save_picture(stem); });
 }
 
-/// Writes STEM.png, which is what the window shows of both sides with their captions and scales, and STEM.exr with the
-/// float images behind it: for each side, "left" and "right", its visibility and its picture, and the truth. Without a
-/// truth the sides that show it are left out, and captions say why. Throws Error(kOutput).
+/// Writes STEM.png, the picture as the window shows it, and STEM.exr with the float images behind it: for each side,
+/// "left" and "right", its visibility and its picture, and the truth. Without a truth the sides that show it are left
+/// out, and captions say why. Throws Error(kOutput).
 void Gui::save_picture(const std::filesystem::path& stem) {
   const ViewState& state = bench_.state();
-  const glm::ivec2 size(state.options.width, state.options.height);
-  for (std::size_t side = 0; side < kSides; ++side)
-    shown_[side] = layers_.show(Layers::list()[look_.layer], side, look_.error_scale, {0, size.x});
-  render::ImageTarget target("saved picture", GL_RGBA8, size.x, size.y);
-  display_.draw(bench_.renderer().shaders, {shown_[0].values, shown_[1].values},
-                {.size = size, .divider = place().divider_column(look_)}, &target);
+  const glm::ivec2 all(0, state.options.width);
   std::vector<images::Part> parts;
+  images::Metadata metadata = {{"scene", state.scene.name}};
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::string name = kSideNames[side];
+    metadata[name] = state.sides[side].label();
     if (state.sides[side].truth && bench_.stage().truth() == nullptr) continue;
-    parts.push_back(
-        {name + ".visibility", {"Y"}, render::read_image(bench_.stage().visibility(side, {0, size.x}), 1), false});
-    const gl::Texture& picture = bench_.stage().picture(state, side, {0, size.x});
+    parts.push_back({name + ".visibility", {"Y"}, render::read_image(bench_.stage().visibility(side, all), 1), false});
+    const gl::Texture& picture = bench_.stage().picture(state, side, all);
     parts.push_back({name + ".picture", {"R", "G", "B"}, render::read_image(picture, 3), true});
   }
   if (bench_.stage().truth() != nullptr)
     parts.push_back({"truth.area", {"Y"}, render::read_image(*bench_.stage().truth(), 1), false});
-  images::Metadata metadata = {{"scene", state.scene.name}};
-  for (std::size_t side = 0; side < kSides; ++side) metadata[kSideNames[side]] = state.sides[side].label();
   images::write_exr(std::filesystem::path(stem) += ".exr", parts, metadata);
-  images::Image picture = render::read_image(target.texture(), 3);
-  std::array<std::string, kSides> captions = {make_caption(0), make_caption(1)};
-  if (look_.sharing == Sharing::kFlip) captions[1 - look_.flipped_to].clear();
-  int below = draw_captions(picture, captions);
-  for (const auto& [side, scale] : list_scales()) below = scale.draw(picture, below);
-  images::write_display_png(std::filesystem::path(stem) += ".png", picture);
+  images::write_display_png(std::filesystem::path(stem) += ".png",
+                            render::DisplayPass::read_window(gl_corner(), glm::ivec2(place().size())));
 }
 
 const std::vector<Gui::Key>& Gui::list_keys() {

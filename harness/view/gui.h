@@ -34,12 +34,11 @@ class Gui {
   /// Whether the next frame must not wait for an event.
   bool is_moving() const { return input_.is_flying() || is_timing_; }
 
-  /// Takes note of what a frame took; `is_drawn` tells whether passes ran. Those that compiled a filter do not count.
-  void note_frame(double ms, bool is_drawn);
+  /// Saves the picture that was asked for, once all that it shows is there; after the widgets are drawn over it.
+  void save_wanted_picture();
 
   PicturePlace place() const;
   const Look& look() const { return look_; }
-  const ErrorMeter& errors() const { return errors_; }
   /// Begins a lesson by name.
   void start(const std::string& lesson);
 
@@ -70,25 +69,21 @@ class Gui {
   ScenePanel scenes_;
   SettingsPanel settings_;
   TimeMeter meter_;
-  ErrorMeter errors_;
   Magnifier magnifier_;
   MapPanel map_;
   std::array<ShownLayer, kSides> shown_;
   bool is_timing_ = false;
-  glm::ivec2 full_size_;              ///< of the picture, in pixels, while nothing is dragged
-  std::optional<ViewSettings> fine_;  ///< the settings that are halved while something is dragged
-  double moved_s_ = 0.0;              ///< when camera or light moved last
-  double frame_ms_ = 0.0;   ///< what a frame takes, of those in which passes ran once there are some; 0: not known yet
-  bool was_drawn_ = false;  ///< whether such a frame is among them
-  int compiled_ = 0;        ///< filters, until the last frame
+  glm::ivec2 full_size_;  ///< of the picture, in pixels, while nothing is dragged
+  double moved_s_ = 0.0;  ///< when camera or light moved last
   double last_s_ = 0.0;
   std::string saved_;           ///< what was saved last
   bool wants_picture_ = false;  ///< it is saved when all that it shows is there
 
   glm::vec2 free_area() const;
+  glm::ivec2 gl_corner() const;
   void fit_picture(double now_s);
-  void draw_coarsely();
-  void draw_finely();
+  void resize(bool halves);
+  bool is_halved() const { return bench_.state().options.width != full_size_.x; }
   void start(const Lesson& lesson);
   /// All keys, in the order of the help; one table.
   static const std::vector<Key>& list_keys();
@@ -105,7 +100,6 @@ class Gui {
   void draw_divider();
   void save(const std::string& what, const std::function<void(const std::filesystem::path& stem)>& write);
   void save_state(const std::string& what, void (*write)(const ViewState& state, const std::filesystem::path& file));
-  void save_wanted_picture();
   void save_picture(const std::filesystem::path& stem);
 };
 

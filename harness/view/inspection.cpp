@@ -14,7 +14,6 @@
 #include "harness/gl/survey.h"
 #include "harness/measure/timing.h"
 #include "harness/render/gbuffer.h"
-#include "reference/metrics/error_stats.h"
 #include "report/records/records.h"
 
 namespace shadowbench::view {
@@ -306,40 +305,7 @@ void MapPanel::add_reads(Footprint& footprint) {
 
 namespace {
 
-constexpr double kSecondsBeforeError = 0.1;
 constexpr std::size_t kRoundsOfADrawing = 40;
-
-}  // namespace
-
-void ErrorMeter::step(double now_s) {
-  if (drawing_ != bench_.drawings()) {
-    drawing_ = bench_.drawings();
-    since_s_ = now_s;
-    is_measured_ = false;
-    rmse_ = {};
-  }
-  const MeasuredSides* truth = bench_.truth();
-  if (is_measured_ || truth == nullptr || truth->truth.empty() || now_s - since_s_ < kSecondsBeforeError) return;
-  is_measured_ = true;
-  const std::vector<std::uint8_t> mask(truth->truth_mask.texels.begin(), truth->truth_mask.texels.end());
-  for (std::size_t side = 0; side < kSides; ++side) {
-    if (bench_.stage().passes(side) == nullptr) continue;
-    const gl::Texture& drawn = bench_.stage().visibility(side, {0, bench_.state().options.width});
-    const images::Image visibility = render::read_image(drawn, 1);
-    if (const auto error = metrics::measure_error(visibility.texels, truth->truth.texels, mask))
-      rmse_[side] = error->rmse;
-  }
-}
-
-std::string ErrorMeter::describe(std::size_t side) const {
-  if (bench_.state().sides[side].truth) return {};
-  if (rmse_[side]) return fmt::format("RMSE {:.4f}", *rmse_[side]);
-  const std::string missing = bench_.explain_no_truth();
-  if (bench_.is_traced() && !missing.empty()) return "no RMSE: " + missing;
-  return missing.empty() ? "RMSE ..." : fmt::format("RMSE ... ({})", missing);
-}
-
-namespace {
 
 void show_history(const std::string& name, const TimeHistory& history) {
   ImGui::TableNextRow();

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/images/canvas.h"
-#include "report/images/text.h"
 #include "report/records/format.h"
 
 namespace shadowbench::view {
@@ -165,9 +163,6 @@ constexpr int kScaleSteps = 64;
 constexpr ImU32 kCaptionBack = IM_COL32(20, 20, 22, 220);
 constexpr ImU32 kCaptionInk = IM_COL32(240, 240, 240, 255);
 constexpr ImU32 kHiddenInk = IM_COL32(150, 150, 150, 255);
-constexpr images::Rgb kLabelBack{0.08f, 0.08f, 0.09f}, kLabelInk{0.94f, 0.94f, 0.94f};
-constexpr images::Font kLabelFont{.size = 14};
-constexpr int kLabelEdge = kLabelFont.size / 2;
 
 }  // namespace
 
@@ -207,32 +202,6 @@ glm::vec2 ScaleCaption::draw(const glm::vec2& corner) const {
   }
   list->AddText({corner.x + before + bar + gap, corner.y}, kCaptionInk, high.c_str());
   return size;
-}
-
-int ScaleCaption::draw(images::Image& picture, int top) const {
-  const int edge = kLabelEdge, bar = 6 * kLabelFont.size, line = images::line_height(kLabelFont);
-  const int left = 2 * edge + images::measure_text(low, kLabelFont), after = left + bar + edge / 2;
-  images::fill_rect(picture, {edge, top, after + images::measure_text(high, kLabelFont), line}, kLabelBack);
-  images::draw_text(picture, edge + edge / 2, top, low, kLabelFont, kLabelInk);
-  for (int x = 0; x < bar; ++x)
-    images::fill_rect(picture, {left + x, top + 2, 1, line - 4}, color((static_cast<float>(x) + 0.5f) / bar));
-  images::draw_text(picture, after, top, high, kLabelFont, kLabelInk);
-  return top + line + edge;
-}
-
-int draw_captions(images::Image& picture, const std::array<std::string, kSides>& texts) {
-  const int edge = kLabelEdge, line = images::line_height(kLabelFont);
-  int free = 0, top = edge;
-  for (std::size_t side = 0; side < kSides; ++side) {
-    if (texts[side].empty()) continue;
-    const int width = images::measure_text(texts[side], kLabelFont) + edge;
-    const int x = side == 0 ? edge : picture.width - width - edge;
-    if (x < free) top += line + edge;
-    images::fill_rect(picture, {x, top, width, line}, kLabelBack);
-    images::draw_text(picture, x + edge / 2, top, texts[side], kLabelFont, kLabelInk);
-    free = x + width + edge;
-  }
-  return top + line + edge;
 }
 
 }  // namespace shadowbench::view

@@ -85,13 +85,6 @@ struct ScaleCaption {
 
   /// Draws it from its upper left corner on; returns its size.
   glm::vec2 draw(const glm::vec2& corner) const;
-
-  /// Draws it into a picture, at the left; returns where the next may stand.
-  int draw(images::Image& picture, int top) const;
 };
-
-/// Writes the captions of both sides into a picture, side by side where there is room; an empty one is left out.
-/// Returns where more may stand below.
-int draw_captions(images::Image& picture, const std::array<std::string, kSides>& texts);
 
 }  // namespace shadowbench::view

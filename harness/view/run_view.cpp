@@ -62,7 +62,7 @@ ViewLog::Frame describe_frame(const Gui& gui, Workbench& bench, double begun_s, 
     const std::string name = kSideNames[side];
     const Side& shown = bench.state().sides[side];
     frame.texts[name] = shown.truth ? kTruthName : shown.filter.spec.id;
-    if (const auto rmse = gui.errors().rmse(side)) frame.numbers[name + ".rmse"] = *rmse;
+    if (const auto rmse = bench.rmse(side)) frame.numbers[name + ".rmse"] = *rmse;
     frame.texts[name + ".fault"] = bench.stage().fault(side);
     for (const auto& [param, value] : shown.filter.values) frame.texts[name + "." + param] = filters::to_string(value);
   }
@@ -103,8 +103,7 @@ void run_view(const ViewOptions& options) {
     gui.lay_out(begun);
     const bool drawn = bench.draw();
     gui.draw_picture();
-    window.end_frame();
-    gui.note_frame(1e3 * (now_s() - begun), drawn);
+    window.end_frame([&] { gui.save_wanted_picture(); });
     if (log.is_on()) log.end_frame(describe_frame(gui, bench, begun, drawn));
     shown.require_no_gl_errors();
     if (options.close_after_s > 0.0 && now_s() - opened > options.close_after_s) window.close();

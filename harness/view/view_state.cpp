@@ -80,22 +80,6 @@ void set_bias(ViewSettings& settings, const std::vector<std::string>& texts) {
   settings.options.bias_texts = texts;
 }
 
-void halve(ViewSettings& settings, bool map) {
-  options::RunOptions& options = settings.options;
-  options.width = std::max(options.width / 2, 1);
-  options.height = std::max(options.height / 2, 1);
-  options.sizes = {{options.width, options.height}};
-  if (!map) return;
-  options.map_sizes = {std::max(settings.map_size() / 2, 1)};
-  for (Side& side : settings.sides) {
-    const auto* radius = std::get_if<std::string>(&side.filter.spec.radius_texels);
-    const filters::ParamSpec* param = radius ? side.filter.spec.find_param(*radius) : nullptr;
-    double* value = param ? std::get_if<double>(&side.filter.values.at(*radius)) : nullptr;
-    if (!value || !param->choices.empty()) continue;
-    *value = std::max(param->integer ? std::round(0.5 * *value) : 0.5 * *value, param->min.value_or(0.0));
-  }
-}
-
 glm::vec2 find_place(const ViewState& state, const glm::vec3& point_ws) {
   const double aspect = static_cast<double>(state.options.width) / static_cast<double>(state.options.height);
   const glm::vec4 clip =

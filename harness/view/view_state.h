@@ -69,10 +69,6 @@ void apply(ViewState& state, ViewSettings settings);
 void set_fit(ViewSettings& settings, const std::string& text);
 void set_bias(ViewSettings& settings, const std::vector<std::string>& texts);
 
-/// Halves the picture's sides, and with `map` those of the map, with the widths of kernels that parameters set: shadows
-/// stay about as wide.
-void halve(ViewSettings& settings, bool map);
-
 /// Where the active camera sees a point, in parts of the picture from its upper left corner; may lie outside.
 glm::vec2 find_place(const ViewState& state, const glm::vec3& point_ws);
 

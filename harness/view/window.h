@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
@@ -86,8 +87,8 @@ class Window {
 
   void begin_frame();
 
-  /// Draws the widgets over what the window's framebuffer holds, and shows it.
-  void end_frame();
+  /// Draws the widgets over what the window's framebuffer holds, and shows it after `look` has seen it.
+  void end_frame(const std::function<void()>& look);
 
  private:
   GLFWwindow* window_;

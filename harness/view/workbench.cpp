@@ -11,6 +11,7 @@
 #include "harness/render/picture_passes.h"
 #include "harness/scene/scene.h"
 #include "harness/view/view_state.h"
+#include "reference/metrics/error_stats.h"
 
 namespace shadowbench::view {
 namespace {
@@ -286,6 +287,7 @@ void Workbench::update(double now_s) {
   }
   follow_truth(now_s);
   follow_measurement(now_s);
+  compare(now_s);
 }
 
 /// The truth depends on what is seen and on the light.
@@ -326,6 +328,17 @@ void Workbench::follow_measurement(double now_s) {
     start(measurement_, measured_, Measurand::kEverything, now_s);
 }
 
+void Workbench::compare(double now_s) {
+  if (is_compared_ || !truth() || truth()->truth.empty() || now_s - last_change_s_ < kSecondsBeforeError) return;
+  is_compared_ = true;
+  const std::vector<std::uint8_t> mask(truth()->truth_mask.texels.begin(), truth()->truth_mask.texels.end());
+  for (std::size_t side = 0; side < kSides; ++side) {
+    if (stage_->passes(side) == nullptr) continue;
+    const images::Image shown = render::read_image(stage_->visibility(side, {0, state_.options.width}), 1);
+    if (const auto error = metrics::measure_error(shown.texels, truth()->truth.texels, mask)) rmse_[side] = error->rmse;
+  }
+}
+
 void Workbench::start(SideMeasurement& measurement, SideMeasurement::State& state, Measurand measurand, double now_s) {
   try {
     measurement.start(state_, measurand);
@@ -363,6 +376,8 @@ bool Workbench::draw() {
   if (!changes_.any()) return false;
   const Changes changes = std::exchange(changes_, {});
   was_changed_ = true;
+  is_compared_ = false;
+  rmse_ = {};
   age_truth(changes);
   measurement_.cancel();
   measured_ = SideMeasurement::State::kIdle;

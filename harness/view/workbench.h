@@ -133,6 +133,9 @@ inline constexpr double kSecondsBetweenLooks = 0.1;
 /// The truth waits for this long after the last change: a picture that moves would only throw it away.
 inline constexpr double kSecondsBeforeTruth = 0.15;
 
+/// Errors of what is drawn wait for less: their cost is the lookup of all columns.
+inline constexpr double kSecondsBeforeError = 0.1;
+
 /// What is measured of both sides takes seconds: it waits for longer.
 inline constexpr double kSecondsBeforeMeasurement = 0.5;
 
@@ -195,6 +198,10 @@ class Workbench {
   /// Why there is no truth to be seen; empty where there is.
   std::string explain_no_truth() const;
 
+  /// Root mean square error of a side's image to the truth; nothing for the truth, and until nothing has changed for a
+  /// moment.
+  std::optional<double> rmse(std::size_t side) const { return rmse_[side]; }
+
   /// Asks, in a frame that shows what comes of it, for a run that measures both sides; it starts when nothing has
   /// changed for a while.
   void want_measurement() { wants_measurement_ = true; }
@@ -229,12 +236,15 @@ class Workbench {
   SideMeasurement::State traced_ = SideMeasurement::State::kIdle, measured_ = SideMeasurement::State::kIdle;
   bool wants_measurement_ = false;
   std::uint64_t drawings_ = 0;
+  bool is_compared_ = false;  ///< with the truth
+  std::array<std::optional<double>, kSides> rmse_;
 
   void watch_sides();
   void reload_filters();
   void age_truth(const Changes& changes);
   void follow_truth(double now_s);
   void follow_measurement(double now_s);
+  void compare(double now_s);
   void start(SideMeasurement& measurement, SideMeasurement::State& state, Measurand measurand, double now_s);
 };
 

