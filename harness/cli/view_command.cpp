@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
-#include "harness/view/run_view.h"
+#include "harness/view/gui.h"
 
 namespace shadowbench::cli {
 namespace {

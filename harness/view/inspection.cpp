@@ -88,7 +88,7 @@ void Magnifier::show_values(const Layer& layer, const std::array<ShownLayer, kSi
     std::string line = fmt::format("{}: visibility {:.6g}", kSideNames[side], value);
     if (stage.truth()) {
       const render::DisplayedValues truth{.values = stage.truth(), .colors = render::Colors::kGrey};
-      line += fmt::format(", less the truth {:+.6g}", value - read_value(truth, last_pixel_).front());
+      line += fmt::format(", minus truth {:+.6g}", value - read_value(truth, last_pixel_).front());
     }
     ImGui::TextUnformatted(line.c_str());
   }
@@ -307,23 +307,20 @@ namespace {
 
 constexpr std::size_t kRoundsOfADrawing = 40;
 
-void show_history(const std::string& name, const TimeHistory& history) {
+void show_history(const std::string& name, const std::vector<float>& history) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(name.c_str());
   ImGui::TableNextColumn();
-  const bool is_timed = !history.empty();
-  ImGui::TextUnformatted(
-      is_timed ? fmt::format("{:.3f}", measure::summarise({history.begin(), history.end()}).median).c_str() : "-");
+  ImGui::Text("%.3f", measure::summarise({history.begin(), history.end()}).median);
   ImGui::TableNextColumn();
   ImGui::PushID(name.c_str());
   ImGui::PlotLines("##history", history.data(), static_cast<int>(history.size()), 0, nullptr, 0.0f,
-                   is_timed ? std::ranges::max(history) : 1.0f,
-                   {ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight()});
+                   std::ranges::max(history), {ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight()});
   ImGui::PopID();
 }
 
-/// What the open compiler says of GPUs that are not there; known once both sides were measured.
+/// Estimates for other GPUs, once both sides were measured.
 void show_gpus(const Workbench& bench) {
   for (std::size_t side = 0; side < kSides; ++side) {
     const measure::MeasuredCell* cell = bench.find_measured(side);
@@ -351,22 +348,14 @@ void show_times(const Workbench& bench, const TimeMeter& meter) {
     ImGui::TableSetupColumn("ms", ImGuiTableColumnFlags_WidthStretch, 1.0f);
     ImGui::TableSetupColumn("history", ImGuiTableColumnFlags_WidthStretch, 1.6f);
     ImGui::TableHeadersRow();
-    show_history("map", meter.map());
-    for (std::size_t side = 0; side < kSides; ++side) {
-      const Side& shown = bench.state().sides[side];
-      if (shown.truth) continue;
-      const char* name = kSideNames[side];
-      const TimeMeter::Side& times = meter.side(side);
-      if (!times.prefilter.empty()) show_history(fmt::format("{} prefilter", name), times.prefilter);
-      show_history(fmt::format("{} filter alone", name), times.filter);
-      show_history(fmt::format("{} lookup", name), times.lookup);
-    }
+    for (const auto& [name, history] : meter.histories()) show_history(name, history);
     ImGui::EndTable();
   }
   show_gpus(bench);
   ImGui::PushTextWrapPos();
-  ImGui::TextDisabled("%s", bench.is_busy() ? "Times wait until the truth is traced and the run is finished."
-                                            : "Medians, while nothing moves. Filter alone: less an empty lookup.");
+  ImGui::TextDisabled("%s", bench.is_busy()
+                                ? "Timing begins once truth and measurement are finished."
+                                : "Medians while nothing moves. Filter alone: lookup minus an empty lookup.");
   ImGui::PopTextWrapPos();
 }
 
@@ -375,8 +364,7 @@ bool TimeMeter::step() {
     drawing_ = bench_.drawings();
     rounds_ = 0;
     round_.clear();
-    map_.clear();
-    sides_ = {};
+    histories_.clear();
   }
   if (bench_.is_busy() || rounds_ == kRoundsOfADrawing) return false;
   if (round_.empty()) plan_round();
@@ -388,23 +376,28 @@ bool TimeMeter::step() {
 }
 
 void TimeMeter::plan_round() {
-  round_.emplace_back([this] { map_.push_back(time([this] { bench_.stage().redraw_map(bench_.state()); })); });
+  round_.emplace_back(
+      [this] { histories_["map"].push_back(time([this] { bench_.stage().redraw_map(bench_.state()); })); });
   for (std::size_t side = 0; side < kSides; ++side)
-    if (bench_.stage().passes(side) != nullptr) plan_side(side, round_);
+    if (bench_.stage().passes(side) != nullptr) plan_side(side);
   std::reverse(round_.begin(), round_.end());
 }
 
-void TimeMeter::plan_side(std::size_t side, std::vector<std::function<void()>>& round) {
+void TimeMeter::plan_side(std::size_t side) {
   Stage& stage = bench_.stage();
-  Side& times = sides_[side];
+  const std::string name = kSideNames[side];
+  const auto look_up = [this, &stage, side] { return time([&] { stage.look_up(side); }); };
   if (stage.passes(side)->has_prefilter()) {
-    round.emplace_back(
-        [&, side] { times.prefilter.push_back(time([&] { stage.passes(side)->prefilter(stage.light_map().map); })); });
-    for (int i = 0; i < measure::kSettlingLookups; ++i)
-      round.emplace_back([&, side] { time([&] { stage.look_up(side); }); });
+    round_.emplace_back([this, &stage, side, name] {
+      histories_[name + " prefilter"].push_back(time([&] { stage.passes(side)->prefilter(stage.light_map().map); }));
+    });
+    for (int i = 0; i < measure::kSettlingLookups; ++i) round_.emplace_back(look_up);
   }
-  round.emplace_back([&, side] { times.lookup.push_back(lookup_ms_ = time([&] { stage.look_up(side); })); });
-  round.emplace_back([&, side] { times.filter.push_back(lookup_ms_ - time([&] { stage.look_up_nothing(side); })); });
+  round_.emplace_back([this, look_up, name] { histories_[name + " lookup"].push_back(look_up()); });
+  round_.emplace_back([this, &stage, side, name] {
+    const float empty = time([&] { stage.look_up_nothing(side); });
+    histories_[name + " filter alone"].push_back(histories_[name + " lookup"].back() - empty);
+  });
 }
 
 float TimeMeter::time(const std::function<void()>& work) const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -102,38 +103,28 @@ class MapPanel {
   void draw_footprint(const glm::vec2& corner, int side_pixels, const glm::dvec2& first_texel) const;
 };
 
-/// Times of one kind since the last drawing, milliseconds, the oldest first.
-using TimeHistory = std::vector<float>;
-
 /// Times the passes of what is shown as a run does: one by one, each closed, a lookup four lookups after its prefilter.
 /// It runs one pass a frame, and only while nothing moves and nothing else works: such times compare.
 class TimeMeter {
  public:
-  struct Side {
-    TimeHistory prefilter;
-    TimeHistory lookup;
-    TimeHistory filter;  ///< the lookup less an empty one, of one round
-  };
-
   explicit TimeMeter(Workbench& bench) : bench_(bench) {}
 
   /// Runs the next pass, unless enough rounds have been timed since the last drawing. Whether more passes wait.
   bool step();
 
-  const TimeHistory& map() const { return map_; }
-  const Side& side(std::size_t side) const { return sides_[side]; }
+  /// Times since the last drawing, milliseconds, the oldest first, by pass: "left lookup". A filter alone is its lookup
+  /// minus an empty one of the same round.
+  const std::map<std::string, std::vector<float>>& histories() const { return histories_; }
 
  private:
   Workbench& bench_;
-  TimeHistory map_;
-  std::array<Side, kSides> sides_;
+  std::map<std::string, std::vector<float>> histories_;
   std::vector<std::function<void()>> round_;  ///< passes of the round that are still to be run, the last one first
   std::uint64_t drawing_ = 0;
   std::size_t rounds_ = 0;
-  float lookup_ms_ = 0.0f;
 
   void plan_round();
-  void plan_side(std::size_t side, std::vector<std::function<void()>>& round);
+  void plan_side(std::size_t side);
   float time(const std::function<void()>& work) const;
 };
 

@@ -85,7 +85,7 @@ const images::Image& find_image(const measure::MeasuredCell& cell, const std::st
 ShownLayer show_measured(Layers& layers, const Layer& layer, std::size_t side) {
   Workbench& bench = layers.bench();
   bench.want_measurement();
-  if (bench.state().sides[side].truth) return {picture_of(layers, side), "the truth is what is measured against"};
+  if (bench.state().sides[side].truth) return {picture_of(layers, side), "the truth has no error"};
   const measure::MeasuredCell* cell = bench.find_measured(side);
   if (cell == nullptr) return {picture_of(layers, side), bench.explain_no_measurement()};
   const images::Image& image = find_image(*cell, layer.id);
@@ -98,24 +98,23 @@ ShownLayer show_measured(Layers& layers, const Layer& layer, std::size_t side) {
 
 std::vector<Layer> make_layers() {
   std::vector<Layer> layers = {
-      {"picture", "shaded picture", "", "What the eye sees: direct light times visibility, and ambient light.",
-       show_picture},
+      {"picture", "shaded picture", "", "Direct light times visibility, plus ambient light.", show_picture},
       {"visibility", "visibility", "of the light", "1 is lit, 0 is in the shadow.", show_visibility},
-      {"error", "signed error", "visibility", "Visibility less the ray-traced truth: red is too bright, blue too dark.",
-       show_error},
+      {"error", "signed error", "visibility",
+       "Visibility minus the ray-traced truth: red is too bright, blue too dark.", show_error},
       {"texels", "texels per pixel", "texels",
        "Texels of the map under a pixel's footprint: below 1 the map is too coarse, far above 1 it is wasted.",
        show_texels},
       {"blocker", "blocker distance", "m",
-       "From a receiver towards the light to what the map, or for the truth the first ray, holds there.",
+       "From a receiver to its first blocker towards the light: in the map, or along a ray for the truth.",
        show_blockers}};
   for (const records::ErrorPart& part : records::list_error_parts())
     layers.push_back({part.id, std::string("error: ") + part.name, "visibility",
                       fmt::format("A part of the signed error: {}.", part.meaning), show_measured});
   layers.push_back({kHalfDifference, "stability: 16-bit store", "visibility",
-                    "Visibility with a 16-bit store less that with a 32-bit one.", show_measured});
+                    "Visibility with a 16-bit store minus visibility with a 32-bit store.", show_measured});
   layers.push_back({kShortfall, "stability: broken bound", "visibility",
-                    "By how much a filter that promises a bound is darker than what it bounds.", show_measured});
+                    "How much darker than its bound a filter is that promises one.", show_measured});
   return layers;
 }
 

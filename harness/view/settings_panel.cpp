@@ -171,7 +171,8 @@ const Lesson* ScenePanel::lay_out() {
   choose_scene();
   std::vector<std::string> titles = {"none"};
   for (const Lesson& lesson : lessons_) titles.push_back(lesson.title);
-  if (widgets_.choose("lesson", "lesson", titles, lesson_, "A fault, in a state that shows it.")) return start_lesson();
+  if (widgets_.choose("lesson", "lesson", titles, lesson_, "A fault, with the settings that show it."))
+    return start_lesson();
   return lesson_ == 0 ? nullptr : show_lesson();
 }
 
@@ -213,12 +214,13 @@ const Lesson* ScenePanel::show_lesson() {
   for (const std::string& sentence : lesson.sentences) ImGui::TextUnformatted(sentence.c_str());
   ImGui::PopTextWrapPos();
   if (!lesson.instead_title.empty() &&
-      widgets_.tick("lesson.instead", lesson.instead_title, is_instead_, "What the lesson changes."))
+      widgets_.tick("lesson.instead", lesson.instead_title, is_instead_, "The remedy that the lesson names."))
     bench_.change(Changes::all(), [&](ViewSettings& settings) {
       set_shared(settings, is_instead_ ? lesson.instead : lesson.settings);
     });
-  return widgets_.press("lesson.again", "begin this lesson again", "Sets all as the lesson has it.") ? start_lesson()
-                                                                                                     : nullptr;
+  return widgets_.press("lesson.again", "begin this lesson again", "Sets everything as the lesson has it.")
+             ? start_lesson()
+             : nullptr;
 }
 
 namespace {
@@ -263,7 +265,7 @@ void SettingsPanel::lay_out(Look& look) {
 }
 
 void SettingsPanel::show_look(Look& look) {
-  if (!begin_section("What is shown")) return;
+  if (!begin_section("View")) return;
   std::vector<std::string> titles;
   for (const Layer& layer : Layers::list()) titles.push_back(layer.title);
   widgets_.choose("layer", "layer", titles, look.layer, Layers::list()[look.layer].text);
@@ -380,7 +382,7 @@ void SettingsPanel::show_fit() {
   const ViewState& state = bench_.state();
   const std::vector<std::string> fits = scene::list_fit_names();
   std::size_t fit = find_index(fits, std::string(scene::name_of(state.options.fit.mode)));
-  if (widgets_.choose("fit", "fit", fits, fit, "What the light's map encloses."))
+  if (widgets_.choose("fit", "fit", fits, fit, "The region that the light's map covers."))
     bench_.change({.map = true}, [&](ViewSettings& settings) { set_fit(settings, fits[fit]); });
   bool snap = state.options.snap;
   if (widgets_.tick("snap", "snap to texels", snap, "Keeps the map's texels fixed in the world while the view moves."))

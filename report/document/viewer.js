@@ -10,8 +10,7 @@ const kModes = [
 ];
 const kKeysHelp = `F flips; 1 to 9 put the first nine filters of the scene, and T the truth, into the right pane; +
   and - zoom and 0 fits, as the wheel and two fingers do; a drag and, with the focus on a pane, the arrow keys move the
-  picture, and Alt with an arrow moves the cross by a pixel and reads its values aloud; a drag with Shift draws the
-  crop.`;
+  picture; a drag with Shift draws the crop.`;
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 // What is shown. The view's middle is in pixels of the picture; a zoom of 1 fits the pane.
 const state = { place: 0, left: kTruth, right: 0, layer: "picture", mode: "side", x: 0, y: 0, zoom: 1, crop: null };
@@ -75,7 +74,6 @@ const makePane = () => {
   return { figure, caption, canvas, context: canvas.getContext("2d"), message };
 };
 const panes = [makePane(), makePane()];
-const live = element(root, "p", { className: "unseen", "aria-live": "polite" });
 const hiddenScroll = { tabIndex: 0, hidden: true };
 const tableBox = addGroup(root, "values scroll", "Visibility at the pixel under the pointer", hiddenScroll);
 const table = element(tableBox, "table");

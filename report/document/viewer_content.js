@@ -373,20 +373,7 @@ for (const { canvas } of panes) {
   canvas.addEventListener("wheel", (event) => onWheel(canvas, event), { passive: false });
 }
 
-const moveCross = (dx, dy) => {
-  const from = cursor || { x: Math.floor(state.x), y: Math.floor(state.y) };
-  point({ x: from.x + dx, y: from.y + dy });
-  const read = (who) => {
-    const texts = known.get(who)?.cells.map((cell) => cell.textContent) ?? [];
-    return `${tell(who)} ${texts.filter(Boolean).join(", error ") || "not known"}`;
-  };
-  const whos = [...new Set([kTruth, state.left, state.right])];
-  live.textContent = `x ${cursor.x}, y ${cursor.y}: ${whos.map(read).join("; ")}`;
-};
-const moveByArrow = ([dx, dy], isCross) => {
-  if (isCross) return moveCross(dx, dy);
-  pan((dx * size.width) / state.zoom / 10, (dy * size.height) / state.zoom / 10);
-};
+const moveByArrow = ([dx, dy]) => pan((dx * size.width) / state.zoom / 10, (dy * size.height) / state.zoom / 10);
 const isOnScreen = () => {
   const { top, bottom } = paneBox.getBoundingClientRect();
   return bottom > 0 && top < innerHeight;
@@ -397,13 +384,13 @@ const kKeys = { f: flip, t: showTruth, 0: fit, "+": zoomIn, "=": zoomIn, "-": ()
 document.addEventListener("keydown", (event) => {
   const { target, key } = event;
   const arrow = panes.some(({ canvas }) => canvas === target) && kArrows[key];
-  if (event.ctrlKey || event.metaKey || (event.altKey && !arrow) || target.matches("input, select, textarea")) return;
+  if (event.ctrlKey || event.metaKey || event.altKey || target.matches("input, select, textarea")) return;
   if (!section.contains(target) && !(target === document.body && isOnScreen())) return;
   const who = /^[1-9]$/.test(key) ? listFilters(state.place)[key - 1] : undefined;
   const act = kKeys[key.toLowerCase()];
   if (!arrow && !act && who === undefined) return;
   event.preventDefault();
-  if (arrow) moveByArrow(arrow, event.altKey);
+  if (arrow) moveByArrow(arrow);
   else if (act) act();
   else change({ right: who });
 });

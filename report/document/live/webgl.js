@@ -1,27 +1,10 @@
 // Draws with WebGL 2 what a run drew with OpenGL. A frame is a graph of steps (live/frame_file.h says what they hold):
 // a step is drawn again where what it depends on has changed, and at no other time.
 const kGl = window.WebGL2RenderingContext ?? {}; // a browser without it still reads the rest of the page
-// What makes a texture of each of the run's formats, where it needs an extension with that.
+// Formats of the run that WebGL names otherwise, or in an extension alone.
 const kFormats = {
-  r8: [kGl.R8],
-  rg8: [kGl.RG8],
-  rgba8: [kGl.RGBA8],
-  srgb8_alpha8: [kGl.SRGB8_ALPHA8],
-  r16: [0x822a, "EXT_texture_norm16"],
-  rg16: [0x822c, "EXT_texture_norm16"],
-  rgba16: [0x805b, "EXT_texture_norm16"],
-  r16f: [kGl.R16F, "EXT_color_buffer_float"],
-  rg16f: [kGl.RG16F, "EXT_color_buffer_float"],
-  rgba16f: [kGl.RGBA16F, "EXT_color_buffer_float"],
-  r32f: [kGl.R32F, "EXT_color_buffer_float"],
-  rg32f: [kGl.RG32F, "EXT_color_buffer_float"],
-  rgba32f: [kGl.RGBA32F, "EXT_color_buffer_float"],
-  r32ui: [kGl.R32UI],
-  rg32ui: [kGl.RG32UI],
-  rgba32ui: [kGl.RGBA32UI],
-  d16: [kGl.DEPTH_COMPONENT16],
-  d24: [kGl.DEPTH_COMPONENT24],
-  d32f: [kGl.DEPTH_COMPONENT32F],
+  ...{ r16: 0x822a, rg16: 0x822c, rgba16: 0x805b },
+  ...{ d16: kGl.DEPTH_COMPONENT16, d24: kGl.DEPTH_COMPONENT24, d32f: kGl.DEPTH_COMPONENT32F },
 };
 const kClampToBorder = 0x812d;
 const kDepth = -1; // the place of a target that holds depth
@@ -55,17 +38,16 @@ const makePlayer = (gl, frames, blobs) => {
     return map.get(key);
   };
   const need = (extension) => {
-    if (extension && !gl.getExtension(extension)) throw new Error(`this browser's WebGL lacks ${extension}.`);
+    if (!gl.getExtension(extension)) throw new Error(`this browser's WebGL lacks ${extension}.`);
   };
 
   const textureOf = (index) => {
     if (textures[index]) return textures[index];
     const { format, width, height, levels, samples } = frames.textures[index];
     if (samples > 0) throw new Error("WebGL 2 has no textures of several samples.");
-    const [internal, extension] = kFormats[format];
-    need(extension);
-    if (/32f$/.test(format) && format !== "d32f") need("OES_texture_float_linear");
-    const object = makeTexture(gl, internal, width, height, levels);
+    if (/^rg?b?a?16$/.test(format)) need("EXT_texture_norm16");
+    if (/^r.*32f$/.test(format)) need("OES_texture_float_linear");
+    const object = makeTexture(gl, kFormats[format] ?? gl[format.toUpperCase()], width, height, levels);
     const isInteger = /ui$/.test(format);
     const isDepth = /^d/.test(format);
     textures[index] = { object, width, height, isDepth, isInteger, contents: Array(levels).fill(null), ringed: null };
@@ -221,23 +203,16 @@ const makePlayer = (gl, frames, blobs) => {
   const kActions = {
     draw: issue,
     clear: (index) => {
-      const {
-        targets: [target],
-        value,
-      } = frames.steps[index];
+      const { targets, value } = frames.steps[index];
+      const [target] = targets;
       bindTargets([target.place === kDepth ? target : { ...target, place: 0 }]);
       gl.depthMask(true);
       if (target.place === kDepth) gl.clearBufferfv(gl.DEPTH, 0, [value[0]]);
       else gl.clearBufferfv(gl.COLOR, 0, value);
     },
     upload: (index) => {
-      const {
-        targets: [target],
-        format,
-        type,
-        blob,
-      } = frames.steps[index];
-      const { object, width, height } = textureOf(target.texture);
+      const { targets, format, type, blob } = frames.steps[index];
+      const { object, width, height } = textureOf(targets[0].texture);
       const bytes = blobs[blob];
       const texels = type === gl.FLOAT ? new Float32Array(bytes.buffer, 0, bytes.byteLength / 4) : bytes;
       gl.bindTexture(gl.TEXTURE_2D, object);
@@ -245,10 +220,7 @@ const makePlayer = (gl, frames, blobs) => {
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, format, type, texels);
     },
     mipmaps: (index) => {
-      const {
-        targets: [target],
-      } = frames.steps[index];
-      gl.bindTexture(gl.TEXTURE_2D, textureOf(target.texture).object);
+      gl.bindTexture(gl.TEXTURE_2D, textureOf(frames.steps[index].targets[0].texture).object);
       gl.generateMipmap(gl.TEXTURE_2D);
     },
   };

@@ -5,7 +5,6 @@
 
 #include "report/document/blocks.h"
 #include "report/document/chart.h"
-#include "report/document/chart_axis.h"
 #include "report/document/embedded.h"
 #include "report/document/markdown.h"
 #include "tests/report/pages/answer.h"
