@@ -59,18 +59,6 @@ ShownLayer show_texels(Layers& layers, const Layer& layer, std::size_t) {
   return {layers.upload(layer.id, bench.drawings(), [&] { return bench.stage().texels_per_pixel(bench.state()); }), {}};
 }
 
-ShownLayer show_blockers(Layers& layers, const Layer& layer, std::size_t side) {
-  Workbench& bench = layers.bench();
-  if (!bench.state().sides[side].truth)
-    return {layers.upload(layer.id, bench.drawings(), [&] { return bench.stage().blocker_distance(bench.state()); }),
-            {}};
-  bench.want_measurement();
-  const MeasuredSides* measured = bench.measured();
-  if (measured == nullptr) return {picture_of(layers, side), bench.explain_no_measurement()};
-  if (measured->blockers.empty()) return {picture_of(layers, side), measured->no_truth};
-  return {layers.upload(layer.id + ".truth", bench.drawings(), [&] { return measured->blockers; }), {}};
-}
-
 /// What was measured of a cell's pixels; an empty image where that does not exist.
 const images::Image& find_image(const measure::MeasuredCell& cell, const std::string& layer) {
   static const images::Image kNone;
@@ -104,10 +92,7 @@ std::vector<Layer> make_layers() {
        "Visibility minus the ray-traced truth: red is too bright, blue too dark.", show_error},
       {"texels", "texels per pixel", "texels",
        "Texels of the map under a pixel's footprint: below 1 the map is too coarse, far above 1 it is wasted.",
-       show_texels},
-      {"blocker", "blocker distance", "m",
-       "From a receiver to its first blocker towards the light: in the map, or along a ray for the truth.",
-       show_blockers}};
+       show_texels}};
   for (const records::ErrorPart& part : records::list_error_parts())
     layers.push_back({part.id, std::string("error: ") + part.name, "visibility",
                       fmt::format("A part of the signed error: {}.", part.meaning), show_measured});

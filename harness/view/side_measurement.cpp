@@ -101,7 +101,7 @@ MeasuredSides read_results(MeasuredSides sides, const fs::path& report, const st
   }
   images::ExrFile file = images::read_exr(images, [&](const std::string& part) {
     if (is_cancelled) return false;
-    return part == run::kTruthPart || part == run::kTruthMaskPart || part == run::kBlockerPart ||
+    return part == run::kTruthPart || part == run::kTruthMaskPart ||
            std::ranges::any_of(sides.cells, [&](const auto& cell) {
              return part.starts_with(cell.label + ".") && part != run::picture_part(cell.label);
            });
@@ -110,7 +110,6 @@ MeasuredSides read_results(MeasuredSides sides, const fs::path& report, const st
   for (images::Part& part : file.parts) {
     if (part.name == run::kTruthPart) sides.truth = std::move(part.image);
     if (part.name == run::kTruthMaskPart) sides.truth_mask = std::move(part.image);
-    if (part.name == run::kBlockerPart) sides.blockers = std::move(part.image);
   }
   return sides;
 }

@@ -30,7 +30,6 @@ struct MeasuredSides {
   images::Image truth;                                          ///< visibility; empty where there is none
   std::string no_truth;                                         ///< why there is none
   images::Image truth_mask;                                     ///< 1 where the truth counts, else 0
-  images::Image blockers;  ///< how far the light's first blocker is, metres, 0: none; Measurand::kEverything
 
   /// What was measured of a side; null where it shows the truth.
   const measure::MeasuredCell* find_side(std::size_t side) const;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "filters/front_matter.h"
 #include "harness/measure/scene_truth.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/picture_passes.h"
@@ -15,18 +14,6 @@
 
 namespace shadowbench::view {
 namespace {
-
-/// A lookup whose visibility is -1 less the distance to what the map holds for a receiver: what is 0 or more stands for
-/// pixels that no filter is asked about.
-filters::FilterRequest make_blocker_lookup() {
-  filters::FilterRequest request;
-  request.spec = filters::parse_filter(
-      "/*+++\ntitle = \"Distance to the blocker\"\nsource = \"none\"\nkind = \"other\"\n+++*/\n"
-      "float visibility(Receiver r) {\n"
-      "  return -1.0 - max(r.depth_unbiased - fetch_depth(r, vec2(0.0)), 0.0) * r.depth_range_ws;\n}\n",
-      "blocker.glsl");
-  return request;
-}
 
 /// Whether columns are not among those that are there; each from the first up to the second.
 bool needs(const glm::ivec2& there, const glm::ivec2& columns) {
@@ -57,7 +44,6 @@ void Stage::draw(const ViewState& state, const Changes& changes) {
   const bool refit = !light_ || changes.light || changes.map || follows || pad != pad_texels_;
   const bool other_map = refit && draw_map(state, changes.map);
   pad_texels_ = pad;
-  if (other_map) blocker_passes_.reset();
   for (std::size_t side = 0; side < kSides; ++side)
     draw_side(state, side, other_map || changes.filter[side], refit || changes.values[side]);
   for (SideDrawing& side : sides_) side.looked_up = side.shaded = glm::ivec2(0);
@@ -182,19 +168,6 @@ void Stage::look_up(std::size_t side) { sides_[side].passes->lookup(*gbuffer_, l
 
 void Stage::look_up_nothing(std::size_t side) {
   sides_[side].empty.passes.front()->lookup(*gbuffer_, light_->map, *unseen_);
-}
-
-images::Image Stage::blocker_distance(const ViewState& state) {
-  render::ImageTarget target("distance to the blocker", GL_R32F, gbuffer_->width(), gbuffer_->height());
-  if (blocker_passes_)
-    retune(state, *blocker_passes_, blocker_passes_->request());
-  else
-    blocker_passes_ =
-        measure::make_filter_passes(renderer_, state.options, state.scene, *light_, make_blocker_lookup());
-  blocker_passes_->lookup(*gbuffer_, light_->map, target);
-  images::Image distance = render::read_image(target.texture(), 1);
-  for (float& value : distance.texels) value = value < 0.0f ? -1.0f - value : 0.0f;
-  return distance;
 }
 
 images::Image Stage::texels_per_pixel(const ViewState& state) {

@@ -73,10 +73,6 @@ class Stage {
   void look_up(std::size_t side);
   void look_up_nothing(std::size_t side);
 
-  /// The distance in metres from each receiver towards the light to the surface that the map holds for it, rows top to
-  /// bottom; 0 where there is none before it. Cost: a lookup.
-  images::Image blocker_distance(const ViewState& state);
-
   /// Texels of the map under each pixel's footprint, rows top to bottom. Cost: see measure::measure_coverage().
   images::Image texels_per_pixel(const ViewState& state);
 
@@ -98,8 +94,7 @@ class Stage {
   double pad_texels_ = -1.0;
   std::array<SideDrawing, kSides> sides_;
   std::optional<gl::Texture> truth_;
-  std::optional<render::ImageTarget> unseen_;             ///< what timed lookups draw into
-  std::unique_ptr<render::FilterPasses> blocker_passes_;  ///< null where they must be compiled anew
+  std::optional<render::ImageTarget> unseen_;  ///< what timed lookups draw into
 
   void draw_gbuffer(const ViewState& state);
   bool draw_map(const ViewState& state, bool map_changed);

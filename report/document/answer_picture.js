@@ -50,7 +50,7 @@ const startPicture = (holder) => {
     slider.setAttribute("aria-label", `How much of the truth is seen beside ${name}`);
     caption.replaceChildren();
     for (const text of hasBoth ? ["truth", name] : [truth ? "truth" : name]) element(caption, "bdi", {}, text);
-    message.textContent = truth || picture ? "" : "This run stored no pictures.";
+    message.textContent = truth || picture ? "" : "This run stored no images.";
     live.hidden = !cell.frames;
   };
   images.forEach((image) =>

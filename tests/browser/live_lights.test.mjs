@@ -82,7 +82,7 @@ test("CascadesFollowSunAndCamera_AndAWarpedMapSaysThatItStays", (context) => wit
     assert.ok(gap.share < most, JSON.stringify(gap));
   }
   const label = labelOf("lispsm"), warped = await drawTurned(browser, "fits", "avenue", label, [0, 0], [0.4, 0.1]);
-  assert.match(warped.said, /This light stays: its map is bent/);
+  assert.match(warped.said, /This light cannot move: its map is warped/);
   assert.ok((compareShots([warped.picture, ownPicture("fits", data, "avenue", label)])).mean < 0.5);
   rmSync(folder, { recursive: true });
 }));

@@ -55,7 +55,7 @@ test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa,
   assert.ok(gap.mean < 0.1, JSON.stringify(gap));
   // View and light stay; parameters do not.
   await dragOver(page.locator(".live-stage canvas"), [100, 60], [60, 0]);
-  await page.waitForFunction(() => document.querySelector(".live").textContent.includes("Camera and light stay: the scene has more triangles"));
+  await page.waitForFunction(() => document.querySelector(".live").textContent.includes("Camera and light cannot move: the scene has more triangles"));
   assert.equal(await settled(), before);
   await shoot("live.large");
   await page.locator(".live").getByRole("button", { name: "As it was" }).click();

@@ -115,8 +115,7 @@ const makeEngine = (gl) => {
     const visibility = player.inputOf(picture, kVisibility);
     if (!isTruth) player.draw(visibility);
     const shown = player.textureOf(visibility);
-    if (layer === "map") display.showSquares(player.mapsOf(visibility), shown);
-    else if (isTruth) display.show({ ...shown, object: sharp }, 1);
+    if (isTruth) display.show({ ...shown, object: sharp }, 1);
     else display.show(shown, layer === "error" ? kMostError : 1, layer === "error" ? sharp : null);
   };
   const copy = ({ width, height }, canvas, [from, to]) => {

@@ -200,13 +200,13 @@ const fillResults = (box, place, { found, samplingAt, errorOfReference }) => {
   if (rows.every(([, { rmse, refused }]) => rmse === undefined && !refused)) return;
   const { weight, shift, turn } = samplingAt(run.configurations[whos[0]].map);
   const isExact = weight < 1e-5 && shift === 0 && turn < 1e-6;
-  const parts = `weights of 2x2 texels ${format(weight)}, nearest texels ${format(shift)}, cosines ${format(turn)}`;
+  const parts = `2x2 weights ${format(weight)}, nearest texels ${format(shift)}, cosines ${format(turn)}`;
   const sampling = isExact
     ? "Its sampling is exact."
-    : `It may be off, by its own measure, in ${parts}: as much is allowed for.`;
+    : `Its measured deviations, which the check allows for: ${parts}.`;
   const [, { map } = {}] = rows.find(([, { map }]) => map) ?? [];
   const ofMap = map ? ` The map takes ${format(map.median)} ms.` : "";
-  const title = `What this GPU draws on ${run.places[place].title}.`;
+  const title = `Drawn by this GPU on ${run.places[place].title}.`;
   const off = errorOfReference(place);
   const ofMaps =
     off === undefined

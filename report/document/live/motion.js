@@ -126,7 +126,7 @@ const makeLightMotion = (player, { steps, casters, bounds, fit, cameraNow, unifo
   const lamp = find("light_position_ws");
   const isCube = find("layer_face") !== undefined;
   const isBall = lamp && !(find("light_cone")?.[1] > -1); // a point light, which has no cone
-  const stays = layers.length === 0 || find("map_texels") ? "its map is bent for the run's own camera and light" : "";
+  const stays = layers.length === 0 || find("map_texels") ? "its map is warped for the run's own camera and light" : "";
 
   const coverOf = ({ slice = [0, 0, Infinity, Infinity] }) => {
     const camera = cameraNow();

@@ -110,7 +110,7 @@ const startLive = (holder) => {
   let opened = null;
   const open = () => (opened ??= openLive(holder));
   const still = findEntry(kTruth, 0)?.picture ?? run.cells.find(({ picture }) => picture)?.picture;
-  element(holder, "p", { className: "note" }, "Filters are drawn here by this GPU once this section is reached.");
+  element(holder, "p", { className: "note" }, "This GPU draws the filters here once you scroll to this section.");
   if (still)
     element(element(holder, "div", { className: "live-stage" }), "img", { src: still, alt: "As the run drew it" });
   onceSeen(holder, open);
@@ -132,10 +132,7 @@ const startLive = (holder) => {
   };
   followLink();
 };
-const kLiveLayers = [
-  ...["picture", "visibility", "error"].map((name) => [name, layerOf(name).title]),
-  ["map", "Depth map"],
-];
+const kLiveLayers = ["picture", "visibility", "error"].map((name) => [name, layerOf(name).title]);
 const kDrags = { camera: "the camera", light: "the light" };
 // A view's drags turn its camera or its light.
 const turnView = (view, drags, yaw, pitch) => {
@@ -219,14 +216,14 @@ const openLive = (holder) => {
 
   // What stands in for the truth is no better than it is where rays were traced.
   const sayStandIn = (maps) => {
-    const said = `No rays were traced there: instead of the truth this is the mean of ${maps} maps`;
+    const said = `No rays were traced there: the mean of ${maps} maps replaces the truth`;
     const off = measuring.errorOfReference(state.place);
     const error = findEntry(state.right, state.place)?.rmse?.value;
     if (off === undefined) return [`${said}.`];
     const isVague = off >= error;
     return [
-      `${said}, whose RMSE to the traced truth is ${format(off)} under the run's own light.`,
-      ...(isVague ? ["That is as much as this filter's own error: nothing here tells how wrong it is."] : []),
+      `${said}. Its RMSE to the traced truth is ${format(off)} under the run's own light.`,
+      ...(isVague ? ["This filter's own error is no larger, and cannot be judged here."] : []),
     ];
   };
   let shows = 0;
@@ -254,8 +251,9 @@ const openLive = (holder) => {
     const maps = drawn.findLast((each) => each.maps)?.maps;
     if (maps) messages.push(...sayStandIn(maps));
     const { value: frame } = await attempt(engine.load(state.right, state.place));
-    if (frame?.frames.check.whole && isMoved(state)) messages.push(`Camera and light stay: ${kTooLarge}.`);
-    else if (frame?.motion.stays && isTurned(state.light)) messages.push(`This light stays: ${frame.motion.stays}.`);
+    if (frame?.frames.check.whole && isMoved(state)) messages.push(`Camera and light cannot move: ${kTooLarge}.`);
+    else if (frame?.motion.stays && isTurned(state.light))
+      messages.push(`This light cannot move: ${frame.motion.stays}.`);
     if (state.layer === "error")
       messages.push(
         `The colours end at errors of \u2212${kMostError} (darker than the truth) and +${kMostError} (lighter).`,
@@ -280,8 +278,8 @@ const openLive = (holder) => {
   const sayRenderer = () =>
     isGpuLost
       ? `Nothing is drawn now: ${kGpuIsGone[0].toLowerCase()}${kGpuIsGone.slice(1)}`
-      : `Drawn here by ${titleGpu(engine.renderer)}.` +
-        (engine.isSoftware ? " That is a CPU: its times are not those of a GPU." : "");
+      : `Drawn by ${titleGpu(engine.renderer)}.` +
+        (engine.isSoftware ? " It is a CPU, whose times do not predict a GPU's." : "");
 
   const timeAll = async (onStep) => {
     for (const place of places) {

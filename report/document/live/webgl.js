@@ -338,12 +338,6 @@ const makePlayer = (gl, frames, blobs) => {
       if (texture) standIns.set(sampler, { texture, turn });
       else standIns.delete(sampler);
     },
-    // The depth maps, one for each layer of the light, that what leads to a step drew.
-    mapsOf: (index) => {
-      const inputs = [...listSteps(index)].flatMap((each) => frames.steps[each].inputs ?? []);
-      const read = inputs.filter(({ sampler }) => sampler.startsWith("map_")).map(({ texture }) => texture);
-      return [...new Set(read)].map(textureOf).filter(({ isDepth }) => isDepth);
-    },
     read: (index) => {
       const { width, height } = textureOf(frames.steps[index].targets[0].texture);
       bindTargets(frames.steps[index].targets);

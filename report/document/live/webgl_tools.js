@@ -56,7 +56,6 @@ const makeDisplay = (gl) => {
     precision highp float;
     uniform sampler2D values, less;
     uniform float most;
-    uniform vec2 corner, texels_per_pixel;
     out vec4 color;
     vec3 show(vec4 texel, ivec2 place) {
       if (most == 0.0) {
@@ -70,47 +69,31 @@ const makeDisplay = (gl) => {
       return mix(stops[1], error < 0.0 ? stops[0] : stops[2], abs(error));
     }
     void main() {
-      ivec2 place = ivec2((gl_FragCoord.xy - corner) * texels_per_pixel);
+      ivec2 place = ivec2(gl_FragCoord.xy);
       color = vec4(show(texelFetch(values, place, 0), place), 1.0);
     }`;
   const program = linkProgram(gl, "the display", kTriangle, fragment);
   const place = (name) => gl.getUniformLocation(program, name);
   const array = gl.createVertexArray();
   const nothing = makeTexture(gl, gl.R32F, 1, 1);
-  const begin = (width, height) => {
-    if (gl.canvas.width !== width || gl.canvas.height !== height) Object.assign(gl.canvas, { width, height });
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
-    gl.useProgram(program);
-    gl.bindVertexArray(array);
-  };
-  const draw = ({ object, width, height }, [x, y, wide, high], most, less) => {
-    gl.viewport(x, y, wide, high);
-    [object, less ?? nothing].forEach((texture, unit) => {
-      gl.activeTexture(gl.TEXTURE0 + unit);
-      gl.bindSampler(unit, null);
-      gl.bindTexture(gl.TEXTURE_2D, texture);
-      gl.uniform1i(place(unit === 0 ? "values" : "less"), unit);
-    });
-    gl.uniform1f(place("most"), most);
-    gl.uniform2f(place("corner"), x, y);
-    gl.uniform2f(place("texels_per_pixel"), width / wide, height / high);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.activeTexture(gl.TEXTURE0);
-  };
   return {
-    // A whole picture; `most` is 0 of linear colours.
-    show: (picture, most = 0, less = null) => {
-      begin(picture.width, picture.height);
-      draw(picture, [0, 0, picture.width, picture.height], most, less);
-    },
-    // Squares beside each other on a canvas of some size.
-    showSquares: (squares, { width, height }) => {
-      begin(width, height);
-      gl.clearColor(0.5, 0.5, 0.5, 1);
-      gl.clear(gl.COLOR_BUFFER_BIT);
-      const side = Math.floor(Math.min(height, width / squares.length));
-      squares.forEach((each, i) => draw(each, [i * side, height - side, side, side], 1));
+    // `most` is 0 of linear colours.
+    show: ({ object, width, height }, most = 0, less = null) => {
+      if (gl.canvas.width !== width || gl.canvas.height !== height) Object.assign(gl.canvas, { width, height });
+      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+      [gl.DEPTH_TEST, gl.BLEND, gl.CULL_FACE, gl.SCISSOR_TEST].forEach((each) => gl.disable(each));
+      gl.useProgram(program);
+      gl.bindVertexArray(array);
+      gl.viewport(0, 0, width, height);
+      [object, less ?? nothing].forEach((texture, unit) => {
+        gl.activeTexture(gl.TEXTURE0 + unit);
+        gl.bindSampler(unit, null);
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+        gl.uniform1i(place(unit === 0 ? "values" : "less"), unit);
+      });
+      gl.uniform1f(place("most"), most);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      gl.activeTexture(gl.TEXTURE0);
     },
   };
 };

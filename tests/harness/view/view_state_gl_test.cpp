@@ -357,8 +357,8 @@ struct Shown {
   std::vector<std::string> bias;
 };
 
-/// What both sides show, and the distance to the blocker.
-using Images = std::array<std::vector<float>, 3>;
+/// What both sides show.
+using Images = std::array<std::vector<float>, 2>;
 
 class StageTest : public ViewTest {
  protected:
@@ -376,8 +376,7 @@ class StageTest : public ViewTest {
 
   static Images read(view::Stage& stage, const view::ViewState& state) {
     const glm::ivec2 all(0, state.options.width);
-    return {stage.visibility(0, all).read_floats(1), stage.visibility(1, all).read_floats(1),
-            stage.blocker_distance(state).texels};
+    return {stage.visibility(0, all).read_floats(1), stage.visibility(1, all).read_floats(1)};
   }
 
   static Images draw_anew(const view::ViewState& state) {
