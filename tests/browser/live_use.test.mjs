@@ -52,11 +52,8 @@ test("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => withBrowser(kMesa, asyn
   const [again] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
   assert.deepEqual(JSON.parse(readFileSync(await again.path(), "utf8")), saved, "what the browser kept is saved");
   const key = Object.keys(saved.cells)[0], spoil = (edit) => { const copy = structuredClone(saved); edit(copy); return JSON.stringify(copy); };
-  assert.match(await loadTimes(page, "a.json", "{"), /is no JSON/);
-  assert.match(await loadTimes(page, "b.json", spoil((file) => { file.schema = "another"; })), /schema is not "shadowbench gpu-times 1"/);
-  assert.match(await loadTimes(page, "c.json", spoil((file) => { file.cells = { other: file.cells[key] }; })), /of another run/);
-  assert.match(await loadTimes(page, "d.json", spoil((file) => { file.cells[key].map.median = null; })), /map of .* is no time/);
-  assert.match(await loadTimes(page, "e.json", " ".repeat(17e6)), /is larger/);
+  const bad = ["{", spoil((file) => { file.schema = "another"; }), spoil((file) => { file.cells = { other: file.cells[key] }; }), spoil((file) => { file.cells[key].map.median = null; }), spoil((file) => { delete file.renderer; })];
+  for (const [i, text] of bad.entries()) assert.match(await loadTimes(page, `${i}.json`, text), /This is no gpu-times\.json that a page of this run saved/);
   assert.match(await loadTimes(page, "f.json", spoil((file) => { file.renderer = "Another GPU"; })), /its times are among the costs/);
   await chooseCost(page, "moving light, Another GPU");
   assert.deepEqual(messages, []);

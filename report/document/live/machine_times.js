@@ -14,7 +14,6 @@ const titleGpu = (renderer) => {
 // the median, a 95 % interval or null, and how many rounds they are of, ms (the map null where it could not be drawn).
 const kTimesSchema = "shadowbench gpu-times 1";
 const kTimedParts = ["map", "prefilter", "filter"];
-const kMostTimesBytes = 16e6;
 const machines = []; // as files have them
 
 const isTime = (part) => {
@@ -25,24 +24,22 @@ const isTime = (part) => {
   const hasRounds = Number.isInteger(rounds) && rounds > 0;
   return isSound(median) && hasInterval && hasRounds;
 };
-// Takes a file's text apart; throws what is wrong with it.
+// Takes the text of a file of this run's times apart; throws where it is none.
 const readTimes = (text) => {
-  if (text.length > kMostTimesBytes) throw new Error("The file is larger than any of times that this page saves.");
-  let file = null;
-  try {
-    file = JSON.parse(text);
-  } catch {
-    throw new Error("The file is no JSON: choose a gpu-times.json that a report's page saved.");
-  }
-  if (file?.schema !== kTimesSchema) throw new Error(`The file's schema is not "${kTimesSchema}".`);
-  if (typeof file.renderer !== "string" || typeof file.cells !== "object" || file.cells === null)
-    throw new Error("The file names no renderer or has no cells.");
-  const known = Object.entries(file.cells).filter(([key]) => run.cells.some((cell) => cell.key === key));
-  if (known.length === 0) throw new Error("The file has times of another run: none of its cells is one of this one.");
-  for (const [key, parts] of known)
-    for (const name of kTimedParts)
-      if (!(name !== "filter" && parts?.[name] === null) && !isTime(parts?.[name]))
-        throw new Error(`The file's ${name} of ${key} is no time.`);
+  const parse = () => {
+    try {
+      return JSON.parse(text);
+    } catch {
+      return null;
+    }
+  };
+  const file = parse();
+  const known = Object.entries(file?.cells ?? {}).filter(([key]) => run.cells.some((cell) => cell.key === key));
+  const isSound = (parts) =>
+    kTimedParts.every((name) => isTime(parts?.[name]) || (name !== "filter" && parts?.[name] === null));
+  const areSound = known.length > 0 && known.every(([, parts]) => isSound(parts));
+  if (file?.schema !== kTimesSchema || typeof file.renderer !== "string" || !areSound)
+    throw new Error("This is no gpu-times.json that a page of this run saved.");
   return { ...file, cells: Object.fromEntries(known) };
 };
 
@@ -99,12 +96,6 @@ const addScopeTimes = (times, { id, field, isStatic, title }, scope) => {
   }
   scope.advice[id] = advice;
 };
-// Two drivers of one GPU are told apart by their own words.
-const nameMachine = (renderer) => {
-  const title = titleGpu(renderer);
-  const isTaken = machines.some((each) => each.renderer !== renderer && titleGpu(each.renderer) === title);
-  return (isTaken ? renderer : title).slice(0, 80);
-};
 // Puts a machine's times among the costs, in the place of older ones of the same renderer; gives the id of that of a
 // moving light.
 const addMachine = (times, isHere) => {
@@ -113,7 +104,7 @@ const addMachine = (times, isHere) => {
   machines[at] = times;
   for (const isStatic of [false, true]) {
     const id = `machine${at}.${isStatic ? "static" : "moving"}`;
-    const name = isHere ? "this GPU" : nameMachine(times.renderer);
+    const name = isHere ? "this GPU" : titleGpu(times.renderer).slice(0, 80);
     const title = `${isStatic ? "static" : "moving"} light, ${name}`;
     const option = `--times gpu-times.json${isStatic ? " --light-motion static" : ""}`;
     const parts = isStatic ? "lookups" : "map, prefilter and lookups";
