@@ -87,37 +87,16 @@ class Position {
   Clock::time_point start_, last_;  ///< when the newest cell was finished
 };
 
-/// Redraws one line.
-class TerminalBar final : public options::Progress {
+/// Shows progress as a line that is redrawn, as what is worth a line of a log, or as a line for each step, for the
+/// window and for tests.
+class Display final : public options::Progress {
  public:
-  ~TerminalBar() override { fmt::print(stderr, "\n"); }
-
-  void begin(int cells, int finished) override { position_.begin(cells, finished); }
-
-  void show(int done, const std::string& what) override {
-    const std::string head = position_.move(done);
-    const auto filled = static_cast<std::size_t>(static_cast<double>(kBarCells) * std::min(position_.share(), 1.0));
-    const std::string bar = std::string(filled, '#') + std::string(kBarCells - filled, '.');
-    fmt::print(stderr, "\r\033[K[{}] {} · {}", bar, head, cut(make_visible(what), room(head)));
-    std::fflush(stderr);
+  enum class Style { kBar, kLog, kSteps };
+  explicit Display(Style style) : style_(style) {}
+  ~Display() override {
+    if (style_ == Style::kBar) fmt::print(stderr, "\n");
   }
 
-  void note(const std::string& message) override { fmt::print(stderr, "\r\033[K{}\n", make_readable(message)); }
-
- private:
-  Position position_;
-
-  /// Columns left beside the bar, so that the line never wraps.
-  static std::size_t room(const std::string& head) {
-    winsize size{};
-    const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-    return static_cast<std::size_t>(std::max(columns - static_cast<int>(kBarCells + head.size()) - 8, 10));
-  }
-};
-
-/// Prints what is worth a line of a log: every note, and how far the work is at each fifth of it.
-class LogLines final : public options::Progress {
- public:
   void begin(int cells, int finished) override {
     position_.begin(cells, finished);
     fifths_ = 0;
@@ -125,35 +104,43 @@ class LogLines final : public options::Progress {
 
   void show(int done, const std::string& what) override {
     const std::string head = position_.move(done);
-    const int fifths = static_cast<int>(std::floor(5.0 * position_.share()));
-    if (fifths <= fifths_ && fifths < 5) return;
-    fifths_ = fifths;
-    if (fifths < 5 && lines_ >= kMostLines - kLastLines) return;
+    if (style_ == Style::kBar) return draw_bar(head, what);
+    if (style_ == Style::kLog && !is_worth_a_line()) return;
     note(head + " · " + what);
   }
 
   void note(const std::string& message) override {
     ++lines_;
+    if (style_ == Style::kBar) fmt::print(stderr, "\r\033[K");
     print_message("{}\n", message);
   }
 
  private:
-  static constexpr int kMostLines = 10;  ///< of a run; progress is left out where notes are many
+  static constexpr int kMostLines = 10;  ///< of a run's log; progress is left out where notes are many
   static constexpr int kLastLines = 3;   ///< that the report is written, "done", and where it is
+  Style style_;
   Position position_;
   int fifths_ = 0;  ///< of the work, that were told
   int lines_ = 0;
-};
 
-/// Prints one line for each step, for the window and for tests.
-class StepLines final : public options::Progress {
- public:
-  void begin(int cells, int finished) override { position_.begin(cells, finished); }
-  void show(int done, const std::string& what) override { print_message("{} · {}\n", position_.move(done), what); }
-  void note(const std::string& message) override { print_message("{}\n", message); }
+  /// Whether another fifth of the work is done.
+  bool is_worth_a_line() {
+    const int fifths = static_cast<int>(std::floor(5.0 * position_.share()));
+    if (fifths <= fifths_ && fifths < 5) return false;
+    fifths_ = fifths;
+    return fifths == 5 || lines_ < kMostLines - kLastLines;
+  }
 
- private:
-  Position position_;
+  /// The text is cut so that the line never wraps.
+  void draw_bar(const std::string& head, const std::string& what) const {
+    winsize size{};
+    const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+    const auto room = static_cast<std::size_t>(std::max(columns - static_cast<int>(kBarCells + head.size()) - 8, 10));
+    const auto filled = static_cast<std::size_t>(static_cast<double>(kBarCells) * std::min(position_.share(), 1.0));
+    const std::string bar = std::string(filled, '#') + std::string(kBarCells - filled, '.');
+    fmt::print(stderr, "\r\033[K[{}] {} · {}", bar, head, cut(make_visible(what), room));
+    std::fflush(stderr);
+  }
 };
 
 }  // namespace
@@ -197,9 +184,8 @@ void Interruption::end(int signal) const {
 }
 
 std::unique_ptr<options::Progress> make_progress(bool every_step) {
-  if (isatty(STDERR_FILENO)) return std::make_unique<TerminalBar>();
-  if (every_step) return std::make_unique<StepLines>();
-  return std::make_unique<LogLines>();
+  using Style = Display::Style;
+  return std::make_unique<Display>(isatty(STDERR_FILENO) ? Style::kBar : every_step ? Style::kSteps : Style::kLog);
 }
 
 }  // namespace shadowbench::cli

@@ -386,7 +386,7 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   cell.record.receivers = std::ranges::count(truth.mask, 1);
   cell.visibility = truth.receivers.to_image(checked.visibility.texels);
   cell.picture = shade(task, fill_few(cell.visibility, truth, checked.undefined));
-  cell.flip = measure::score(cell.record, {cell.visibility, {}, {}, cell.picture}, truth);
+  measure::score(cell, truth);
   if (drawn.unbiased) cell.unbiased = truth.receivers.to_image(drawn.unbiased->texels);
   options::RunOptions traced = planned.options;
   traced.attribution = false;

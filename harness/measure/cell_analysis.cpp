@@ -97,10 +97,7 @@ metrics::ArtefactMasks find_artefact_masks(truth::CachedTracer& tracer, const st
 }
 
 CellAnalyser::CellAnalyser(const TaskRig& rig, const SceneTruth& truth)
-    : rig_(rig),
-      truth_(truth),
-      light_(rig.light()),
-      view_{rig.options.width, rig.options.height, rig.options.seed, rig.options.bias.plane_max_tangent()} {
+    : rig_(rig), truth_(truth), light_(rig.light()), view_(rig.view()) {
   if (!truth_.absent.empty()) return;
   layers_ = list_traced_layers(rig.renderer.shaders, rig.gbuffer(),
                                make_unbiased_light(rig.options, rig.task.scene->light, light_.layers));

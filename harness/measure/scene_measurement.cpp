@@ -183,13 +183,8 @@ class SceneBench {
     auto picture = filters::ScreenPicture::make(model, request.spec, request.values, image.width, image.height);
     for (const render::LightSetup& layer : filter.light()) {
       const filters::DepthMap map = light_.map.read(layer.frustum.layer);
-      const auto tracked = model.prepare({.spec = request.spec,
-                                          .values = request.values,
-                                          .map = map,
-                                          .accuracy = measure_accuracy(rig_.renderer),
-                                          .seed = rig_.options.seed,
-                                          .plane_max_tangent = rig_.options.bias.plane_max_tangent()},
-                                         filters::Precision::kTracked);
+      const auto tracked =
+          model.prepare(rig_.view().input(request, map, measure_accuracy(rig_.renderer)), filters::Precision::kTracked);
       const auto receivers = render::read_receivers(rig_.renderer.shaders, gbuffer_, layer);
       visit_in_parallel(receivers.size(), [&](std::size_t i) {
         const filters::ModelResult result = tracked->at(receivers[i]);

@@ -6,6 +6,7 @@
 
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_truth.h"
+#include "harness/measure/view_receivers.h"
 #include "harness/options/options.h"
 #include "harness/render/filter_passes.h"
 #include "harness/scene/scene.h"
@@ -78,6 +79,7 @@ struct TaskRig {
   LightMap& light() const { return assets.light_map(*task.camera, task.map_size); }
   render::GBuffer& gbuffer() const { return assets.gbuffer(*task.camera); }
   const SceneTruth& truth() const { return assets.truth(*task.camera); }
+  ModelView view() const { return {options.width, options.height, options.seed, options.bias.plane_max_tangent()}; }
 
   /// Compiles a filter over the light's map. Throws as render::FilterPasses.
   std::unique_ptr<render::FilterPasses> make_passes(const filters::FilterRequest& request) const {

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "filters/random.h"
+#include "harness/measure/scene_measurement.h"
 #include "reference/metrics/artefacts.h"
 #include "reference/metrics/metric_table.h"
 #include "reference/truth/occluders.h"
@@ -247,8 +248,9 @@ std::vector<metrics::ErrorStats> measure_phases(const images::Image& visibility,
   return phases;
 }
 
-images::Image score(records::CellRecord& record, const ScoredImages& drawn, const SceneTruth& truth) {
-  const auto& [visibility, other_phases, stepped, picture] = drawn;
+void score(MeasuredCell& cell, const SceneTruth& truth) {
+  records::CellRecord& record = cell.record;
+  const images::Image &visibility = cell.visibility, &picture = cell.picture;
   std::vector<metrics::ErrorStats> phases;
   if (truth.absent.empty()) phases = measure_phases(visibility, {}, truth, truth.mask);
   if (phases.empty()) {
@@ -257,25 +259,24 @@ images::Image score(records::CellRecord& record, const ScoredImages& drawn, cons
                                                      : "no pixel of the image is finite";
     for (const char* group : {"error", "truth", "penumbra"})
       records::explain(record, group, {reason, truth.nothing_to_see});
-    return {};
+    return;
   }
-  std::ranges::move(measure_phases({}, other_phases, truth, truth.mask), std::back_inserter(phases));
+  std::ranges::move(measure_phases({}, cell.phases, truth, truth.mask), std::back_inserter(phases));
   // Without a phase of which nothing is finite, those that are left make no groups.
-  const bool is_whole = phases.size() == other_phases.size() + 1;
+  const bool is_whole = phases.size() == cell.phases.size() + 1;
   const std::size_t group = is_whole ? count_phases_of_group(phases.size()) : 1;
   note_errors(record, phases, group);
   std::vector<std::span<const float>> images = {visibility.texels};
-  for (const images::Image& phase : other_phases)
+  for (const images::Image& phase : cell.phases)
     if (!phase.empty()) images.emplace_back(phase.texels);
   note_growth(record, images, truth);
-  if (stepped.empty()) {
+  const std::array<std::span<const float>, 2> step{visibility.texels, cell.stepped.texels};
+  if (cell.stepped.empty())
     note_flicker(record, metrics::measure_change(images, group, truth.mask));
-  } else {
-    note_step(record, metrics::measure_change(std::array<std::span<const float>, 2>{visibility.texels, stepped.texels},
-                                              1, truth.mask));
-  }
+  else
+    note_step(record, metrics::measure_change(step, 1, truth.mask));
   // Of the pictures as they are saved, so that `diff` finds the same.
-  images::Image flip;
+  images::Image& flip = cell.flip;
   if (const auto seen = view_picture(images::round_to_half(picture)); seen && truth.area_seen) {
     flip = images::Image(picture.width, picture.height, 1);
     flip.texels = metrics::measure_flip(*seen, *truth.area_seen);
@@ -286,7 +287,6 @@ images::Image score(records::CellRecord& record, const ScoredImages& drawn, cons
   if (!record.error.flip) record.absent["error.flip"] = "the picture has pixels that are not finite";
   record.truth = {truth.standard_error, truth.unanimous, truth.weight_rmse, truth.lit, truth.penumbra};
   if (truth.weight_rmse > kTellingWeight) record.warnings.push_back(warn_of_weight(record, truth.weight_rmse));
-  return flip;
 }
 
 std::string describe_wide_scene(const scene::Scene& scene, double texel_m) {

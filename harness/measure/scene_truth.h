@@ -20,6 +20,8 @@
 
 namespace shadowbench::measure {
 
+struct MeasuredCell;
+
 /// How many of `phases` that follow each other make a group: two from eight on, where they are even, else one. The
 /// groups are independent of each other; a mean over phases is as sure as means of groups agree.
 std::size_t count_phases_of_group(std::size_t phases);
@@ -100,19 +102,11 @@ std::vector<metrics::ErrorStats> measure_phases(const images::Image& visibility,
                                                 std::span<const images::Image> other_phases, const SceneTruth& truth,
                                                 const std::vector<std::uint8_t>& mask);
 
-/// What a cell is scored by.
-struct ScoredImages {
-  const images::Image& visibility;              ///< in the first phase of the map's grid
-  std::span<const images::Image> other_phases;  ///< the same in the others
-  const images::Image& stepped;                 ///< the same after a step of the camera; empty where none was made
-  const images::Image& picture;                 ///< shaded with the first
-};
-
 /// Scores a cell's images against the truth and notes the errors, or why there are none, in its record: visibility over
 /// the pixels that count, as the mean over the phases of the map's grid; and the mean LDR-FLIP of the picture against
-/// the picture shaded with the area truth. Returns that difference pixel by pixel; empty where there is none. Cost:
-/// about a second per megapixel. Safe to call from many threads, each with its own record.
-images::Image score(records::CellRecord& record, const ScoredImages& drawn, const SceneTruth& truth);
+/// the picture shaded with the area truth, which it leaves pixel by pixel in `flip`. Cost: about a second per
+/// megapixel. Safe to call from many threads, each with its own cell.
+void score(MeasuredCell& cell, const SceneTruth& truth);
 
 /// Visibility less area truth where pixels count, 0 elsewhere; empty where there is no truth or no visibility.
 images::Image make_error_image(const images::Image& visibility, const SceneTruth& truth);

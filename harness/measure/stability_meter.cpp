@@ -379,7 +379,7 @@ void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filte
 metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell, const filters::ScalarModel& model,
                                                         const render::LightLayers& light) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const double plane_max_tangent = rig_.options.bias.plane_max_tangent();
+  const ModelView view = rig_.view();
   const std::size_t pixels = cell.visibility.texels.size();
   const bool overflowed = cell.record.stability.overflow_texels.value_or(0) > 0;
   std::vector<double> of_model(pixels, 1.0), of_closer(pixels, 1.0), tolerance(pixels, kNone);
@@ -387,19 +387,14 @@ metrics::BoundCheck StabilityMeter::compare_with_closer(const MeasuredCell& cell
   for (const render::LightSetup& layer : light) {
     const auto receivers = render::read_receivers(rig_.renderer.shaders, rig_.gbuffer(), layer);
     const filters::DepthMap map = light_.map.read(layer.frustum.layer);
-    const filters::ModelInput input{.spec = cell.request.spec,
-                                    .values = cell.request.values,
-                                    .map = map,
-                                    .accuracy = measure_accuracy(rig_.renderer),
-                                    .seed = rig_.options.seed,
-                                    .plane_max_tangent = plane_max_tangent};
+    const filters::ModelInput input = view.input(cell.request, map, measure_accuracy(rig_.renderer));
     const auto exact = model.prepare(input, filters::Precision::kDouble);
     const auto tracked = model.prepare(input, filters::Precision::kTracked);
-    const filters::PercentageCloser closer(*model.kernel(cell.request.values), map, plane_max_tangent);
+    const filters::PercentageCloser closer(*model.kernel(cell.request.values), map, view.plane_max_tangent);
     visit_in_parallel(receivers.size(), [&](std::size_t i) {
       const filters::Receiver& r = receivers[i];
       const filters::ModelResult bounded = tracked->at(r);
-      const std::size_t pixel = find_pixel(r, rig_.options.width, rig_.options.height);
+      const std::size_t pixel = find_pixel(r, view.width, view.height);
       put_share(of_model[pixel], r, exact->at(r).visibility);
       put_share(of_closer[pixel], r, closer.at(r));
       // In a map that overflowed an infinite bound on rounding explains nothing: the overflow is no rounding.

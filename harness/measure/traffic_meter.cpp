@@ -270,12 +270,8 @@ std::optional<std::vector<double>> count_map_traffic(const filters::FilterReques
   std::size_t receivers = 0;
   for (const ModelLayer& layer : layers) {
     if (layer.receivers.empty()) continue;
-    const filters::ModelInput input{.spec = request.spec,
-                                    .values = request.values,
-                                    .map = layer.map,
-                                    .seed = view.seed,
-                                    .plane_max_tangent = view.plane_max_tangent};
-    tiled.emplace_back(model->prepare(input, filters::Precision::kFloat), layer.receivers, view.width, view.height);
+    tiled.emplace_back(model->prepare(view.input(request, layer.map), filters::Precision::kFloat), layer.receivers,
+                       view.width, view.height);
     receivers += layer.receivers.size();
   }
   return count_traffic(tiled, receivers, caches);

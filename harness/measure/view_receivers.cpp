@@ -313,12 +313,7 @@ ModelImages evaluate_model(const filters::FilterRequest& request, const std::vec
   std::atomic<std::int64_t> excused = 0;
   auto picture = filters::ScreenPicture::make(*model, request.spec, request.values, view.width, view.height);
   for (const ModelLayer& layer : layers) {
-    const filters::ModelInput input{.spec = request.spec,
-                                    .values = request.values,
-                                    .map = layer.map,
-                                    .seed = view.seed,
-                                    .plane_max_tangent = view.plane_max_tangent};
-    const auto lookup = model->prepare(input, filters::Precision::kDouble);
+    const auto lookup = model->prepare(view.input(request, layer.map), filters::Precision::kDouble);
     if (has_disks) images.disk_radii_texels.emplace_back(pixels, 0.0f);
     visit_in_parallel(layer.receivers.size(), [&](std::size_t i) {
       const filters::Receiver& receiver = layer.receivers[i];

@@ -130,6 +130,11 @@ struct ModelView {
   double plane_max_tangent = 0.0;
 
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+
+  filters::ModelInput input(const filters::FilterRequest& request, const filters::DepthMap& map,
+                            const filters::GlAccuracy& accuracy = {}) const {
+    return {request.spec, request.values, map, accuracy, seed, plane_max_tangent};
+  }
 };
 
 /// Evaluates a model for receivers that the GPU handed out, in parallel. Requires a filter that has a kernel or a

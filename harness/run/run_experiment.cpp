@@ -214,7 +214,7 @@ class TaskRun {
     measured.truth_s += watch.read_s();
     if (options_.truth) begin("errors");
     tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
-      cell.flip = measure::score(cell.record, {cell.visibility, cell.phases, cell.stepped, cell.picture}, truth);
+      measure::score(cell, truth);
       analyser_->note_cascades(cell);
       cell.phases.clear();
       cell.stepped = {};

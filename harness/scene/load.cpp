@@ -361,7 +361,8 @@ Scene load_kind(const fs::path& file, const LoadOptions& options) {
   if (is_mesh_file(file)) return load_model(file, options);
   if (file.extension() != ".toml")
     throw Error(ErrorKind::kUsage, "this kind of file is no scene: use .toml, .gltf, .glb or .obj", file.string());
-  Scene scene = load_scene(file, options.aspect, options.light);
+  const TomlTable root = read_toml(file, "the scene");
+  Scene scene = SceneBuilder(root, file).build({.aspect = options.aspect, .light = options.light});
   if (options.ground)
     scene.warnings.push_back("a floor is added to bare models only; this scene file has its own objects");
   return scene;
@@ -484,11 +485,6 @@ Camera read_camera(const TomlTable& table, const glm::dvec3& origin) {
                       table.title() + " has both a 'vertical_fov_deg' and an 'orthographic_height': give one");
   camera.orthographic_height_m = table.number_f("orthographic_height", kPositive);
   return camera;
-}
-
-Scene load_scene(const std::filesystem::path& file, double aspect, const std::optional<SkyAngles>& light) {
-  const TomlTable root = read_toml(file, "the scene");
-  return SceneBuilder(root, file).build({.aspect = aspect, .light = light});
 }
 
 std::vector<SceneInfo> list_scenes(const fs::path& folder) { return with_titles(scene_files(folder)); }

@@ -41,17 +41,10 @@ std::filesystem::path find_scene_file(const std::string& name_or_path, const std
 /// A bare model uses its own cameras and lights; what it lacks is completed, as a scene file is that has no camera: see
 /// complete(). `ground` adds a floor in a material of its own; scene files have their own objects, and ignore it
 /// with a warning.
-/// Throws kUsage for a name that is no scene, with the nearest one, or for another kind of file; kInput for a file that
-/// is missing or does not hold what it must.
+/// A scene file's model may be anywhere ("../models/tree.gltf"), but all that it refers to must lie in its own folder.
+/// Throws kUsage for a name that is no scene, with the nearest one, or for another kind of file; kInput, with
+/// "file:line" where that is known, for a file that is missing or does not hold what it must.
 Scene load(const std::string& name_or_path, const LoadOptions& options);
-
-/// Reads and validates a scene file; README.md lists its tables and keys.
-///
-/// A model may be anywhere ("../models/tree.gltf"), but all that it refers to must lie in its own folder. Throws kInput
-/// with "file:line" for anything missing, unknown, out of range or malformed. `aspect` is the width / height of the
-/// picture that a chosen camera fills; `light` is where every light is put, if it is given.
-Scene load_scene(const std::filesystem::path& file, double aspect = 16.0 / 9.0,
-                 const std::optional<SkyAngles>& light = std::nullopt);
 
 /// Reads the [camera] of a scene file, relative to the scene's origin; its directions are not yet checked. Throws
 /// kInput.

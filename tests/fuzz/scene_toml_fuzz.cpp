@@ -12,7 +12,7 @@ constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 void read_scene(std::string_view text) {
   static const ScratchFolder folder;
   static const std::filesystem::path model = folder.write("triangle.obj", kTriangle);
-  const scene::Scene scene = scene::load_scene(folder.write("input.toml", text));
+  const scene::Scene scene = scene::load(folder.write("input.toml", text).string(), {});
   scene::fit_light(scene, scene::FitMode::kTight, 64, 2.0);
 }
 

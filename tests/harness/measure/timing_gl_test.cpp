@@ -256,7 +256,7 @@ double measure_flicker(const std::string& scene_name, const std::string& fit, bo
   const measure::SceneTask task{&scene, &camera, 512, catalogue().parse_requests("none")};
   options.reference = task.filters.front();
   measure::MeasuredCell cell = std::move(measure::measure_scene({renderer, options, task, assets}).cells.front());
-  measure::score(cell.record, {cell.visibility, cell.phases, cell.stepped, cell.picture}, assets.truth(camera));
+  measure::score(cell, assets.truth(camera));
   return cell.record.error.flicker.value();
 }
 

@@ -86,7 +86,8 @@ TEST(BackProjection, MirrorsConeAndMapThroughTheLamp) {
 /// A floor, a box on it and a wall in the plane x = 0.
 scene::Scene load_room(const std::string& light) {
   const TestFolder folder;
-  return scene::load_scene(folder.write("room.toml", "title = \"room\"\n[light]\n" + light + R"(
+  return scene::load(folder
+                         .write("room.toml", "title = \"room\"\n[light]\n" + light + R"(
 [camera]
 position = [3, 2.5, 4]
 target = [0, 0.3, 0]
@@ -102,7 +103,9 @@ shape = "plane"
 size = [2, 6]
 center = [0, 1, 0]
 rotation_deg = [0, 0, 90]
-)"));
+)")
+                         .string(),
+                     {});
 }
 
 struct DegeneratePlace {

@@ -380,7 +380,7 @@ std::vector<bool> list_seen(const std::string& place, const std::string& camera 
                                                place +
                                                "\n[[object]]\nshape = \"plane\"\nsize = [12, 12]\n"
                                                "[[object]]\nshape = \"box\"\nsize = [2, 2, 2]\ncenter = [0, 1, 0]\n");
-  for (const Scene& lit : separate_lights(load_scene(file)))
+  for (const Scene& lit : separate_lights(load(file.string(), {})))
     seen.push_back(is_light_in_view(lit, lit.cameras, 16.0 / 9.0));
   return seen;
 }

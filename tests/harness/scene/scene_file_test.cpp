@@ -33,7 +33,7 @@ center = [0, 1, 0]
 
 Scene load_text(const std::string& text) {
   const TestFolder folder;
-  return load_scene(folder.write("test.toml", text));
+  return load(folder.write("test.toml", text).string(), {});
 }
 
 struct Complaint {
@@ -230,10 +230,10 @@ TEST(SceneFileTest, ModelObject_IsReadBesideTheSceneAndTakesTheGivenMaterial) {
   folder.write("models/tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const std::string object = "[[object]]\nshape = \"model\"\nfile = \"models/tri.obj\"\ncenter = [0, 5, 0]\n";
   const std::string red = "material = \"red\"\n[[material]]\nname = \"red\"\ncolor = [1, 0, 0]\n";
-  const Scene own = load_scene(folder.write("a.toml", kBase + red + object));
+  const Scene own = load(folder.write("a.toml", kBase + red + object).string(), {});
   EXPECT_FLOAT_EQ(own.bounds().max.y, 6.0f);
   EXPECT_EQ(own.materials[static_cast<std::size_t>(own.meshes[1].material)].name, "default");
-  const Scene given = load_scene(folder.write("b.toml", kBase + object + red));
+  const Scene given = load(folder.write("b.toml", kBase + object + red).string(), {});
   EXPECT_EQ(given.materials[static_cast<std::size_t>(given.meshes[1].material)].name, "red");
 }
 
@@ -242,7 +242,7 @@ TEST(SceneFileTest, ModelOutsideTheScenesFolder_IsTheUsersChoice) {
   const auto model = folder.write("models/tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   for (const std::string& file : {std::string("../models/tri.obj"), model.string()}) {
     const std::string object = "[[object]]\nshape = \"model\"\nfile = \"" + file + "\"\n";
-    EXPECT_EQ(load_scene(folder.write("scenes/a.toml", kBase + object)).meshes.size(), 2U);
+    EXPECT_EQ(load(folder.write("scenes/a.toml", kBase + object).string(), {}).meshes.size(), 2U);
   }
 }
 
@@ -484,7 +484,7 @@ TEST(SceneWriterTest, FloorOfAModel_IsThatOfAPlane) {
       fmt::format("title = 't'\n[light]\ndirection = [0, -1, 0]\n[[object]]\nshape = 'plane'\nname = 'ground'\n"
                   "cells = {}\nsize = [1.7, 0.3]\ncenter = [{}, {}, {}]\n",
                   kFloorCells, double{floor.center_ws.x}, double{floor.center_ws.y}, double{floor.center_ws.z}));
-  Scene made = load_scene(file);
+  Scene made = load(file.string(), {});
   const Scene plane = made;
   made.meshes = {make_floor(floor)};
   test::expect_same_geometry(made, plane);
