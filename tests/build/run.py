@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-PARTS = {"WINDOW": "run_view.cpp", "OSMESA": "context_osmesa.cpp", "EGL": "context_egl.cpp", "GPU_ESTIMATES": "null_device.cpp",
+PARTS = {"WINDOW": "gui.cpp", "OSMESA": "context_osmesa.cpp", "EGL": "context_egl.cpp", "GPU_ESTIMATES": "null_device.cpp",
          "LIVE_PAGE": "webgl.cpp", "MESHOPT": "gltf_meshopt.cpp"}
 EVERYTHING_LEFT_OUT_BUT_EGL = [f"-DSHADOWBENCH_WITH_{part}=OFF" for part in PARTS if part != "EGL"]
 AVAILABLE = set(PARTS)  # on this machine: Debian 14 will have no OSMesa
