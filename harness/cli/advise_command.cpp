@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "base/error.h"
-#include "filters/catalogue.h"
 #include "filters/kernel.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
@@ -32,7 +31,7 @@ struct AdviseArguments {
   std::string run;
   std::vector<std::optional<std::string>> limits =
       std::vector<std::optional<std::string>>(analysis::limit_table().size());
-  std::vector<std::string> claims;
+  std::string property;
   std::vector<std::string> scenes;
   std::string size;
   std::string width_class;
@@ -63,27 +62,18 @@ analysis::CostKind parse_cost(const std::string& text) {
   return found->second;
 }
 
-std::set<std::string> list_claims() {
-  std::set<std::string> claims;
-  const filters::Catalogue catalogue(options::find_resources().filters);
-  for (const filters::FilterSpec& spec : catalogue.filters()) claims.insert(spec.claims.begin(), spec.claims.end());
-  return claims;
-}
-
 AdviceRequest make_request(const AdviseArguments& arguments) {
   AdviceRequest request;
   for (std::size_t i = 0; i < arguments.limits.size(); ++i) {
     const analysis::Quantity& spec = analysis::limit_table()[i];
-    if (arguments.limits[i])
-      request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option.c_str()), {}});
+    if (arguments.limits[i]) request.demands.push_back({&spec, parse_limit(*arguments.limits[i], spec.option.c_str())});
   }
-  for (const std::string& claim : arguments.claims) request.demands.push_back({nullptr, 0.0, claim});
+  if (!arguments.property.empty()) request.demands.emplace_back();
   request.light = kLightMotions.at(arguments.light_motion);
   if (!arguments.cheapest.empty()) request.cheapest = parse_cost(arguments.cheapest);
   request.scenes = arguments.scenes;
   request.width_class = arguments.width_class;
   if (!arguments.size.empty()) request.size = parse_picture_size(arguments.size);
-  if (!arguments.claims.empty()) request.known_claims = list_claims();
   return request;
 }
 
@@ -136,8 +126,8 @@ Command make_advise_command() {
     const analysis::Quantity& spec = analysis::limit_table()[i];
     command.add(spec.option, &a->limits[i], spec.meaning);
   }
-  command.add("--requires", &a->claims,
-              "a property the filter must claim and the run confirm, such as contact-hardening; repeatable");
+  command.add("--requires", &a->property, "what the filter must claim and the run confirm")
+      .one_of({analysis::kContactHardening});
   command.add("--scene", &a->scenes, "judge on this scene; repeatable (default all of the run)")
       .names(ValueKind::kScene);
   command.add("--size", &a->size, "judge images of WxH pixels (default all of the run)");

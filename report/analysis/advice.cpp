@@ -30,9 +30,8 @@ constexpr double kLeastGrowth = 0.5;  ///< nearer to the truth's 1 than to the 0
 
 }  // namespace
 
-std::string find_doubt(const std::vector<const records::CellRecord*>& cells, const std::string& claim) {
-  const std::string doubt = fmt::format("'{}' is claimed, not shown: ", claim);
-  if (claim != kContactHardening) return doubt + "nothing is measured of it";
+std::string find_doubt(const std::vector<const records::CellRecord*>& cells) {
+  const std::string doubt = fmt::format("'{}' is claimed, not shown: ", kContactHardening);
   const records::CellRecord* least = nullptr;
   for (const records::CellRecord* cell : cells)
     if (cell->penumbra.growth && (!least || *cell->penumbra.growth < *least->penumbra.growth)) least = cell;
@@ -42,8 +41,8 @@ std::string find_doubt(const std::vector<const records::CellRecord*>& cells, con
                      least->scene, records::format_number(least->penumbra.growth), kLeastGrowth);
 }
 
-bool shows_claim(const std::vector<const records::CellRecord*>& cells, const std::string& claim) {
-  return std::ranges::count(cells.front()->claims, claim) > 0 && find_doubt(cells, claim).empty();
+bool hardens(const std::vector<const records::CellRecord*>& cells) {
+  return std::ranges::count(cells.front()->claims, kContactHardening) > 0 && find_doubt(cells).empty();
 }
 
 namespace {
@@ -71,16 +70,6 @@ void require_size(const std::vector<records::CellRecord>& cells, std::pair<int, 
   }
   refuse(fmt::format("--size: the run has no pictures of {}x{}; it has {}", wanted.first, wanted.second,
                      fmt::join(known, ", ")));
-}
-
-void require_claim(const std::vector<records::CellRecord>& cells, const AdviceRequest& request,
-                   const std::string& wanted) {
-  std::set<std::string> known = request.known_claims;
-  for (const records::CellRecord& cell : cells) known.insert(cell.claims.begin(), cell.claims.end());
-  if (known.contains(wanted)) return;
-  if (known.empty()) refuse(fmt::format("--requires: no filter claims '{}', nor anything else: leave it out", wanted));
-  refuse(fmt::format("--requires: no filter claims '{}'{}; filters claim {}", wanted,
-                     did_you_mean(wanted, {known.begin(), known.end()}), fmt::join(known, ", ")));
 }
 
 // The cells that are asked about, but for those of places that say nothing of which filter is better.
@@ -144,10 +133,10 @@ std::string find_missing_cell(const Configuration& configuration, const std::vec
   return {};
 }
 
-Verdict judge_claim(const Configuration& configuration, const std::string& claim) {
-  if (std::ranges::count(configuration.cells.front()->claims, claim) == 0) return {false};
+Verdict judge_hardening(const Configuration& configuration) {
+  if (std::ranges::count(configuration.cells.front()->claims, kContactHardening) == 0) return {false};
   Verdict verdict;
-  verdict.absent = find_doubt(configuration.cells, claim);
+  verdict.absent = find_doubt(configuration.cells);
   verdict.kept = verdict.absent.empty();
   return verdict;
 }
@@ -159,8 +148,8 @@ std::variant<Candidate, Unjudged> judge(const Configuration& configuration, cons
   Candidate candidate{configuration, {}, {}, combine_rmse(configuration.cells)};
   candidate.seam = find_seam(configuration.cells);
   for (const Demand& demand : request.demands) {
-    Verdict verdict = demand.spec ? judge_limit(configuration, demand, request.light, advice.places)
-                                  : judge_claim(configuration, demand.claim);
+    Verdict verdict =
+        demand.spec ? judge_limit(configuration, demand, request.light, advice.places) : judge_hardening(configuration);
     if (!verdict.absent.empty()) return Unjudged{configuration, verdict.absent};
     candidate.verdicts.push_back(std::move(verdict));
   }
@@ -322,8 +311,6 @@ bool are_costs_tied(const Candidate& cheaper, const Candidate& dearer, const Cos
 }
 
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request) {
-  for (const Demand& demand : request.demands)
-    if (!demand.spec) require_claim(cells, request, demand.claim);
   if (request.cheapest.kind == CostKind::kGpu) require_gpu(cells, request.cheapest.gpu);
   Advice advice;
   advice.request = request;

@@ -14,16 +14,12 @@
 
 namespace shadowbench::analysis {
 
-/// What a filter may claim whose penumbrae are narrow where caster and receiver touch, and widen with their distance.
-inline constexpr const char* kContactHardening = "contact-hardening";
+/// Says why a configuration's cells do not show contact hardening, which the growth of penumbrae decides; empty where
+/// they do. Every place that can show it must; a place that cannot says nothing.
+std::string find_doubt(const std::vector<const records::CellRecord*>& cells);
 
-/// Holds what a configuration's filter claims of itself against what its cells show: says why a claim is not shown;
-/// empty where it is. Every place that can show it must; a place that cannot says nothing. Of contact hardening the
-/// growth of penumbrae decides, of another claim nothing is measured.
-std::string find_doubt(const std::vector<const records::CellRecord*>& cells, const std::string& claim);
-
-/// Whether a configuration's filter claims something, and shows it.
-bool shows_claim(const std::vector<const records::CellRecord*>& cells, const std::string& claim);
+/// Whether a configuration's filter claims contact hardening, and shows it.
+bool hardens(const std::vector<const records::CellRecord*>& cells);
 
 /// What is looked for.
 struct AdviceRequest {
@@ -34,7 +30,6 @@ struct AdviceRequest {
   std::string width_class;                  ///< of the kernel; empty: any
   std::optional<std::pair<int, int>> size;  ///< of the picture, pixels; empty: all of the run
   bool whole = false;                       ///< keep those that are beaten or no gain, too
-  std::set<std::string> known_claims;       ///< that filters make which the run may lack: to require one is no mistake
 };
 
 /// How a configuration stands to one demand.
@@ -114,8 +109,8 @@ struct Advice {
 /// those of others. A configuration that was not measured in a place, did not finish there, or lacks a value there is
 /// not judged; nor is one without an RMSE, where others have one. A value that has nothing to be measured on in some
 /// places, as has_nothing_to_see() says, is judged on the others, if there are any. Requires that `cells` outlive what
-/// is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have, or a claim
-/// that no filter makes; Error(kInput) where there is no cell.
+/// is returned. Throws Error(kUsage) for a scene, class, picture size or GPU that the run does not have;
+/// Error(kInput) where there is no cell.
 Advice advise(const std::vector<records::CellRecord>& cells, const AdviceRequest& request);
 
 /// A seam from here on is seen: a step of brightness of 2 %, about Weber's fraction of the eye.

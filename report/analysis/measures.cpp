@@ -48,6 +48,16 @@ std::optional<double> read_estimate(const records::CellRecord& cell, const std::
 
 }  // namespace
 
+Quantity Quantity::of(const metrics::Metric& metric) {
+  return {.id = std::string(metric.name()),
+          .title = std::string(metric.title),
+          .meaning = metric.definition,
+          .field = std::string(metric.path),
+          .option = std::string(metric.limit),
+          .unit = std::string(metric.unit),
+          .metric = &metric};
+}
+
 std::optional<double> Quantity::read(const records::CellRecord& cell, LightMotion at) const {
   if (metric) return metric->read(cell);
   if (is(CostKind::kGpu)) return read_estimate(cell, cost->gpu, at);
@@ -59,14 +69,11 @@ std::span<const Quantity> limit_table() {
   static const std::vector<Quantity> table = [] {
     std::vector<Quantity> limits;
     for (const metrics::Metric& metric : metrics::metric_table())
-      if (!metric.limit.empty())
-        limits.push_back({.id = std::string(metric.name()),
-                          .title = std::string(metric.title),
-                          .meaning = fmt::format("{}: {}, {} (see 'list metrics')", metric.title, metric.unit,
-                                                 metrics::describe_range(metric.range)),
-                          .field = std::string(metric.path),
-                          .option = std::string(metric.limit),
-                          .metric = &metric});
+      if (!metric.limit.empty()) {
+        Quantity& limit = limits.emplace_back(Quantity::of(metric));
+        limit.meaning = fmt::format("{}: {}, {} (see 'list metrics')", metric.title, metric.unit,
+                                    metrics::describe_range(metric.range));
+      }
     limits.push_back({.id = "time",
                       .title = "time of a frame",
                       .meaning = "a frame, ms: its estimate, or its median time; see --cheapest",
@@ -107,7 +114,8 @@ const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell
 }
 
 std::string describe_demand(const Demand& demand) {
-  return demand.spec ? fmt::format("{} {}", demand.spec->option, demand.most) : "--requires " + demand.claim;
+  return demand.spec ? fmt::format("{} {}", demand.spec->option, demand.most)
+                     : fmt::format("--requires {}", kContactHardening);
 }
 
 namespace {
@@ -170,14 +178,11 @@ constexpr const char* kRmse = "error.rmse";
 
 Quantity make_measure(std::string_view path, const char* interval, const char* over_scenes,
                       Estimate (*combine)(const std::vector<Estimate>&)) {
-  const metrics::Metric& metric = metrics::find_metric(path);
-  return {.id = std::string(metric.name()),
-          .title = std::string(metric.title),
-          .meaning = fmt::format("{}; {}", metric.definition, interval),
-          .field = std::string(path),
-          .metric = &metric,
-          .over_scenes = over_scenes,
-          .combine = combine};
+  Quantity measure = Quantity::of(metrics::find_metric(path));
+  measure.meaning += fmt::format("; {}", interval);
+  measure.over_scenes = over_scenes;
+  measure.combine = combine;
+  return measure;
 }
 
 Quantity make_count_measure(std::string_view path, const char* interval, CostKind::Kind kind) {

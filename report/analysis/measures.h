@@ -67,6 +67,9 @@ struct Quantity {
   const char* over_scenes = "";                                 ///< how one number is made of several scenes'
   Estimate (*combine)(const std::vector<Estimate>&) = nullptr;  ///< makes it; requires at least one scene
 
+  /// What a row of the metrics' table says.
+  static Quantity of(const metrics::Metric& metric);
+
   bool is(CostKind::Kind kind) const { return cost && cost->kind == kind; }
 
   std::optional<double> read(const records::CellRecord& cell, LightMotion light) const;
@@ -90,11 +93,13 @@ const std::optional<records::OwnTime>& frame_time(const records::CellRecord& cel
 /// Returns the ratio to `none` of what one frame takes, what every lookup pays included.
 const std::optional<records::Ratio>& frame_ratio(const records::CellRecord& cell, LightMotion light);
 
-/// One thing asked of a configuration: a limit, or, without `spec`, a claim of its filter.
+/// What a filter may claim whose penumbrae are narrow where caster and receiver touch, and widen with their distance.
+inline constexpr const char* kContactHardening = "contact-hardening";
+
+/// One thing asked of a configuration: a limit, or, without `spec`, that its filter hardens at contacts.
 struct Demand {
   const Quantity* spec = nullptr;
   double most = 0.0;  ///< a value of this size keeps the limit
-  std::string claim;
 };
 
 /// Writes a demand as the command line has it: "--max-rmse 0.05".

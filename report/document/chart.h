@@ -80,6 +80,11 @@ struct ChartSeries {
   bool hidden = false;  ///< until one clicks its name in the key
 };
 
+/// A solid line with a filter's colour and marks, without points.
+inline ChartSeries make_line(std::string title, const ChartStyle& style) {
+  return {.title = std::move(title), .color = style.color, .mark = style.mark, .line = LineStyle::kSolid, .points = {}};
+}
+
 /// One chart, drawn in the browser, where it can be saved as SVG and as PNG.
 struct Chart {
   std::string id;  ///< unique on its page; names the file that is saved

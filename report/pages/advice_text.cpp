@@ -250,7 +250,7 @@ json cell_json(const records::CellRecord& cell) {
 json verdict_json(const analysis::Demand& demand, const analysis::Verdict& verdict) {
   json written = {{"option", demand.spec ? demand.spec->option : "--requires"}, {"kept", verdict.kept}};
   if (!demand.spec) {
-    written["claim"] = demand.claim;
+    written["claim"] = analysis::kContactHardening;
     return written;
   }
   written.update({{"field", demand.spec->field},
@@ -296,7 +296,7 @@ json request_json(const analysis::Advice& advice) {
     if (demand.spec)
       limits[demand.spec->option] = demand.most;
     else
-      claims.push_back(demand.claim);
+      claims.push_back(analysis::kContactHardening);
   return {{"limits", limits},
           {"requires", claims},
           {"light_motion", request.light == analysis::LightMotion::kMoving ? "moving" : "static"},

@@ -33,37 +33,25 @@ std::string describe_pick(const analysis::Advice& advice, const analysis::Pick& 
   return in_full ? fmt::format("{}; {}", text, pick.why) : text;
 }
 
-/// A row for all scenes, or for one: its picks. One that is both fast and best stands under both.
-std::vector<std::string> make_row(const std::string& head, const analysis::Advice& advice, const records::GlRecord& gl,
-                                  bool in_full) {
-  std::vector<std::string> row = {head};
+/// A row of what `say` says of each pick. One that is both fast and best stands under both.
+std::vector<std::string> make_row(std::string head, const analysis::Advice& advice, const auto& say) {
+  std::vector<std::string> row = {std::move(head)};
   row.resize(1 + kPicks.size(), records::kNothing);
   for (const analysis::Pick& pick : analysis::list_picks(advice))
     for (std::size_t i = 0; i < kPicks.size(); ++i)
-      if (std::ranges::count(pick.names, kPicks[i]) > 0) row[1 + i] = describe_pick(advice, pick, gl, in_full);
+      if (std::ranges::count(pick.names, kPicks[i]) > 0) row[1 + i] = say(pick);
   return row;
-}
-
-/// The bias of each pick; empty where none was swept.
-std::vector<std::string> make_bias_row(const analysis::Advice& advice, const std::vector<records::BiasCell>& biases) {
-  std::vector<std::string> row(1 + kPicks.size(), records::kNothing);
-  bool is_any = false;
-  for (const analysis::Pick& pick : analysis::list_picks(advice)) {
-    const std::string bias = describe_biases(advice.keeping[pick.index].configuration, biases);
-    for (std::size_t i = 0; i < kPicks.size(); ++i)
-      if (std::ranges::count(pick.names, kPicks[i]) > 0 && !bias.empty()) row[1 + i] = bias;
-    is_any = is_any || !bias.empty();
-  }
-  row.front() = "bias to ship";
-  return is_any ? row : std::vector<std::string>();
 }
 
 document::Table make_table(const records::RunRecord& run, const std::vector<records::CellRecord>& cells,
                            const analysis::Advice& advice, const std::vector<records::BiasCell>& biases) {
   document::Table table{"", {{"", "Fast", "Balanced", "Best"}, {}}};
   const std::vector<std::string> scenes = list_answered_scenes(cells);
-  table.table.rows.push_back(
-      make_row(scenes.empty() ? advice.places.front().scene : "all scenes", advice, run.gl, true));
+  const auto add = [&](const std::string& head, const analysis::Advice& own, bool in_full) {
+    table.table.rows.push_back(
+        make_row(head, own, [&](const analysis::Pick& pick) { return describe_pick(own, pick, run.gl, in_full); }));
+  };
+  add(scenes.empty() ? advice.places.front().scene : "all scenes", advice, true);
   for (const std::string& scene : scenes) {
     if (std::ranges::count(advice.places, scene, &analysis::Place::scene) == 0) {
       const auto left_out =
@@ -74,9 +62,14 @@ document::Table make_table(const records::RunRecord& run, const std::vector<reco
     analysis::AdviceRequest request = advice.request;
     request.scenes = {scene};
     const analysis::Advice own = analysis::advise(cells, request);
-    if (!own.keeping.empty()) table.table.rows.push_back(make_row(scene, own, run.gl, false));
+    if (!own.keeping.empty()) add(scene, own, false);
   }
-  if (auto row = make_bias_row(advice, biases); !row.empty()) table.table.rows.push_back(std::move(row));
+  const auto bias_of = [&](const analysis::Pick& pick) {
+    const std::string bias = describe_biases(advice.keeping[pick.index].configuration, biases);
+    return bias.empty() ? std::string(records::kNothing) : bias;
+  };
+  const std::vector<std::string> row = make_row("bias to ship", advice, bias_of);
+  if (std::ranges::count(row, records::kNothing) < std::ssize(kPicks)) table.table.rows.push_back(row);
   return table;
 }
 

@@ -148,12 +148,9 @@ double weigh_filter(const records::BiasSweepRecord& sweep, const std::string& fi
 /// A filter's acne, solid with marks, or its contact gap, dashed with hollow ones, over the places of the amounts.
 document::ChartSeries make_rate_series(Curve curve, Rate rate, std::string title, const document::ChartStyle& style) {
   const bool is_gap = rate == &BiasCell::contact_gap;
-  document::ChartSeries series{.title = std::move(title),
-                               .color = style.color,
-                               .mark = style.mark,
-                               .filled = !is_gap,
-                               .line = is_gap ? document::LineStyle::kDashed : document::LineStyle::kSolid,
-                               .points = {}};
+  document::ChartSeries series = document::make_line(std::move(title), style);
+  series.filled = !is_gap;
+  if (is_gap) series.line = document::LineStyle::kDashed;
   for (const BiasCell& cell : curve) {
     if (!(cell.*rate)) continue;
     document::ChartPoint& added = series.points.emplace_back(

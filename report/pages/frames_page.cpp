@@ -133,20 +133,13 @@ document::Chart make_chart(const analysis::CellGroup& group, const std::string& 
   chart.y_name = y_name;
   std::vector<double> xs, ys;
   std::vector<std::pair<double, std::string>> weights;
-  document::ChartSeries level;
-  level.title = "one frame of 16 taps";
-  level.color = document::kInk;
-  level.line = document::LineStyle::kDashed;
+  document::ChartSeries level{
+      .title = "one frame of 16 taps", .color = document::kInk, .line = document::LineStyle::kDashed, .points = {}};
   for (std::size_t i = 0; i < group.cells.size(); ++i) {
     const auto* curve = group.cells[i].accumulation ? values(*group.cells[i].accumulation) : nullptr;
     if (!curve) continue;
     const std::string name = group.names.name(group.cells[i]);
-    const document::ChartStyle style = document::style_of(i);
-    document::ChartSeries series;
-    series.title = name;
-    series.color = style.color;
-    series.mark = style.mark;
-    series.line = document::LineStyle::kSolid;
+    document::ChartSeries series = document::make_line(name, document::style_of(i));
     for (std::size_t n = 0; n < curve->size(); ++n) {
       if ((*curve)[n] <= 0.0) continue;
       xs.push_back(static_cast<double>(n + 1));

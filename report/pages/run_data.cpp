@@ -53,7 +53,7 @@ json list_worst(const analysis::Configuration& configuration, const std::vector<
                 const std::vector<Quantity>& costs) {
   json worst = json::object();
   const auto add = [&](const std::string& field, const Quantity& spec, analysis::LightMotion light) {
-    worst[field] = describe_worst(analysis::judge_limit(configuration, {&spec, 0.0, {}}, light, places), places);
+    worst[field] = describe_worst(analysis::judge_limit(configuration, {&spec, 0.0}, light, places), places);
   };
   for (const Quantity& spec : analysis::limit_table())
     if (spec.metric) add(spec.field, spec, analysis::LightMotion::kMoving);
@@ -312,14 +312,7 @@ json make_measure(const Quantity& quantity) {
 json list_measures(std::vector<Quantity> quantities) {
   quantities.front().option = analysis::cost_spec(*quantities.front().cost).option;
   for (const metrics::Metric& metric : metrics::metric_table())
-    if (metric.tabled || !metric.limit.empty())
-      quantities.push_back({.id = std::string(metric.name()),
-                            .title = std::string(metric.title),
-                            .meaning = metric.definition,
-                            .field = std::string(metric.path),
-                            .option = std::string(metric.limit),
-                            .unit = std::string(metric.unit),
-                            .metric = &metric});
+    if (metric.tabled || !metric.limit.empty()) quantities.push_back(Quantity::of(metric));
   json measures = json::array();
   for (const Quantity& each : quantities) measures.push_back(make_measure(each));
   return measures;
@@ -416,7 +409,7 @@ json make_configuration(const analysis::Configuration& configuration,
                {"surroundings", configuration.surroundings},
                {"color", style.color},
                {"bias", describe_biases(configuration, biases)},
-               {"hardens", analysis::shows_claim(configuration.cells, analysis::kContactHardening)}};
+               {"hardens", analysis::hardens(configuration.cells)}};
   for (const Quantity& choice : choices)
     made[choice.full_field()] = counted.empty() ? json() : describe_cost(counted, choice);
   return made;

@@ -71,19 +71,10 @@ document::Gallery make_stability_gallery(const analysis::CellGroup& group) {
   return gallery;
 }
 
-document::Gallery make_lights_gallery(const analysis::CellGroup& group) {
-  document::Gallery gallery{"All lights of the scene at once", {}};
-  if (const auto path = find_path(group, &records::ImagesRecord::all_lights))
-    gallery.pictures.push_back({*path, "the truth and each filter, with what a frame costs whose lights all move"});
-  return gallery;
-}
-
-document::Gallery make_map_gallery(const analysis::CellGroup& group) {
-  document::Gallery gallery{"The shadow map: its depths, and where its texels fall", {}};
-  const std::pair<ImageMember, const char*> pictures[] = {
-      {&records::ImagesRecord::depth_map, "depth map, as the light sees the scene, with its histogram"},
-      {&records::ImagesRecord::texel_density, "how many map texels fall on each pixel"},
-      {&records::ImagesRecord::texel_grid, "the map's texels on the surfaces"}};
+/// Those of some pictures that a group has.
+document::Gallery make_gallery(const char* title, const analysis::CellGroup& group,
+                               const std::vector<std::pair<ImageMember, const char*>>& pictures) {
+  document::Gallery gallery{title, {}};
   for (const auto& [member, caption] : pictures)
     if (const auto path = find_path(group, member)) gallery.pictures.push_back({*path, caption});
   return gallery;
@@ -175,8 +166,16 @@ void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGrou
       gallery.pictures.push_back({sheet, "filters on " + group.scene + " by their error, first phase"});
     blocks.emplace_back(std::move(gallery));
   }
-  for (document::Gallery& gallery :
-       std::array{make_lights_gallery(group), make_stability_gallery(group), make_map_gallery(group)})
+  for (document::Gallery& gallery : std::array{
+           make_gallery("All lights of the scene at once", group,
+                        {{&records::ImagesRecord::all_lights,
+                          "the truth and each filter, with what a frame costs whose lights all move"}}),
+           make_stability_gallery(group),
+           make_gallery(
+               "The shadow map: its depths, and where its texels fall", group,
+               {{&records::ImagesRecord::depth_map, "depth map, as the light sees the scene, with its histogram"},
+                {&records::ImagesRecord::texel_density, "how many map texels fall on each pixel"},
+                {&records::ImagesRecord::texel_grid, "the map's texels on the surfaces"}})})
     if (!gallery.pictures.empty()) blocks.emplace_back(std::move(gallery));
   if (const auto exr = find_path(group, &records::ImagesRecord::exr))
     blocks.emplace_back(document::Links{"The float images of all filters, first phase:", {{*exr, *exr}}});

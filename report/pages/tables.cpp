@@ -193,12 +193,8 @@ document::Chart make_chart(const analysis::CellGroup& group, std::size_t number)
                         {}};
   std::vector<double> ends, errors;
   for (const records::CellRecord& cell : group.cells) {
-    const document::ChartStyle style = document::style_of(chart.series.size());
-    document::ChartSeries& line = chart.series.emplace_back();
-    line.title = group.names.name(cell);
-    line.color = style.color;
-    line.mark = style.mark;
-    line.line = document::LineStyle::kSolid;
+    document::ChartSeries& line =
+        chart.series.emplace_back(document::make_line(group.names.name(cell), document::style_of(chart.series.size())));
     for (const records::CascadeRecord& each : *cell.cascades) {
       if (!each.rmse) continue;
       ends.push_back(each.end_m);

@@ -47,20 +47,10 @@ document::ChartStyle style_among(const std::vector<std::string>& filters, const 
 
 analysis::Estimate exactly(double value) { return {value, value, value}; }
 
+/// Points with whiskers, joined.
 ChartSeries start_series(std::string title, const document::ChartStyle& style) {
-  ChartSeries series;
-  series.title = std::move(title);
-  series.color = style.color;
-  series.mark = style.mark;
+  ChartSeries series = document::make_line(std::move(title), style);
   series.whiskers = true;
-  return series;
-}
-
-ChartSeries start_line(std::string title, const char* color, document::LineStyle line) {
-  ChartSeries series;
-  series.title = std::move(title);
-  series.color = color;
-  series.line = line;
   return series;
 }
 
@@ -99,7 +89,11 @@ class FrontChart {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (leaders_[i] != i || !points_[i].group) continue;
       ChartSeries& line =
-          lines.try_emplace(*points_[i].group, start_line({}, kFrontInk, document::LineStyle::kSteps)).first->second;
+          lines
+              .try_emplace(
+                  *points_[i].group,
+                  ChartSeries{.title = {}, .color = kFrontInk, .line = document::LineStyle::kSteps, .points = {}})
+              .first->second;
       line.points.push_back(make_corner(points_[i]));
     }
     for (auto& [group, line] : lines) {
@@ -145,7 +139,9 @@ class FrontChart {
 
   /// Configurations on a front; tied with a cheaper one there, or compared with nothing; beaten.
   void add_marks(document::Chart& chart) const {
-    ChartSeries members = start_series({}, kMarkStyle), tied = members, beaten = members;
+    ChartSeries members = start_series({}, kMarkStyle);
+    members.line = document::LineStyle::kNone;
+    ChartSeries tied = members, beaten = members;
     tied.filled = beaten.filled = false;
     beaten.faint = true;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -208,7 +204,7 @@ class WidthChart {
  private:
   ChartSeries make_series(const analysis::CostCurve& curve, const document::ChartStyle& style) const {
     ChartSeries series = start_series(curve.label, style);
-    series.line = curve.prefiltered ? document::LineStyle::kSolid : document::LineStyle::kDashed;
+    if (!curve.prefiltered) series.line = document::LineStyle::kDashed;
     for (const analysis::CurvePoint& p : curve.points)
       series.points.push_back({exactly(p.sigma_texels),
                                p.costs[light_],
@@ -240,7 +236,6 @@ document::Chart make_map_chart(const analysis::MapFamily& family, const analysis
     if (series == made.series.end()) {
       made.series.push_back(start_series(map.name, document::style_of(made.series.size())));
       series = std::prev(made.series.end());
-      series->line = document::LineStyle::kSolid;
     }
     series->points.push_back({exactly(map.bytes),
                               map.rmse,

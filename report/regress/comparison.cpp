@@ -79,10 +79,12 @@ class CellComparer {
     }
     result_.pixels = compare_pixels(actual_.images, images_, tolerance(kPixel).limit);
     const PixelChange& change = *result_.pixels;
-    limit_share(change);
-    limit(kLargest, change.max,
-          fmt::format("the largest difference is {} at pixel ({}, {})", format_number(change.max), change.max_x,
-                      change.max_y));
+    const std::string largest = fmt::format("the largest difference is {} at pixel ({}, {})", format_number(change.max),
+                                            change.max_x, change.max_y);
+    limit(kShare, change.share(),
+          fmt::format("{} of {} pixels differ by more than {} and what rounding explains; {}", change.changed,
+                      change.compared, format_number(tolerance(kPixel).limit), largest));
+    limit(kLargest, change.max, largest);
     limit(kMean, change.mean, fmt::format("the mean difference is {}", format_number(change.mean)));
     const double pixels = static_cast<double>(std::max<std::int64_t>(change.pixels(), 1));
     const std::int64_t excused = change.excused_flips + change.excused_rounding;
@@ -95,18 +97,6 @@ class CellComparer {
           fmt::format("{} excused pixels differ: a comparison may flip at {} pixels, rounding moves {} by 1/32 or more",
                       change.excused_changed, change.excused_flips, change.excused_rounding));
     }
-  }
-
-  void limit_share(const PixelChange& change) {
-    if (change.share() <= tolerance(kShare).limit) return;
-    result_.add(Outcome::kChanged,
-                {.metric = kShare,
-                 .actual = change.share(),
-                 .limit = tolerance(kShare).limit,
-                 .text = fmt::format("{} of {} pixels differ by more than {} and what rounding explains; "
-                                     "the largest difference is {} at pixel ({}, {})",
-                                     change.changed, change.compared, format_number(tolerance(kPixel).limit),
-                                     format_number(change.max), change.max_x, change.max_y)});
   }
 
   void limit(const char* metric, double value, const std::string& text) {

@@ -142,8 +142,7 @@ TEST_F(Advise, Requires_ReadsTheClaimsOfTheFilters) {
   EXPECT_THAT(outcome.out, StartsWith("Use tent3x3.")) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("--requires contact-hardening  shown"));
   EXPECT_THAT(outcome.out, HasSubstr("breaks --requires contact-hardening\n"));
-  expect_refusal("advise run --requires temporal", 2,
-                 {"no filter claims 'temporal'", "filters claim contact-hardening"});
+  expect_refusal("advise run --requires temporal", 2, {"--requires", "'temporal'", "contact-hardening"});
 }
 
 }  // namespace

@@ -106,9 +106,9 @@ TEST(Picks, ALimitOnAnError_LetsNoneThrough) {
   const auto cells = make_cells({{"none", 1, 0.05}, {"pcf", 2, 0.04}, {"pcss", 9, 0.03}});
   const auto spec = std::ranges::find(limit_table(), "error.rmse", &Quantity::field);
   AdviceRequest request;
-  request.demands = {{&*spec, 0.06, {}}};
+  request.demands = {{&*spec, 0.06}};
   EXPECT_THAT(list_picks(cells, request), ElementsAre("fast: none", "balanced: pcf", "best: pcss"));
-  request.demands = {{&cost_spec(CostKind::kTime), 5.0, {}}};
+  request.demands = {{&cost_spec(CostKind::kTime), 5.0}};
   EXPECT_THAT(list_picks(cells, request), ElementsAre("fast and best: pcf"))
       << "a limit on the cost asks for no gain less";
 }

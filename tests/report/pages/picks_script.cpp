@@ -37,7 +37,7 @@ nlohmann::json ask(const nlohmann::json& data, const std::vector<records::CellRe
   for (const auto& [field, step] : {std::pair{"error.rmse", 0.002}, {"artefact.leak", 0.01}, {"time_ms", 2.0}}) {
     if (!is_limited || random() % 2 == 0) continue;
     limits[field] = step * static_cast<double>(1 + random() % 50);
-    request.demands.push_back({&analysis::limit_of(field), limits[field], {}});
+    request.demands.push_back({&analysis::limit_of(field), limits[field]});
   }
   const analysis::Advice advice = analysis::advise(cells, request);
   const auto index_of = [&](const analysis::Candidate& candidate) {

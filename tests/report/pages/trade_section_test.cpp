@@ -187,7 +187,7 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
 
 constexpr std::size_t kLongestLine = 100;
 
-analysis::Demand max_rmse(double most) { return {&analysis::limit_table()[0], most, {}}; }
+analysis::Demand max_rmse(double most) { return {&analysis::limit_table()[0], most}; }
 
 records::CellRecord measure(const std::string& scene, const std::string& filter, double ms, double rmse) {
   records::CellRecord cell = make_cell(scene, filter, ms);
@@ -292,7 +292,7 @@ TEST(AdviceText, Evidence_IsQuoted) {
 
 TEST(AdviceText, LimitOnTimeWithinTheSpread_IsSaid) {
   const auto cells = make_cells();
-  const analysis::Demand limit{&analysis::cost_spec(analysis::CostKind::kTime), 4.51, {}};
+  const analysis::Demand limit{&analysis::cost_spec(analysis::CostKind::kTime), 4.51};
   const std::string text = make_advice_text(make_run(), advise_on(cells, {limit}));
   EXPECT_THAT(text, HasSubstr("  --max-ms 4.51  4.5 ms (CPU)  cubes  its upper quartile, 4.59, is over it\n"));
 }
@@ -342,7 +342,7 @@ TEST(AdviceJson, Fields_AreTheSameWhateverTheAnswer) {
 TEST(AdviceJson, Claims_HaveNoSize) {
   auto cells = make_cells();
   analysis::AdviceRequest request;
-  request.demands = {{nullptr, 0.0, "contact-hardening"}};
+  request.demands.resize(1);
   for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
   for (records::CellRecord& cell : cells)
     if (cell.filter == "none") cell.claims = {"contact-hardening"};
@@ -360,7 +360,7 @@ TEST(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
     else
       records::explain(cells[i], "artefact.leak", {"too few", true});
   const analysis::Demand leak{
-      &*std::ranges::find(analysis::limit_table(), std::string("artefact.leak"), &analysis::Quantity::field), 0.1, {}};
+      &*std::ranges::find(analysis::limit_table(), std::string("artefact.leak"), &analysis::Quantity::field), 0.1};
   const auto limits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03), leak}))["keeping"][0]["limits"];
   EXPECT_TRUE(limits[0]["nothing_to_see"].empty());
   EXPECT_EQ(limits[1]["nothing_to_see"].dump(), R"([{"reason":"too few","scene":"stack","view":"main"}])");
