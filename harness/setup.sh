@@ -11,7 +11,7 @@ packages="
   libtomlplusplus-dev libvulkan-dev libxxhash-dev nlohmann-json3-dev openimageio-tools
   fonts-dejavu-core libegl1 libegl-mesa0 libgl1-mesa-dri mesa-vulkan-drivers
 "
-tests="chromium clang-format gcovr groff-base libbenchmark-dev libgmock-dev libgtest-dev python3-jsonschema
+tests="chromium clang-format gcovr groff-base libgmock-dev libgtest-dev python3-jsonschema
   slurm-wlm xauth xdotool xvfb"
 # What runs the tests of the pages may have come from elsewhere, and Debian's packages would then be in its way.
 command -v node >/dev/null || tests="$tests nodejs"

@@ -1,14 +1,35 @@
 #pragma once
 
+// What nearly every test uses: matchers, standard headers, errors, and files in a folder of its own.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
+#include "base/files.h"
 
 namespace shadowbench {
+
+using ::testing::AllOf, ::testing::AnyOf, ::testing::Contains, ::testing::ContainsRegex, ::testing::Each;
+using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::MatchesRegex;
+using ::testing::Not, ::testing::Pair, ::testing::SizeIs, ::testing::StartsWith, ::testing::UnorderedElementsAre;
 
 /// The Error that an action throws; one of kind kLimit, "no error", where it throws none.
 template <typename Action>
@@ -19,6 +40,20 @@ Error error_of(const Action& action) {
     return error;
   }
   return {ErrorKind::kLimit, "no error"};
+}
+
+/// Does an action while no file may grow beyond so many bytes, which stands for a full disk.
+template <typename Action>
+auto with_file_limit(rlim_t bytes, const Action& action) {
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{bytes, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const auto result = action();
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  return result;
 }
 
 inline std::string read_text(const std::filesystem::path& file) {

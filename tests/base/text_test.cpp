@@ -1,25 +1,13 @@
 #include "base/text.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <toml++/toml.h>
 
-#include <algorithm>
-#include <functional>
-#include <vector>
-
 #include "base/bytes.h"
-#include "base/error.h"
 #include "base/toml.h"
+#include "tests/test_files.h"
 
 namespace shadowbench {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::EndsWith;
-using ::testing::Pair;
-using ::testing::StartsWith;
 
 const std::vector<std::string> kNames{"none", "pcf2x2", "tent3x3", "poisson", "vsm", "esm"};
 
@@ -128,13 +116,9 @@ TEST(ContentHash, TellsBytesOrderAndPiecesApart) {
 TomlTable parse(const std::string& text) { return {text, "the text", {"a.glsl", 3, ErrorKind::kFilter}}; }
 
 std::string error_of(const std::string& text, const std::function<void(const TomlTable&)>& read) {
-  try {
-    read(parse(text));
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-    return error.what();
-  }
-  return "no error";
+  const Error error = error_of([&] { read(parse(text)); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  return error.what();
 }
 
 TEST(Toml, ErrorsSayWhatWasExpected_WhatIsThere_AndWhere) {
@@ -174,7 +158,7 @@ TEST(Toml, ErrorsSayWhatWasExpected_WhatIsThere_AndWhere) {
             "a.glsl:6: 'a' in [[x]] number 2 must be a whole number from 0 to 1, but is 'b'");
   for (const char* none : {"x = 1", "x = []", "x = [1]", "x = [{}, 1]"})
     EXPECT_THAT(error_of(none, [](const TomlTable& t) { t.tables("x"); }),
-                ::testing::HasSubstr("'x' in the text must be tables, [[x]], but is"));
+                HasSubstr("'x' in the text must be tables, [[x]], but is"));
   EXPECT_EQ(error_of("\n\nx = = 1", [](const TomlTable&) {}).substr(0, 26), "a.glsl:5: not valid TOML: ");
 }
 

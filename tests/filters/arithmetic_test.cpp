@@ -1,16 +1,7 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <complex>
-#include <functional>
-#include <numbers>
 #include <numeric>
-#include <random>
-#include <set>
 
 #include "filters/catalogue.h"
-#include "filters/depth_map.h"
 #include "filters/kernel.h"
 #include "filters/model.h"
 #include "filters/moments.h"
@@ -19,6 +10,7 @@
 #include "filters/scalar.h"
 #include "filters/store_format.h"
 #include "tests/filters/perspective_depth.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::filters {
 namespace {

@@ -1,15 +1,7 @@
 #include "filters/catalogue.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-
-#include "base/error.h"
 #include "filters/kernel.h"
 #include "filters/model.h"
 #include "tests/test_files.h"
@@ -17,10 +9,7 @@
 namespace shadowbench::filters {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
-using ::testing::UnorderedElementsAre;
 
 const Catalogue& built_in() {
   static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
@@ -28,13 +17,9 @@ const Catalogue& built_in() {
 }
 
 void expect_usage_error(const std::string& text, const std::string& words) {
-  try {
-    built_in().parse_requests(text);
-    ADD_FAILURE() << "accepted: " << text;
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-    EXPECT_THAT(error.message(), HasSubstr(words));
-  }
+  const Error error = error_of([&] { built_in().parse_requests(text); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage) << text;
+  EXPECT_THAT(error.message(), HasSubstr(words));
 }
 
 TEST(Catalogue, EveryBuiltInFilter_HasAModelAndASource) {
@@ -164,9 +149,6 @@ TEST(UserFile, HasNoWidth) {
   EXPECT_EQ(find_kernel_sigma(request.spec, request.values), std::nullopt);
 }
 
-using ::testing::EndsWith;
-using ::testing::StartsWith;
-
 std::vector<std::string> labels_of(const std::string& text) {
   std::vector<std::string> labels;
   for (const FilterRequest& request : built_in().parse_requests(text)) labels.push_back(request.label());
@@ -191,7 +173,7 @@ TEST(ShippedPresets, AreFiltersOfOurs_WithSourceAndVersion) {
     // A release is a number; otherwise every file that was read stands with its commit.
     if (preset.version.find("addresses") == std::string::npos) continue;
     for (const std::string& source : preset.sources)
-      EXPECT_THAT(source, ::testing::ContainsRegex("/blob/[0-9a-f]{40}/")) << preset.name;
+      EXPECT_THAT(source, ContainsRegex("/blob/[0-9a-f]{40}/")) << preset.name;
   }
 }
 
@@ -202,7 +184,7 @@ TEST(Presets, StandAmongFilters_ABeginningForAll) {
   EXPECT_THAT(labels_of("@three.js"),
               ElementsAre("poisson (pattern=vogel, radius=1, rotation=interleaved-gradient, taps=5)"));
   EXPECT_THAT(labels_of("@unity-hdrp-medium"), ElementsAre("tent7x7"));
-  EXPECT_THAT(labels_of("@unity"), ElementsAre("tent5x5", "tent7x7", ::testing::StartsWith("pcss"), "tent3x3"));
+  EXPECT_THAT(labels_of("@unity"), ElementsAre("tent5x5", "tent7x7", StartsWith("pcss"), "tent3x3"));
 }
 
 TEST(Presets, OfOneFilter_AreOneRequest) {

@@ -1,14 +1,5 @@
 #include "filters/front_matter.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "base/error.h"
 #include "filters/catalogue.h"
 #include "filters/glsl_words.h"
 #include "filters/kernel.h"
@@ -17,10 +8,6 @@
 
 namespace shadowbench::filters {
 namespace {
-
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 /// Puts lines into the front matter of a filter that is otherwise right; they start at line 6.
 std::string with(const std::string& lines, const std::string& glsl = "float visibility(Receiver r) { return 1.0; }\n") {

@@ -1,17 +1,9 @@
 #include "filters/model.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <random>
-
 #include "filters/catalogue.h"
 #include "filters/percentage_closer.h"
 #include "filters/random.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::filters {
 namespace {
@@ -25,16 +17,40 @@ DepthMap make_edge(int size, int edge, float near, float far) {
   return map;
 }
 
-/// Looks up a receiver at a position in texels.
-double look_up(const std::string& request_text, const DepthMap& map, double x, double y, float depth,
-               Precision precision = Precision::kDouble) {
+FilterRequest request_of(const std::string& text) {
   static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const FilterRequest request = catalogue.parse_requests(request_text).front();
-  const ModelInput input{request.spec, request.values, map, {}, 0};
+  return catalogue.parse_requests(text).front();
+}
+
+/// Looks receivers up by a filter.
+class Filtered {
+ public:
+  Filtered(FilterRequest request, const DepthMap& map, Precision precision = Precision::kDouble)
+      : request_(std::move(request)),
+        lookup_(make_model(request_.spec)->prepare({request_.spec, request_.values, map, {}, 0}, precision)) {}
+  Filtered(const std::string& text, const DepthMap& map, Precision precision = Precision::kDouble)
+      : Filtered(request_of(text), map, precision) {}
+
+  ModelResult find(const Receiver& r) const { return lookup_->at(r); }
+  double at(const Receiver& r) const { return find(r).visibility; }
+  double radius_at(const Receiver& r) const { return find(r).disk_radius_texels; }
+
+ private:
+  FilterRequest request_;
+  std::unique_ptr<Lookup> lookup_;
+};
+
+/// A receiver at a position in texels.
+Receiver make_receiver_at(const DepthMap& map, double x, double y, float depth) {
   Receiver r;
   r.uv = {static_cast<float>(x / map.size), static_cast<float>(y / map.size)};
   r.depth = depth;
-  return make_model(request.spec)->prepare(input, precision)->at(r).visibility;
+  return r;
+}
+
+double look_up(const std::string& request, const DepthMap& map, double x, double y, float depth,
+               Precision precision = Precision::kDouble) {
+  return Filtered(request, map, precision).at(make_receiver_at(map, x, y, depth));
 }
 
 TEST(NoneModel, ComparesTheTexelThatHoldsThePoint) {
@@ -46,16 +62,11 @@ TEST(NoneModel, ComparesTheTexelThatHoldsThePoint) {
 
 /// One ULP of depth is a long way on a perspective curve's flat end, and on a reversed map's fine one.
 TEST(NoneModel, DepthsOneUlpApart_AreExcused_WhateverTheCurve_OthersAreNot) {
-  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const FilterRequest request = catalogue.parse_requests("none").front();
   const auto is_excused = [&](const DepthCurve& curve, float in_map, float depth) {
     const float stored = curve.store(in_map);
     DepthMap map = make_edge(16, 16, stored, stored);
     map.curve = curve;
-    Receiver r;
-    r.uv = {4.5f / 16.0f, 4.5f / 16.0f};
-    r.depth = depth;
-    return make_model("none")->prepare({request.spec, request.values, map, {}, 0}, Precision::kDouble)->at(r).excused;
+    return Filtered("none", map).find(make_receiver_at(map, 4.5, 4.5, depth)).excused;
   };
   for (const double ratio : {1.0, 1e3}) {
     for (const bool reversed : {false, true}) {
@@ -112,23 +123,19 @@ TEST(Pcf2x2Model, IsATentAcrossAnEdge) {
 }
 
 TEST(Box4x4Model, InSinglePrecision_KeepsItsBound) {
-  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const FilterRequest request = catalogue.parse_requests("box4x4").front();
   std::mt19937 random(3);
   const auto number = [&] { return static_cast<float>(random()) * 0x1p-32f; };
   for (const int size : {1, 3, 100, 1000, 1024}) {
     DepthMap map{size, {}};
     for (int i = 0; i < size * size; ++i) map.stored.push_back(number());
-    const ModelInput input{request.spec, request.values, map, {}, 0};
-    const auto model = make_model("box4x4");
-    const auto single = model->prepare(input, Precision::kFloat), tracked = model->prepare(input, Precision::kTracked);
+    const Filtered single("box4x4", map, Precision::kFloat), tracked("box4x4", map, Precision::kTracked);
     for (int i = 0; i < 20000; ++i) {
       Receiver r;
       r.uv = {number(), number()};
       r.depth = number();
-      const ModelResult exact = tracked->at(r);
+      const ModelResult exact = tracked.find(r);
       if (exact.excused) continue;
-      ASSERT_LE(std::abs(single->at(r).visibility - exact.visibility), exact.bound) << size;
+      ASSERT_LE(std::abs(single.at(r) - exact.visibility), exact.bound) << size;
       ASSERT_LT(exact.bound, 5e-6 * (size + 1)) << "a bound this wide says nothing";
     }
   }
@@ -206,15 +213,11 @@ TEST(EsmModel, LogSpace_DoesNotOverflow) {
 
 /// ESM in log space, whose exponent has no limit but the parameter's; `c` may exceed that here.
 double look_up_esm(const DepthMap& map, int radius, double c, float depth) {
-  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  FilterRequest request = catalogue.parse_requests("esm:combine=log").front();
+  FilterRequest request = request_of("esm:combine=log");
   request.values["c"] = c;
   request.values["radius"] = static_cast<double>(radius);
-  const ModelInput input{request.spec, request.values, map, {}, 0};
-  Receiver r;
-  r.uv = {0.5f + 0.5f / static_cast<float>(map.size), 0.5f + 0.5f / static_cast<float>(map.size)};
-  r.depth = depth;
-  return make_model("esm")->prepare(input, Precision::kDouble)->at(r).visibility;
+  const double middle = 0.5 * map.size + 0.5;
+  return Filtered(request, map).at(make_receiver_at(map, middle, middle, depth));
 }
 
 TEST(EsmModel, OfASingleTexel_TendsToTheHardComparison) {
@@ -246,20 +249,13 @@ TEST(EsmModel, OfAWideKernel_GoesToOne_AsSoonAsATexelIsDeeper) {
 }
 
 TEST(Excuse, TiesAndBorders_AreNamed) {
-  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const FilterRequest request = catalogue.parse_requests("none").front();
   const DepthMap map = make_edge(16, 8, 0.25f, 1.0f);
-  const ModelInput input{request.spec, request.values, map, {}, 0};
-  const auto lookup = make_model("none")->prepare(input, Precision::kDouble);
-  Receiver r;
-  r.uv = {4.5f / 16.0f, 4.5f / 16.0f};
-  r.depth = 0.5f;
-  EXPECT_FALSE(lookup->at(r).excused);
-  r.depth = std::nextafter(0.25f, 1.0f);
-  EXPECT_TRUE(lookup->at(r).excused) << "one ULP from a tie";
-  r.depth = 0.5f;
+  const Filtered none("none", map);
+  Receiver r = make_receiver_at(map, 4.5, 4.5, 0.5f);
+  EXPECT_FALSE(none.find(r).excused);
+  EXPECT_TRUE(none.find(make_receiver_at(map, 4.5, 4.5, std::nextafter(0.25f, 1.0f))).excused) << "one ULP from a tie";
   r.uv.x = std::nextafter(8.0f / 16.0f, 1.0f);
-  EXPECT_TRUE(lookup->at(r).excused) << "at a texel's border";
+  EXPECT_TRUE(none.find(r).excused) << "at a texel's border";
 }
 
 struct Spread {
@@ -379,28 +375,12 @@ DepthMap make_map(const std::function<float(int x, int y)>& depth) {
 
 /// A receiver of the floor, with texels of 1 m and a depth of 100 m.
 Receiver make_floor_receiver(double x, double y, float light_size) {
-  Receiver r;
-  r.uv = {static_cast<float>(x / kMapSide), static_cast<float>(y / kMapSide)};
-  r.depth = r.depth_unbiased = kFloor;
+  Receiver r = make_receiver_at({kMapSide, {}}, x, y, kFloor);
+  r.depth_unbiased = kFloor;
   r.depth_range_ws = 100.0f;
   r.light_size = light_size;
   return r;
 }
-
-/// Looks receivers up by a filter.
-class Filtered {
- public:
-  Filtered(const std::string& text, const DepthMap& map)
-      : request_(Catalogue(SHADOWBENCH_SOURCE_DIR "/filters").parse_requests(text).front()),
-        lookup_(make_model(request_.spec)->prepare({request_.spec, request_.values, map, {}, 0}, Precision::kDouble)) {}
-
-  double at(const Receiver& r) const { return lookup_->at(r).visibility; }
-  double radius_at(const Receiver& r) const { return lookup_->at(r).disk_radius_texels; }
-
- private:
-  FilterRequest request_;
-  std::unique_ptr<Lookup> lookup_;
-};
 
 class ContactHardening : public ::testing::TestWithParam<const char*> {};
 

@@ -2,13 +2,7 @@
 // the pictures that `regress` draws, then:
 //   shadowbench run golden --out OUT && shadowbench regress OUT --baseline tests/golden --accept
 
-#include <algorithm>
-#include <cmath>
-#include <csignal>
-#include <map>
-
 #include "filters/kernel.h"
-#include "harness/gl/context/context.h"
 #include "report/regress/baseline.h"
 #include "report/regress/comparison.h"
 #include "tests/harness/cli/program.h"

@@ -14,7 +14,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -153,17 +152,6 @@ def print_table(verdicts):
         print("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip())
 
 
-def print_counts(verdicts):
-    """Prints per filter how many mutants each operator gave, and which kinds of tests caught them first."""
-    print()
-    for name in dict.fromkeys(v.filter for v in verdicts):
-        of_filter = [v for v in verdicts if v.filter == name]
-        operators = Counter(v.mutant.operator for v in of_filter)
-        suites = Counter(re.sub(r"^.*/(\w+)\..*$", r"\1", v.caught_by) or "nothing" for v in of_filter)
-        print(f"{name}: {len(of_filter)} mutants ({', '.join(f'{n} {o}' for o, n in operators.items())}), "
-              f"caught first by {', '.join(f'{s} {n}' for s, n in suites.most_common())}")
-
-
 def list_uncaught(verdicts):
     return [f"{v.filter}.glsl:{v.line}: {v.mutant.operator}: '{v.mutant.after}': {v.fault or 'no test went red'}"
             for v in verdicts if v.fault or not v.caught_by]
@@ -208,7 +196,6 @@ def main():
     if not faults:
         verdicts = judge_all(tests, files, ids, arguments)
         print_table(verdicts)
-        print_counts(verdicts)
         faults = list_uncaught(verdicts) + ([] if arguments.operator else list_unbroken(verdicts, ids))
     caught = sum(1 for v in verdicts if v.caught_by and not v.fault)
     print(f"\n{caught} of {len(verdicts)} mutants caught, {time.monotonic() - begun:.0f} s")

@@ -36,7 +36,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PRESETS = (ROOT / "CMakePresets.json").read_text(encoding="utf-8")
 SETUP = (ROOT / "harness/setup.sh").read_text(encoding="utf-8")
 
-# What is appended to a command that does not say it itself: (option, value). The value None marks a flag.
+# What is appended to a command that does not say it itself: (option, value).
 CHEAPER = {
     "run": [("--size", "96x54"), ("--map-size", "128"), ("--rounds", "6"), ("--scene", "cubes"), ("--filters", "none,vsm"),
             ("--gpu", "none")],
@@ -80,11 +80,8 @@ class Block:
     """One fenced block: its language, the file it shows (or None), and its lines with their numbers in the README."""
 
     def __init__(self, info, line):
-        words = info.split()
-        self.language = words[0] if words else ""
-        self.file = words[1] if len(words) > 1 else None
-        self.line = line
-        self.lines = []
+        self.language, self.file, *_ = [*info.split(), "", ""]
+        self.line, self.lines = line, []
 
 
 class Page:
@@ -134,12 +131,9 @@ def find_pages():
     """All READMEs of the tree, and CONTRIBUTING.md; not what was built or written by runs."""
     pages = [ROOT / "CONTRIBUTING.md"]
     for folder, folders, files in os.walk(ROOT):
-        relative = Path(folder).relative_to(ROOT).as_posix()
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in ("build", "out", "node_modules"))
         pages += [Path(folder) / "README.md"] if "README.md" in files else []
-        if relative.count("/") > 8:
-            folders.clear()
-    return [Page(path) for path in sorted(pages) if path.exists()]
+    return [Page(path) for path in sorted(pages)]
 
 
 def join_lines(lines):
@@ -169,18 +163,6 @@ def list_commands(block):
             yield number, text, comment.group(1) if comment else ""
 
 
-def split_command(text):
-    """Splits a line at '&&' into lists of words."""
-    commands, words = [], []
-    for word in shlex.split(text):
-        if word == "&&":
-            commands.append(words)
-            words = []
-        else:
-            words.append(word)
-    return commands + [words]
-
-
 def wanted_codes(comment):
     found = EXIT_CODE.search(comment)
     if not found:
@@ -197,9 +179,8 @@ def append_cheaper(words):
     result = list(words)
     for option, value in CHEAPER.get(words[1] if len(words) > 1 else "", []):
         given = any(word == option or word.startswith(option + "=") for word in words)
-        if given or (is_file and option in KEPT_BY_EXPERIMENT_FILES):
-            continue
-        result += [option] if value is None else [option, value]
+        if not given and not (is_file and option in KEPT_BY_EXPERIMENT_FILES):
+            result += [option, value]
     return result
 
 
@@ -226,13 +207,9 @@ class Runner:
                 self.run_line(number, text, comment)
 
     def run_line(self, number, text, comment):
-        commands = split_command(text)
-        for index, words in enumerate(commands):
-            if not words:
-                continue
-            is_last = index + 1 == len(commands)
-            if not self.run_command(number, words, wanted_codes(comment) if is_last else {0}):
-                return
+        *first, last = [shlex.split(command) for command in text.split("&&")]
+        if all(self.run_command(number, words, {0}) for words in first):
+            self.run_command(number, last, wanted_codes(comment))
 
     def run_command(self, number, words, wanted):
         """Says whether the command did what it should; else that is reported."""
@@ -336,15 +313,6 @@ def check_blocks(page, report):
                 report.fail(page, number, "a command belongs in a block marked sh")
 
 
-def parse_arguments():
-    parser = argparse.ArgumentParser(description="Runs the commands of every README.md.")
-    parser.add_argument("--program", required=True, type=Path, help="the built shadowbench")
-    parser.add_argument("--only", help="this README alone, by its path from the root")
-    options = parser.parse_args()
-    options.program = options.program.resolve()
-    return options
-
-
 def check_pages(options, scratch, report):
     help_text = Help(options.program)
     pages = [page for page in find_pages() if options.only in (None, page.name)]
@@ -359,7 +327,10 @@ def check_pages(options, scratch, report):
 
 
 def main():
-    options = parse_arguments()
+    parser = argparse.ArgumentParser(description="Runs the commands of every README.md.")
+    parser.add_argument("--program", required=True, type=lambda name: Path(name).resolve(), help="the built shadowbench")
+    parser.add_argument("--only", help="this README alone, by its path from the root")
+    options = parser.parse_args()
     report = Report()
     with tempfile.TemporaryDirectory(prefix="readme-") as scratch:
         pages = check_pages(options, Path(scratch), report)

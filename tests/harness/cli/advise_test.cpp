@@ -1,6 +1,5 @@
 // `shadowbench advise`, as a user calls it, on runs that are written by hand.
 
-#include "report/records/format.h"
 #include "report/records/json_io.h"
 #include "tests/harness/cli/program.h"
 #include "tests/report/records/synthetic.h"
@@ -15,16 +14,16 @@ class Advise : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    std::vector<records::CellRecord> cells;
+    std::vector<CellRecord> cells;
     for (const char* scene : {"cubes", "stack"}) {
       cells.push_back(make_cell(scene, "none", 1.0, 0.06));
       cells.push_back(make_cell(scene, "tent3x3", 4.0, 0.02));
     }
-    records::write_results(folder() / "run", records::make_run(), cells);
+    write_results(folder() / "run", make_run(), cells);
   }
 
-  static records::CellRecord make_cell(const std::string& scene, const std::string& filter, double ms, double rmse) {
-    records::CellRecord cell = records::make_cell(scene, filter, ms);
+  static CellRecord make_cell(const std::string& scene, const std::string& filter, double ms, double rmse) {
+    CellRecord cell = make_cell(scene, filter, ms);
     cell.error.rmse = rmse;
     cell.truth.se = 0.001;
     cell.absent.erase("error");
@@ -50,14 +49,13 @@ TEST_F(Advise, Options_ReachTheRequest) {
 }
 
 TEST_F(Advise, WhereNoGpuDrew_TheEstimateIsTheCost_AndMillisecondsLimitIt) {
-  std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 1.0, 0.06),
-                                            make_cell("cubes", "tent3x3", 0.5, 0.02)};
-  for (records::CellRecord& cell : cells) {
-    cell.machine = records::kind_of(records::make_run().machine, records::make_run().gl);
+  std::vector<CellRecord> cells = {make_cell("cubes", "none", 1.0, 0.06), make_cell("cubes", "tent3x3", 0.5, 0.02)};
+  for (CellRecord& cell : cells) {
+    cell.machine = kind_of(make_run().machine, make_run().gl);
     const double us = cell.filter == "none" ? 10.0 : 1000.0;
-    cell.gpu = {{"navi21", {{}, records::GpuEstimateRecord{.lookup_us = us, .bound_by = "memory"}, {}}}};
+    cell.gpu = {{"navi21", {{}, GpuEstimateRecord{.lookup_us = us, .bound_by = "memory"}, {}}}};
   }
-  records::write_results(folder() / "cpu", records::make_run(), cells);
+  write_results(folder() / "cpu", make_run(), cells);
   EXPECT_THAT(run("advise cpu --max-rmse 1").out, HasSubstr("none: 20.7 µs estimated for navi21 of a 1920x1080 frame"));
   EXPECT_THAT(run("advise cpu --max-rmse 1 --cheapest time").out, HasSubstr("tent3x3: 4 ms (CPU) a frame"));
   EXPECT_EQ(run("advise cpu --max-rmse 0.05 --max-ms 2").exit_code, 1) << "its estimate is 2.07 ms, its time 4";
@@ -68,9 +66,9 @@ TEST_F(Advise, WhereNoGpuDrew_TheEstimateIsTheCost_AndMillisecondsLimitIt) {
 
 /// A report may be somebody else's, and its names would steer the terminal.
 TEST_F(Advise, NamesOfAReport_AreShownWithoutEscapes) {
-  std::vector<records::CellRecord> cells = records::read_results(folder() / "run" / "results.json").cells;
-  for (records::CellRecord& cell : cells) cell.scene += "\x1b[31m";
-  records::write_results(folder() / "foreign", records::make_run(), cells);
+  std::vector<CellRecord> cells = read_results(folder() / "run" / "results.json").cells;
+  for (CellRecord& cell : cells) cell.scene += "\x1b[31m";
+  write_results(folder() / "foreign", make_run(), cells);
   const Outcome outcome = run("advise foreign --max-rmse 0.03");
   EXPECT_THAT(outcome.out, HasSubstr("\\x1b[31m"));
   EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos);
@@ -131,7 +129,7 @@ TEST_F(Advise, BadRuns_AreInputErrors) {
   other["schema_version"] = 99;
   write("other.json", other.dump());
   expect_refusal("advise other.json", 3, {"other.json", "schema_version is 99"});
-  other["schema_version"] = records::kSchemaVersion;
+  other["schema_version"] = kSchemaVersion;
   other["cells"] = json::array();
   write("none.json", other.dump());
   expect_refusal("advise none.json", 3, {"holds no cell"});

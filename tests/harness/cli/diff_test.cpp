@@ -1,7 +1,5 @@
 // `shadowbench diff` and `list metrics`, as a user calls them.
 
-#include <limits>
-
 #include "report/images/picture_io.h"
 #include "tests/harness/cli/program.h"
 

@@ -1,8 +1,3 @@
-#include <sys/stat.h>
-
-#include <random>
-
-#include "base/files.h"
 #include "harness/gl/context/context.h"
 #include "tests/harness/cli/faults.h"
 

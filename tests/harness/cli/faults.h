@@ -1,17 +1,9 @@
 #pragma once
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <chrono>
-#include <csignal>
 #include <optional>
-#include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include "base/error.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_io.h"
 #include "tests/harness/cli/program.h"

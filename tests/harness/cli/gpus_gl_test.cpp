@@ -1,7 +1,5 @@
 // Costs on GPUs that are not there, as a user sees them: in the record, in advice, and where the driver fails.
 
-#include <fmt/format.h>
-
 #include "harness/gpu/gpu.h"
 #include "tests/harness/cli/program.h"
 

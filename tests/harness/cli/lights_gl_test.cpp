@@ -1,11 +1,4 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <map>
 #include <numeric>
-#include <set>
 
 #include "report/images/stored_picture.h"
 #include "tests/harness/cli/program.h"

@@ -1,27 +1,17 @@
 #pragma once
 
-#include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <wordexp.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
-#include <vector>
 
-#include "base/files.h"
 #include "harness/cli/commands.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::test {
 
 using nlohmann::json;
-using ::testing::AllOf, ::testing::AnyOf, ::testing::ContainsRegex, ::testing::ElementsAre, ::testing::HasSubstr;
-using ::testing::IsEmpty, ::testing::MatchesRegex, ::testing::Not, ::testing::StartsWith;
 
 /// What a run of the program gave.
 struct Outcome {
@@ -143,8 +133,7 @@ class ProgramTest : public ::testing::Test {
 
   /// Does a run in the first test that asks for it, and gives the others a copy of its folder.
   void draw_once(const std::string& words, const std::string& out = "out") const {
-    static const ScratchFolder kept(
-        make_temporary_folder_path(std::filesystem::temp_directory_path() / "shadowbench", "runs"));
+    static const TestFolder kept;
     const std::filesystem::path made = kept.path() / std::to_string(std::hash<std::string>()(words));
     std::filesystem::remove_all(folder() / out);
     if (!std::filesystem::exists(made)) {

@@ -2,9 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <fstream>
-#include <map>
-
 #include "report/files/folder_lock.h"
 #include "report/regress/regress.h"
 #include "tests/harness/cli/program.h"
@@ -123,10 +120,9 @@ TEST_F(Regress, Accept_ChangesWhatMovedAlone_AndSaysWhat) {
   EXPECT_THAT(accepted.out, HasSubstr("accepted: 1 change"));
   const auto lines = report("a")["accepted"];
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0].get<std::string>(),
-              ::testing::AllOf(HasSubstr("replaced: cubes pcf2x2"), HasSubstr("error.rmse")));
+  EXPECT_THAT(lines[0].get<std::string>(), AllOf(HasSubstr("replaced: cubes pcf2x2"), HasSubstr("error.rmse")));
   // The image holds the second in which it was written; the numbers are what they were.
-  EXPECT_THAT(list_changes(before), ::testing::Each("pcf2x2.exr"));
+  EXPECT_THAT(list_changes(before), Each("pcf2x2.exr"));
 }
 
 TEST_F(Regress, MissingCell_Fails_AndLeavesOnRequestAlone) {

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cstdio>
-#include <set>
 
 #include "harness/gl/survey.h"
 #include "tests/harness/cli/program.h"
@@ -345,7 +343,7 @@ TEST_F(ProgressOfARun, NamesEveryStep_AndCountsCells) {
     const std::vector<Line> lines = draw(options);
     ASSERT_FALSE(lines.empty());
     EXPECT_EQ(lines.front().done, 0);
-    EXPECT_THAT(lines.back().text, AllOf(StartsWith("2/2 · "), ::testing::EndsWith(" · done")));
+    EXPECT_THAT(lines.back().text, AllOf(StartsWith("2/2 · "), EndsWith(" · done")));
     EXPECT_TRUE(std::ranges::is_sorted(lines, {}, &Line::done));
     for (const char* step : {"· none", "· vsm", "times", "phases", "pictures", "writing the report"}) {
       const auto is_of_step = [&](const Line& line) { return line.text.find(step) != std::string::npos; };

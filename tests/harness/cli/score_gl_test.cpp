@@ -1,7 +1,5 @@
 // Another renderer's pictures as rows of a report.
 
-#include <sstream>
-
 #include "report/images/picture_io.h"
 #include "tests/harness/cli/program.h"
 

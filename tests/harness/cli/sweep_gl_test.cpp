@@ -1,12 +1,4 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <map>
-#include <set>
-
-#include "report/images/picture_io.h"
 #include "tests/harness/cli/faults.h"
-#include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
 namespace {
@@ -167,7 +159,7 @@ TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCells) {
   EXPECT_EQ(read_cells()[1]["claims"], json::array({"own-claim"}));
   // So small a picture has too few pixels for rates.
   EXPECT_THAT(read_cells()[0]["absent"]["artefact.leak"].get<std::string>(), StartsWith("fewer than 100 receivers"));
-  EXPECT_THAT(read_cells()[0]["nothing_to_see"], ::testing::Contains("artefact.leak"));
+  EXPECT_THAT(read_cells()[0]["nothing_to_see"], Contains("artefact.leak"));
   EXPECT_EQ(run("advise out --max-leak 1").exit_code, 1);
 }
 

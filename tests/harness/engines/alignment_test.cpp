@@ -1,14 +1,5 @@
 #include "harness/engines/alignment.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-
-#include "base/error.h"
-#include "base/files.h"
 #include "harness/engines/external_images.h"
 #include "report/images/picture_io.h"
 #include "tests/test_files.h"
@@ -17,7 +8,6 @@ namespace shadowbench::engines {
 namespace {
 
 using images::Image;
-using testing::HasSubstr;
 
 constexpr int kWidth = 96, kHeight = 54;
 const glm::dvec3 kToLight = glm::normalize(glm::dvec3(0.5, 0.7, 0.6));
@@ -276,7 +266,7 @@ TEST(Alignment, BackFacesThatAreNotDrawn_AreNamed_AndLeftOut) {
     const CheckedImages checked = check_images(draw({.has_depth = has_depth, .has_chimney = false}), own);
     EXPECT_THAT(all_texts(checked), HasSubstr("culls back faces"));
     for (const char* wrong : {"another one", "antialiased", "REFUSED"})
-      EXPECT_THAT(all_texts(checked), testing::Not(HasSubstr(wrong))) << has_depth;
+      EXPECT_THAT(all_texts(checked), Not(HasSubstr(wrong))) << has_depth;
     EXPECT_TRUE(std::isnan(*checked.visibility.at(45, 10)));
   }
 }
@@ -298,7 +288,7 @@ TEST(Alignment, CastersThatCastOnOneSide_AreNamed) {
   }
   drawn.lit = drawn.unlit;  // where all shadows are missing, that explains nothing
   drawn.lit->texels[drawn.lit->texels.size() - 1] = 0.0f;
-  EXPECT_THAT(all_texts(check_images(drawn, own)), testing::Not(HasSubstr("alone")));
+  EXPECT_THAT(all_texts(check_images(drawn, own)), Not(HasSubstr("alone")));
 }
 
 TEST(Alignment, ADepthThatIsNone_IsNamed) {
@@ -390,8 +380,7 @@ images::Image make_grey(float value) {
 
 /// A file that is named for two layers gives each its own part, whatever its first part is.
 TEST(ExternalImages, AFileOfSeveralParts_GivesEachLayerItsOwn) {
-  const ScratchFolder folder(make_temporary_folder_path(std::filesystem::temp_directory_path() / "layers", "test"));
-  std::filesystem::create_directories(folder.path());
+  const TestFolder folder;
   const std::string file = (folder.path() / "both.exr").string();
   images::write_exr(file, {{"unlit", {"R", "G", "B"}, make_grey(0.25f)}, {"lit", {"R", "G", "B"}, make_grey(0.75f)}},
                     {});
@@ -403,8 +392,7 @@ TEST(ExternalImages, AFileOfSeveralParts_GivesEachLayerItsOwn) {
 }
 
 TEST(ExternalImages, AFileOfOnePart_IsTheLayerThatItIsNamedFor) {
-  const ScratchFolder folder(make_temporary_folder_path(std::filesystem::temp_directory_path() / "layers", "test"));
-  std::filesystem::create_directories(folder.path());
+  const TestFolder folder;
   const std::string lit = (folder.path() / "a.exr").string(), unlit = (folder.path() / "b.exr").string();
   images::write_exr(lit, {{"beauty", {"R", "G", "B"}, make_grey(0.5f)}}, {});
   images::write_exr(unlit, {{"beauty", {"R", "G", "B"}, make_grey(0.125f)}}, {});

@@ -1,9 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "harness/gl/context/context.h"
@@ -14,10 +8,6 @@
 
 namespace shadowbench::gl {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 #ifdef __SANITIZE_ADDRESS__
 /// Mesa unloads its driver with the last GLX context, and no leak could be traced to the driver, nor suppressed, after
@@ -32,7 +22,7 @@ void expect_it_draws(Context& context) {
   framebuffer.attach_color(0, texture);
   framebuffer.bind();
   framebuffer.clear_color(0, {0.25f, 0.0f, 0.0f, 0.0f});
-  EXPECT_THAT(texture.read_floats(1), ::testing::Each(0.25f));
+  EXPECT_THAT(texture.read_floats(1), Each(0.25f));
   SurveyShader probe("survey_load.frag", {4, 4});
   probe.program().set("u_iterations", 0);
   EXPECT_FLOAT_EQ(probe.run()[1], 1.5f * 0.001f + 0.5f * 0.0001f);
@@ -71,7 +61,7 @@ TEST_F(GlTest, ClipControl_IsLowerLeftZeroToOne) {
 
 TEST_F(GlTest, GlError_IsRecordedOnceWithItsCall) {
   glEnable(0x1234);
-  EXPECT_THAT(context().take_gl_errors(), ::testing::ElementsAre(HasSubstr("glEnable")));
+  EXPECT_THAT(context().take_gl_errors(), ElementsAre(HasSubstr("glEnable")));
   EXPECT_THAT(context().take_gl_errors(), IsEmpty());
 }
 
@@ -83,7 +73,7 @@ TEST_F(GlTest, GlError_ThrowsWhereNoneIsAllowed) {
 TEST_F(GlTest, GlErrorWithoutAMessage_IsRecordedByItsCode) {
   glDisable(GL_DEBUG_OUTPUT);
   glEnable(0x1234);
-  EXPECT_THAT(context().take_gl_errors(), ::testing::ElementsAre("GL_INVALID_ENUM"));
+  EXPECT_THAT(context().take_gl_errors(), ElementsAre("GL_INVALID_ENUM"));
 }
 
 TEST(Context, ThreeInTurn_EachDraws) {
@@ -115,7 +105,7 @@ TEST(Context, AutoOnAnyMachine_GivesOneThatDraws_AndSaysWhyNotTheOthers) {
   expect_it_draws(*choice.context);
   if (choice.context->info().software) {
     ASSERT_THAT(choice.refused, Not(IsEmpty()));
-    EXPECT_THAT(choice.refused.front(), ::testing::StartsWith("egl on a GPU: "));
+    EXPECT_THAT(choice.refused.front(), StartsWith("egl on a GPU: "));
   }
 }
 

@@ -1,8 +1,4 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <array>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -15,11 +11,8 @@
 namespace shadowbench::gl {
 namespace {
 
-using ::testing::Each;
-using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::FloatEq;
-using ::testing::HasSubstr;
 
 constexpr std::array<std::byte, 4> kFourBytes{};
 

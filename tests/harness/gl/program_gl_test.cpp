@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cstddef>
 #include <stdexcept>
@@ -13,9 +10,6 @@
 
 namespace shadowbench::gl {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 ShaderSource make_source(const std::string& text) {
   SourceOptions options;
@@ -75,7 +69,7 @@ TEST_F(GlTest, CompileErrorInAShaderOfOurs_IsABug) {
 
 TEST_F(GlTest, CompileError_LeavesNoGlError) {
   EXPECT_THROW(make_filter_program("x"), Error);
-  EXPECT_THAT(context().take_gl_errors(), ::testing::IsEmpty());
+  EXPECT_THAT(context().take_gl_errors(), IsEmpty());
 }
 
 TEST_F(GlTest, Defines_ReachTheShader) {

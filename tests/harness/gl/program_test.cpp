@@ -1,12 +1,6 @@
 #include "harness/gl/program.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "harness/gl/context/context.h"
 #include "harness/gl/objects.h"
@@ -15,11 +9,6 @@
 
 namespace shadowbench::gl {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// Holds shader files in a folder of its own.
 class ShaderSourceTest : public ::testing::Test {
@@ -59,7 +48,7 @@ TEST_F(ShaderSourceTest, Version_ComesFirst_ThenTheDefines) {
   write("main.frag", "void main() {}\n");
   options_.defines = {{"TAPS", "8"}, {"LOG", "1"}};
   const auto source = build_source(options_);
-  EXPECT_THAT(source.text, ::testing::StartsWith("#version 450 core\n#define TAPS 8\n#define LOG 1\n"));
+  EXPECT_THAT(source.text, StartsWith("#version 450 core\n#define TAPS 8\n#define LOG 1\n"));
 }
 
 TEST_F(ShaderSourceTest, EveryLine_KeepsItsOwnFileAndNumber) {
@@ -209,8 +198,8 @@ TEST(Backend, EveryName_ReadsBackAsItself) {
 TEST(Backend, UnknownName_IsAUsageErrorThatListsTheOthers) {
   const Error error = error_of([] { parse_backend("vulkan"); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-  EXPECT_THAT(error.message(), ::testing::HasSubstr("'vulkan'"));
-  EXPECT_THAT(error.message(), ::testing::HasSubstr("osmesa"));
+  EXPECT_THAT(error.message(), HasSubstr("'vulkan'"));
+  EXPECT_THAT(error.message(), HasSubstr("osmesa"));
 }
 
 TEST(PixelFormat, Name_FindsTheFormat) {
@@ -222,7 +211,7 @@ TEST(PixelFormat, Name_FindsTheFormat) {
 TEST(PixelFormat, UnknownName_IsAUsageErrorThatListsTheOthers) {
   const Error error = error_of([] { parse_pixel_format("rgb5"); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-  EXPECT_THAT(error.message(), ::testing::HasSubstr("rg32f"));
+  EXPECT_THAT(error.message(), HasSubstr("rg32f"));
 }
 
 TEST(PixelFormat, ChannelsThatItDoesNotHave_AreABug) {

@@ -1,20 +1,11 @@
 #include "harness/gpu/estimate.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <random>
-
 #include "harness/gpu/gpu.h"
 #include "report/records/records.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::gpu {
 namespace {
-
-using ::testing::HasSubstr;
 
 // The model that makes microseconds of a compiler's facts, against its arithmetic by hand.
 
@@ -170,13 +161,9 @@ TEST(Gpus, AFileIsRefusedWithItsLine) {
 TEST(Gpus, AreChosenByName) {
   const std::vector<Gpu> all = load_gpus(kShipped);
   const auto refusal = [&](const std::vector<std::string>& names) {
-    try {
-      choose_gpus(all, names);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-      return std::string(error.what());
-    }
-    return std::string("chosen");
+    const Error error = error_of([&] { choose_gpus(all, names); });
+    EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+    return error.message();
   };
   EXPECT_TRUE(choose_gpus(all, {"none"}).empty());
   EXPECT_EQ(choose_gpus(all, {"vega10", "navi21"}).front().name, "vega10");

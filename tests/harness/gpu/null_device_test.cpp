@@ -1,29 +1,18 @@
 #include "harness/gpu/null_device.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 
-#include "base/error.h"
-#include "base/files.h"
 #include "harness/gpu/facts_request.h"
 #include "harness/gpu/gpu.h"
 #include "harness/gpu/machine_code.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::gpu {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 // What RADV says of shaders whose machine code is known to differ in one thing. Skipped, with the reason, where there
 // is no RADV.
@@ -33,11 +22,7 @@ bool is_known(const std::string& family) {
   const pid_t child = fork();
   if (child == 0) {
     std::freopen("/dev/null", "w", stderr);
-    try {
-      NullDevice device(family);
-    } catch (const Error&) {
-      // Said by the test, in its own process.
-    }
+    error_of([&] { NullDevice device(family); });  // said by the test, in its own process
     _exit(0);
   }
   int status = 0;
@@ -127,13 +112,9 @@ TEST_P(NullDevices, RegistersThatDoNotFitSpill) {
 }
 
 TEST_P(NullDevices, RefuseWhatVulkanHasNot_WithTheLine) {
-  try {
-    facts("result = gl_DepthRange.near;");
-    FAIL() << "compiled";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-    EXPECT_THAT(error.what(), HasSubstr("(program):9: Vulkan refuses this GLSL"));
-  }
+  const Error error = error_of([&] { facts("result = gl_DepthRange.near;"); });
+  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+  EXPECT_THAT(error.what(), HasSubstr("(program):9: Vulkan refuses this GLSL"));
 }
 
 std::vector<std::string> list_families() {
@@ -163,8 +144,6 @@ TEST(NullDeviceDeathTest, AFamilyThatTheDriverDoesNotKnow) {
 
 class FactsRequests : public ::testing::Test {
  protected:
-  FactsRequests() { std::filesystem::create_directories(folder_.path()); }
-
   std::filesystem::path file(const char* name) const { return folder_.path() / name; }
 
   FactsRequest request() const {
@@ -186,7 +165,7 @@ class FactsRequests : public ::testing::Test {
     return read_answers(file("answers"));
   }
 
-  ScratchFolder folder_{std::filesystem::temp_directory_path() / ("shadowbench.facts." + std::to_string(getpid()))};
+  const TestFolder folder_;
 };
 
 TEST_F(FactsRequests, AreAnsweredInTheirOrder_AndKept) {
@@ -205,8 +184,7 @@ TEST_F(FactsRequests, AreAnsweredInTheirOrder_AndKept) {
   for (const auto& entry : std::filesystem::directory_iterator(file("cache") / "gpu")) kept.push_back(entry.path());
   ASSERT_EQ(kept.size(), 2u);
   for (const auto& each : kept) {
-    std::ifstream stream(each);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string text = read_text(each);
     const std::size_t at = text.find("\"instructions\":") + 15;
     std::ofstream(each) << text.substr(0, at) << "98765" << text.substr(text.find_first_of(",}", at));
   }

@@ -1,13 +1,8 @@
-#include <fmt/format.h>
-
-#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "filters/model.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/view_receivers.h"
-#include "harness/render/bias.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"

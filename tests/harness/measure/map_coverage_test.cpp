@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "filters/front_matter.h"
@@ -9,15 +5,10 @@
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/scene/mesh_tools.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::measure {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 constexpr int kWidth = 40;
 constexpr int kHeight = 30;

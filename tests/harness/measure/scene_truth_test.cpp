@@ -1,16 +1,12 @@
 #include "harness/measure/scene_truth.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/scene/mesh_tools.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
 #include "reference/truth/occluders.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::measure {
 namespace {
@@ -27,8 +23,7 @@ TEST(WideScene, IsToldWhereRaysStartATenthOfATexelOffSurfaces) {
   constexpr double kTexel_m = 8.0 / 512.0;
   for (const float size : {8.0f, 100.0f, 1000.0f}) EXPECT_EQ(describe_wide_scene(make_floor_of(size), kTexel_m), "");
   EXPECT_THAT(describe_wide_scene(make_floor_of(20e3f), kTexel_m),
-              testing::AllOf(testing::HasSubstr("land: the scene is too wide"), testing::HasSubstr(" 0.0191 m off"),
-                             testing::HasSubstr(" is 0.0156 m")));
+              AllOf(HasSubstr("land: the scene is too wide"), HasSubstr(" 0.0191 m off"), HasSubstr(" is 0.0156 m")));
   const float widest = 2.0f * static_cast<float>(0.1 * kTexel_m) / (2.0f * truth::origin_offset(0.5f, 0.5f));
   EXPECT_EQ(describe_wide_scene(make_floor_of(0.99f * widest), kTexel_m), "");
   EXPECT_NE(describe_wide_scene(make_floor_of(1.01f * widest), kTexel_m), "");

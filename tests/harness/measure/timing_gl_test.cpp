@@ -1,9 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "filters/front_matter.h"
 #include "harness/measure/accumulation.h"
 #include "harness/measure/scene_assets.h"
@@ -13,6 +7,7 @@
 #include "harness/run/run_plan.h"
 #include "reference/truth/cached_tracer.h"
 #include "tests/harness/render/bench_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {
@@ -26,35 +21,35 @@ class Timed {
  public:
   Timed()
       : scene_(load_builtin("cubes")),
-        renderer_(measure::make_renderer(gl::Backend::kAuto, options::find_resources())),
+        renderer_(make_renderer(gl::Backend::kAuto, options::find_resources())),
         cache_({}, [](const std::string&) {}),
         assets_(renderer_, options_, scene_, cache_, 6.0) {}
 
   /// The own time of a filter, as records hold it.
   records::OwnTime time(const filters::FilterRequest& request) {
     const scene::Camera& camera = scene_.cameras.front();
-    measure::LightMap& map = assets_.light_map(camera, kMapSize);
-    const auto passes = measure::make_filter_passes(renderer_, options_, scene_, map, request);
+    LightMap& map = assets_.light_map(camera, kMapSize);
+    const auto passes = make_filter_passes(renderer_, options_, scene_, map, request);
     render::ImageTarget target("visibility", GL_R32F, options_.width, options_.height);
-    measure::draw_visibility(*passes, map.map, assets_.gbuffer(camera), target);
+    draw_visibility(*passes, map.map, assets_.gbuffer(camera), target);
     const std::vector<render::FilterPasses*> filters = {passes.get()};
-    const auto empty = measure::make_empty_lookups(renderer_, options_, scene_, map, filters);
-    const measure::RoundTimes times = measure::time_rounds({.filters = filters,
-                                                            .empties = empty.passes,
-                                                            .draw_map = [&] { assets_.redraw(map); },
-                                                            .map = map.map,
-                                                            .gbuffer = assets_.gbuffer(camera),
-                                                            .timer = renderer_.timer},
-                                                           {.limits = options::RoundLimits::exactly(40)});
-    return measure::find_difference(times.filters[0].lookup, times.empties[0]);
+    const auto empty = make_empty_lookups(renderer_, options_, scene_, map, filters);
+    const RoundTimes times = time_rounds({.filters = filters,
+                                          .empties = empty.passes,
+                                          .draw_map = [&] { assets_.redraw(map); },
+                                          .map = map.map,
+                                          .gbuffer = assets_.gbuffer(camera),
+                                          .timer = renderer_.timer},
+                                         {.limits = options::RoundLimits::exactly(40)});
+    return find_difference(times.filters[0].lookup, times.empties[0]);
   }
 
  private:
   scene::Scene scene_;
   options::RunOptions options_ = make_options();
-  measure::Renderer renderer_;
+  Renderer renderer_;
   truth::TruthCache cache_;
-  measure::SceneAssets assets_;
+  SceneAssets assets_;
 
   static options::RunOptions make_options() {
     options::RunOptions options;
@@ -110,10 +105,10 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
     pointers.push_back(filters.back().get());
   }
   const gl::TimerKind timer = gl::choose_timer(shared_context());
-  const measure::RoundTimes times =
-      measure::time_rounds({.filters = pointers, .map = bench.map(), .gbuffer = bench.gbuffer(), .timer = timer},
-                           {.limits = options::RoundLimits::exactly(31)});
-  const records::Ratio ratio = measure::find_ratio(times.filters[2].lookup, times.filters[1].lookup);
+  const RoundTimes times =
+      time_rounds({.filters = pointers, .map = bench.map(), .gbuffer = bench.gbuffer(), .timer = timer},
+                  {.limits = options::RoundLimits::exactly(31)});
+  const records::Ratio ratio = find_ratio(times.filters[2].lookup, times.filters[1].lookup);
   std::printf("32 taps / 16 taps: %.2f [%.2f, %.2f] by %s\n", ratio.median, ratio.ci95.low, ratio.ci95.high,
               gl::timer_name(timer));
   EXPECT_EQ(times.map.size(), 31u);
@@ -235,7 +230,7 @@ TEST_F(AccumulationTest, Ghosts_FadeByTheWeight_AndSoonerWithClamping) {
 /// A light that stands overhead moves no shadow when it turns about the vertical.
 TEST_F(AccumulationTest, LightOverhead_HasNoGhosts) {
   scene_.light = scene::place_in_sky(scene_.light, {0.0, 90.0});
-  EXPECT_THAT(make_ghost_bench(rig_).absent, ::testing::HasSubstr("no shadow in view moves"));
+  EXPECT_THAT(make_ghost_bench(rig_).absent, HasSubstr("no shadow in view moves"));
 }
 
 // What a run calls flicker.
@@ -249,14 +244,14 @@ double measure_flicker(const std::string& scene_name, const std::string& fit, bo
   options.snap = snap;
   options.rounds = options::RoundLimits::exactly(1);
   const scene::Scene scene = load_builtin(scene_name);
-  measure::Renderer renderer = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
+  Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
   truth::TruthCache cache({}, [](const std::string&) {});
-  measure::SceneAssets assets(renderer, options, scene, cache, 4.0);
+  SceneAssets assets(renderer, options, scene, cache, 4.0);
   const scene::Camera& camera = scene.cameras.front();
-  const measure::SceneTask task{&scene, &camera, 512, catalogue().parse_requests("none")};
+  const SceneTask task{&scene, &camera, 512, catalogue().parse_requests("none")};
   options.reference = task.filters.front();
-  measure::MeasuredCell cell = std::move(measure::measure_scene({renderer, options, task, assets}).cells.front());
-  measure::score(cell, assets.truth(camera));
+  MeasuredCell cell = std::move(measure_scene({renderer, options, task, assets}).cells.front());
+  score(cell, assets.truth(camera));
   return cell.record.error.flicker.value();
 }
 
@@ -275,9 +270,9 @@ TEST(Flicker, OfAMapThatNoCameraMoves_IsThatUnderATurningLight) {
 // Where the numbers of real maps break, and that the defaults of every filter stay clear of it on every built-in scene.
 
 /// Draws cells with stability, without timing or truth to speak of.
-std::vector<measure::MeasuredCell> measure(const std::string& scene_name, const std::string& filters,
-                                           int map_size = 512, int width = 240, int height = 135) {
-  static measure::Renderer renderer = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
+std::vector<MeasuredCell> measure(const std::string& scene_name, const std::string& filters, int map_size = 512,
+                                  int width = 240, int height = 135) {
+  static Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
   renderer.context->make_current();
   const scene::Scene scene = load_builtin(scene_name);
   options::RunOptions options;
@@ -291,15 +286,15 @@ std::vector<measure::MeasuredCell> measure(const std::string& scene_name, const 
   options.truth = false;
   options.stability = true;
   truth::TruthCache cache({}, [](const std::string&) {});
-  measure::SceneAssets assets(renderer, options, scene, cache, measure::largest_padding_texels(options.filters));
-  const measure::SceneTask task{&scene, &scene.cameras.front(), map_size, options.filters};
-  return measure::measure_scene({renderer, options, task, assets}).cells;
+  SceneAssets assets(renderer, options, scene, cache, largest_padding_texels(options.filters));
+  const SceneTask task{&scene, &scene.cameras.front(), map_size, options.filters};
+  return measure_scene({renderer, options, task, assets}).cells;
 }
 
 class Defaults : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Defaults, NothingBreaks) {
-  for (const measure::MeasuredCell& cell : measure(GetParam(), "")) {
+  for (const MeasuredCell& cell : measure(GetParam(), "")) {
     SCOPED_TRACE(cell.label);
     EXPECT_TRUE(std::all_of(cell.visibility.texels.begin(), cell.visibility.texels.end(),
                             [](float v) { return std::isfinite(v); }));

@@ -1,13 +1,7 @@
 #include "harness/measure/timing.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <random>
-
 #include "harness/measure/traffic_meter.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::measure {
 namespace {

@@ -1,22 +1,13 @@
 #include "harness/options/experiment_file.h"
 
-#include <gmock/gmock.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <fstream>
-#include <map>
-
-#include "base/error.h"
 #include "harness/options/run_options.h"
 #include "harness/render/bias.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::options {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 class ExperimentFile : public ::testing::Test {
  protected:
@@ -252,7 +243,7 @@ TEST_F(RunOptionsTest, Defaults_AreThoseOfTheOptions_AndNeedNotBeWritten) {
   for (const char* kept : {"map_size = 1024\n", "size = '960x540'\n", "snap = 'off'\n", "fit = 'tight'\n"})
     EXPECT_THAT(written, HasSubstr(kept)) << "which cells there are is said in any case";
   for (const char* left_out : {"truth", "rounds", "gpu", "ground", "light"})
-    EXPECT_THAT(written, ::testing::Not(HasSubstr(left_out)));
+    EXPECT_THAT(written, Not(HasSubstr(left_out)));
 }
 
 TEST(CheckRunOptions, ABorderPageWithoutGrids_IsRefused) {

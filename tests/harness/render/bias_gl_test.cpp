@@ -5,8 +5,6 @@
 
 // What the bias modes put into the depth map: back faces, midpoints, offsets.
 
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <tuple>
 
@@ -15,6 +13,7 @@
 #include "harness/scene/mesh_tools.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/bench_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {

@@ -1,11 +1,5 @@
 #include "harness/render/bias.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "base/error.h"
 #include "filters/front_matter.h"
 #include "tests/test_files.h"
 
@@ -75,14 +69,14 @@ TEST(Bias, ReceiverPlane_IsRefusedForFiltersThatDoNotCompareTapByTap) {
   EXPECT_NO_THROW(require_usable({}, vsm));
   const Error error = error_of([&] { require_usable(rule, vsm); });
   EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-  EXPECT_THAT(error.message(), ::testing::HasSubstr("'vsm'"));
+  EXPECT_THAT(error.message(), HasSubstr("'vsm'"));
 }
 
 TEST(Bias, Mistakes_AreNamed) {
   const auto expect = [](const std::string& text, const std::string& words) {
     const Error error = error_of([&] { parse_bias({text}); });
     EXPECT_EQ(error.kind(), ErrorKind::kUsage) << text;
-    EXPECT_THAT(error.message(), ::testing::HasSubstr(words));
+    EXPECT_THAT(error.message(), HasSubstr(words));
   };
   expect("slpe:texels=1", "did you mean 'slope'");
   expect("slope:texel=1", "did you mean 'texels'");

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "filters/front_matter.h"
-#include "filters/model.h"
 #include "harness/render/geometry.h"
 #include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"

@@ -5,17 +5,13 @@
 // What every linear kernel does to a straight edge and to a corner, one texel further and in the mirror: filters of the
 // kind `comparison` exactly, those of the kind `stochastic` in the mean over seeds.
 
-#include <algorithm>
 #include <cstdio>
 #include <cstring>
-#include <functional>
-#include <limits>
 #include <numeric>
 
 #include "filters/percentage_closer.h"
-#include "harness/scene/mesh_tools.h"
-#include "harness/scene/scene.h"
 #include "tests/harness/render/contract_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {

@@ -7,11 +7,6 @@
 
 // What a paper says of the memory of prefiltered maps.
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-
-#include "base/error.h"
 #include "filters/front_matter.h"
 #include "filters/kernel.h"
 #include "tests/harness/render/bench_fixture.h"
@@ -208,7 +203,7 @@ TEST_P(RefusedPasses, AreNamedWithFileAndLine) {
   const Error error = error_of([&] { bench.draw(make_request({"", refused.passes, refused.glsl, 0})); });
   EXPECT_EQ(error.kind(), ErrorKind::kFilter);
   EXPECT_EQ(error.where(), refused.where) << error.message();
-  EXPECT_THAT(error.message(), ::testing::HasSubstr(refused.words));
+  EXPECT_THAT(error.message(), HasSubstr(refused.words));
 }
 
 constexpr const char* kFirst = "vec4 first(PassInput p) { return vec4(load_second(p.texel)); }\n";

@@ -1,7 +1,5 @@
 // Receivers are points of the triangles that the pixels show, so that no ray meets the surface that it leaves.
 
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "harness/measure/view_receivers.h"
@@ -9,6 +7,7 @@
 #include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/bench_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {

@@ -1,17 +1,7 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
-#include <map>
 
 #include "harness/measure/view_receivers.h"
-#include "harness/scene/load.h"
-#include "harness/scene/mesh_tools.h"
-#include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"
-#include "tests/harness/render/bench_fixture.h"
 #include "tests/harness/render/contract_fixture.h"
 #include "tests/test_files.h"
 

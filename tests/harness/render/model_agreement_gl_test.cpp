@@ -1,15 +1,12 @@
 // Every filter's model, run over the map that was read back and on the very receivers that the GPU used, agrees with
 // the GL image: these tests are what makes the filters trustworthy.
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <tuple>
 
-#include "filters/model.h"
 #include "filters/screen.h"
 #include "harness/measure/view_receivers.h"
 #include "tests/harness/render/bench_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {

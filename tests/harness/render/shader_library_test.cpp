@@ -2,17 +2,10 @@
 
 #include "harness/render/shader_library.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <algorithm>
+#include "tests/test_files.h"
 
 namespace shadowbench::render {
 namespace {
-
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// Explains a log in which "@8(15)" stands for line 8, column 15 of the filter.
 std::string explain(const std::string& body, std::string log) {
@@ -74,7 +67,7 @@ TEST(FilterMistakes, AllErrors_AreTold_ButNotWhatFollowsFromThem) {
               "@9(13): error: `nowhere' undeclared\n"
               "@9(13): error: type mismatch\n");
   EXPECT_THAT(text, EndsWith("\nmine.glsl:9: 'nowhere' is not declared\n    return s + nowhere;"));
-  EXPECT_THAT(text, Not(::testing::AnyOf(HasSubstr("type mismatch"), HasSubstr("uninitialized"))));
+  EXPECT_THAT(text, Not(AnyOf(HasSubstr("type mismatch"), HasSubstr("uninitialized"))));
   EXPECT_THAT(explain("  return compare_2x2(r);",
                       "@8(9): error: no matching function for call to `compare_2x2(Receiver)'; candidates are:\n"
                       "@8(9): error:    float compare_2x2(Receiver, vec2, float)\n"),
@@ -106,7 +99,7 @@ TEST(FilterMistakes, OtherCompilers_AreUnderstood) {
 
 TEST(FilterMistakes, CodeBehindTheFilter_BlamesItsEnd) {
   EXPECT_THAT(explain("  for (;;) {", "1:5(13): error: syntax error, unexpected '{', expecting ';'\n"),
-              ::testing::StartsWith("mine.glsl:9: the GLSL breaks the code after it, at or before this line"));
+              StartsWith("mine.glsl:9: the GLSL breaks the code after it, at or before this line"));
 }
 
 }  // namespace

@@ -5,12 +5,6 @@
 
 // Several samples of depth a texel, of which the mean of what encode() makes is stored.
 
-#include <fmt/format.h>
-
-#include <cmath>
-
-#include "base/error.h"
-#include "filters/depth_map.h"
 #include "filters/front_matter.h"
 #include "harness/render/shadow_map.h"
 #include "harness/scene/mesh_tools.h"

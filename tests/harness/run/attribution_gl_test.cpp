@@ -1,11 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "harness/run/run_experiment.h"
@@ -13,6 +5,7 @@
 #include "report/pages/run_data.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {
@@ -29,20 +22,17 @@ class Silent final : public options::Progress {
 class Attributed : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("shadowbench." + std::string(info->name()) + "." + std::to_string(getpid()));
     options_.resources = options::find_resources();
     options_.sizes = {{240, 135}};
     options_.rounds = options::RoundLimits::exactly(1);
     options_.reference = filters::Catalogue(options_.resources.filters).parse_requests("none").front();
-    options_.out = folder_;
+    folder_.write(".shadowbench-folder", "");  // scenes lie beside what the run writes
+    options_.out = folder_.path();
     options_.command = {"test"};
     options_.all_parts = true;
     options_.phases = 1;
     options_.pictures = false;
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// Runs filters on a built-in scene and gives its cells.
   nlohmann::json run(const std::string& scene, const std::string& filters, int map_size = 1024) {
@@ -51,22 +41,18 @@ class Attributed : public ::testing::Test {
     options_.map_sizes = {map_size};
     Silent progress;
     run::run_experiment(options_, progress);
-    std::ifstream file(folder_ / "results.json");
-    return nlohmann::json::parse(file)["cells"];
+    return nlohmann::json::parse(folder_.read("results.json"))["cells"];
   }
 
   /// A floor of this size and another object, both grey, under a light.
   std::string write_scene(const std::string& light, double floor_m, const std::string& object) const {
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / ".shadowbench-folder");  // the scene lies beside what the run writes
-    const std::filesystem::path file = folder_ / "own.toml";
-    std::ofstream(file) << fmt::format(
+    const std::string text = fmt::format(
         "title = 'own'\n[camera]\nposition = [0, 5, 5]\ntarget = [0, 0, 0]\nvertical_fov_deg = 40\n[light]\n{0}\n"
         "[[material]]\nname = 'grey'\ncolor = [0.5, 0.5, 0.5]\n"
         "[[object]]\nname = 'floor'\nshape = 'plane'\nsize = [{1}, {1}]\ncenter = [0, 0, 0]\ncells = 22\n"
         "material = 'grey'\n[[object]]\nname = 'caster'\nmaterial = 'grey'\n{2}\n",
         light, floor_m, object);
-    return file.string();
+    return folder_.write("own.toml", text).string();
   }
 
   /// A square over a floor that lies parallel to it, under a sun of this diameter that stands overhead.
@@ -109,7 +95,7 @@ class Attributed : public ::testing::Test {
   }
 
   std::vector<float> part(const std::string& name) const {
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
       if (entry.path().extension() != ".exr") continue;
       for (const images::Part& part : images::read_exr(entry.path()).parts)
         if (part.name == name) return part.image.texels;
@@ -118,7 +104,7 @@ class Attributed : public ::testing::Test {
     return {};
   }
 
-  std::filesystem::path folder_;
+  const TestFolder folder_;
   options::RunOptions options_;
 };
 
@@ -138,7 +124,7 @@ TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
     EXPECT_GT(cell["attribution"]["model"]["rms"], 0.001);
     EXPECT_GT(cell["error"]["kernel_rmse"], 0.0);
     EXPECT_EQ(cell["artefact"]["noise"].is_null(), filter != "poisson") << "the others take no random taps";
-    EXPECT_TRUE(std::filesystem::exists(folder_ / cell["images"]["values"].get<std::string>()));
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / cell["images"]["values"].get<std::string>()));
   }
 }
 
@@ -241,7 +227,7 @@ TEST_F(Attributed, AlmostNoBias_LeavesWideFiltersWithoutContactGaps) {
   for (const auto& cell : run("fence", "none,poisson:radius=8,vsm:radius=1,vsm,esm")) {
     const auto& gap = cell["artefact"]["contact_gap"];
     if (gap.is_null())
-      EXPECT_THAT(cell["absent"]["artefact.contact_gap"].get<std::string>(), ::testing::HasSubstr("dark without bias"));
+      EXPECT_THAT(cell["absent"]["artefact.contact_gap"].get<std::string>(), HasSubstr("dark without bias"));
     else
       EXPECT_LT(gap, 0.01) << cell["filter"];
   }
@@ -367,8 +353,8 @@ void expect_equal_outside(const images::Image& a, const images::Image& b, const 
 }
 
 TEST(Supersampled, Pictures_AreMeansOfLargerOnes) {
-  const std::filesystem::path root =
-      std::filesystem::temp_directory_path() / ("shadowbench.samples." + std::to_string(getpid()));
+  const TestFolder folder;
+  const std::filesystem::path root = folder.path();
   const MeasuredRun run = measure_sized(root / "run", {96, 54}), large = measure_sized(root / "large", {384, 216});
   const Rows rows = find_shown_rows(run.cells);
   int shown = 0;
@@ -393,7 +379,6 @@ TEST(Supersampled, Pictures_AreMeansOfLargerOnes) {
     expect_equal_outside(run.read(cell.images.truth_supersampled), run.read(cell.images.truth_picture), rows);
   }
   EXPECT_GT(shown, 0);
-  std::filesystem::remove_all(root);
 }
 
 }  // namespace

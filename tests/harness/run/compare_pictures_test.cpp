@@ -1,17 +1,11 @@
 #include "harness/run/compare_pictures.h"
 
 #include <OpenImageIO/imageio.h>
-#include <gmock/gmock.h>
 
-#include <cmath>
-#include <limits>
-
-#include "base/error.h"
 #include "harness/measure/scene_truth.h"
 #include "report/images/picture_io.h"
 #include "report/records/record_fields.h"
 #include "tests/report/records/synthetic.h"
-#include "tests/test_files.h"
 
 namespace shadowbench::run {
 
@@ -19,8 +13,6 @@ using namespace records;
 namespace {
 
 using images::Image;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -79,7 +71,7 @@ TEST_F(ComparePictures, Values_AreWhatTheirDefinitionsGive) {
 }
 
 TEST_F(ComparePictures, SamePicture_HasNoError) {
-  write("a.exr", records::shade(records::make_visibility(32, 16, 8.0f)));
+  write("a.exr", shade(make_visibility(32, 16, 8.0f)));
   for (const auto& [name, value] : compare("a.exr", "a.exr").values) EXPECT_EQ(value, 0.0) << name;
 }
 
@@ -146,8 +138,8 @@ TEST_F(ComparePictures, EmptyMask_HasNoValueAndSaysWhy) {
 }
 
 TEST_F(ComparePictures, Flip_IsTheOneOfARun) {
-  const Image a = records::shade(records::make_visibility(48, 32, 3.0f));
-  const Image b = records::shade(records::make_visibility(48, 32, 12.0f));
+  const Image a = shade(make_visibility(48, 32, 3.0f));
+  const Image b = shade(make_visibility(48, 32, 12.0f));
   write("a.exr", a);
   write("b.exr", b);
   EXPECT_DOUBLE_EQ(compare("a.exr", "b.exr").values.at("flip"), *measure::measure_mean_flip(a, b));
@@ -158,8 +150,8 @@ TEST_F(ComparePictures, Flip_IsTheOneOfARun) {
 }
 
 TEST_F(ComparePictures, FlipOverAMask_SeesTheWholePictureAndAveragesTheMask) {
-  const Image a = records::shade(records::make_visibility(48, 32, 3.0f));
-  const Image b = records::shade(records::make_visibility(48, 32, 12.0f));
+  const Image a = shade(make_visibility(48, 32, 3.0f));
+  const Image b = shade(make_visibility(48, 32, 12.0f));
   Image left(48, 32, 1), right(48, 32, 1);
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 48; ++x) *(x < 20 ? left : right).at(x, y) = 1.0f;
@@ -175,8 +167,8 @@ TEST_F(ComparePictures, FlipOverAMask_SeesTheWholePictureAndAveragesTheMask) {
 }
 
 TEST_F(ComparePictures, FlipOfSrgbCodes_IsThatOfTheLinearPicture) {
-  const Image a = records::shade(records::make_visibility(48, 32, 3.0f));
-  const Image b = records::shade(records::make_visibility(48, 32, 12.0f));
+  const Image a = shade(make_visibility(48, 32, 3.0f));
+  const Image b = shade(make_visibility(48, 32, 12.0f));
   images::write_picture_png(path("a.png"), a);
   images::write_picture_png(path("b.png"), b);
   EXPECT_NEAR(compare("a.png", "b.png").values.at("flip"), *measure::measure_mean_flip(a, b), 2e-3) << "8 bits";
@@ -184,7 +176,7 @@ TEST_F(ComparePictures, FlipOfSrgbCodes_IsThatOfTheLinearPicture) {
 }
 
 TEST_F(ComparePictures, SrgbCodesAgainstLinearValues_AreWarnedOf) {
-  const Image a = records::shade(records::make_visibility(48, 32, 3.0f));
+  const Image a = shade(make_visibility(48, 32, 3.0f));
   write("a.exr", a);
   images::write_picture_png(path("a.png"), a);
   const Comparison result = compare("a.exr", "a.png");
@@ -195,7 +187,7 @@ TEST_F(ComparePictures, SrgbCodesAgainstLinearValues_AreWarnedOf) {
 }
 
 TEST_F(ComparePictures, OneChannel_IsGreyForFlip) {
-  const Image a = records::make_visibility(48, 32, 3.0f), b = records::make_visibility(48, 32, 12.0f);
+  const Image a = make_visibility(48, 32, 3.0f), b = make_visibility(48, 32, 12.0f);
   const auto to_rgb = [](const Image& grey) {
     Image rgb(grey.width, grey.height, 3);
     for (std::size_t i = 0; i < rgb.texels.size(); ++i) rgb.texels[i] = grey.texels[i / 3];
@@ -272,8 +264,8 @@ TEST(MeanFlip, ValuesADisplayCannotShow_AreClamped) {
 TEST(MetricTable, NamesEveryNumberThatARunMeasures) {
   std::vector<std::string> listed, recorded;
   for (const metrics::Metric& metric : metrics::metric_table()) listed.emplace_back(metric.path);
-  const records::CellRecord cell;
-  records::visit_fields(cell, [&](const std::string& path, const auto&, const records::About& = {}) {
+  const CellRecord cell;
+  visit_fields(cell, [&](const std::string& path, const auto&, const About& = {}) {
     for (const char* group : {"error.", "truth.", "coverage.", "artefact.", "penumbra.", "attribution.", "cost.",
                               "stability.", "map_scale.", "receivers", "nan"})
       if (path.rfind(group, 0) == 0 && !path.ends_with("_ci95") && !path.ends_with("_replicates"))

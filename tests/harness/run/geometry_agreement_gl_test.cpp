@@ -1,8 +1,6 @@
-#include <cmath>
-#include <cstdlib>
-
 #include "harness/scene/scene.h"
 #include "tests/harness/render/bench_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::test {
 namespace {

@@ -1,14 +1,7 @@
 #include "harness/run/run_plan.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/files.h"
 #include "filters/front_matter.h"
 #include "harness/run/merge.h"
 #include "report/analysis/advice_words.h"
@@ -25,10 +18,6 @@ namespace {
 using analysis::CostKind;
 using analysis::LightMotion;
 using records::CellRecord;
-using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 // Which finished cells a run goes on with: none that was made from something else.
 
@@ -151,11 +140,10 @@ std::string replace_once(std::string text, const std::string& from, const std::s
 /// A folder in which one cell of a user's filter was measured.
 class FinishedCell : public ::testing::Test {
  protected:
-  const ScratchFolder folder_{make_temporary_folder_path(std::filesystem::temp_directory_path(), "plan")};
+  const TestFolder folder_;
   options::RunOptions options_;
 
   void SetUp() override {
-    std::filesystem::create_directories(folder_.path());
     options_.resources = options::find_resources();
     options_.scenes = {"ball"};
     options_.out = folder_.path() / "out";
@@ -171,8 +159,7 @@ class FinishedCell : public ::testing::Test {
   }
 
   void write_filter(const std::string& text) {
-    const std::filesystem::path file = folder_.path() / "mine.glsl";
-    std::ofstream(file) << text;
+    const std::filesystem::path file = folder_.write("mine.glsl", text);
     filters::Catalogue catalogue(options_.resources.filters);
     catalogue.add_user_file(file);
     options_.filters = catalogue.parse_requests("mine");

@@ -1,10 +1,5 @@
 #include "harness/scene/complete.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "harness/scene/load.h"
@@ -13,12 +8,6 @@
 
 namespace shadowbench::scene {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 // Camera and sun of a scene that has none: chosen by the edges of shadows, and never in place of what was given.
 
@@ -94,7 +83,7 @@ TEST(Completion, CameraOfAStreet_StandsInItAtEyeHeight_AndLooksAlongIt) {
   EXPECT_LT(std::abs(camera.position_ws.z), 40.0f);
   EXPECT_GT(std::abs(camera.forward_ws.z), 0.99f);
   EXPECT_LT(camera.position_ws.z * camera.forward_ws.z, -30.0f) << "from one end to the other";
-  EXPECT_THAT(street.notes, testing::Contains(HasSubstr("at eye height")));
+  EXPECT_THAT(street.notes, Contains(HasSubstr("at eye height")));
   const Scene square = complete(make_street(20.0f), {.needs_sun = true}, "x");
   EXPECT_GT(square.cameras.at(0).position_ws.y, 6.0f) << "no longer than wide and high";
 }
@@ -386,7 +375,6 @@ std::vector<bool> list_seen(const std::string& place, const std::string& camera 
 }
 
 TEST(LightInView, IsTheOneThatReachesASurface) {
-  using testing::ElementsAre;
   EXPECT_THAT(list_seen("[0, 1.5, 0]"), ElementsAre(true, false)) << "in the box";
   EXPECT_THAT(list_seen("[2, 3, 0]"), ElementsAre(true, true));
   EXPECT_THAT(list_seen("[2, 3, 0]", "[camera]\nposition = [0, 5, 0]\ntarget = [0, 9, 0.1]\n"),

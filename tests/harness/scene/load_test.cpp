@@ -1,18 +1,11 @@
 #include "harness/scene/load.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "harness/scene/complete.h"
 #include "harness/scene/lights/light_fit.h"
 #include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {
 namespace {
-
-using testing::HasSubstr;
 
 const std::filesystem::path kScenes = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes";
 constexpr double kAspect = 16.0 / 9.0;
@@ -56,10 +49,10 @@ TEST(LoadTest, TeachingScenes_AreFoundByNameAndNotAmongTheOthers) {
     EXPECT_TRUE(load(info.name, make_options()).warnings.empty());
   }
   EXPECT_THAT(names, testing::IsSupersetOf({"edge", "lamp"}));
-  for (const SceneInfo& info : list_scenes(kScenes)) EXPECT_THAT(names, testing::Not(testing::Contains(info.name)));
+  for (const SceneInfo& info : list_scenes(kScenes)) EXPECT_THAT(names, Not(Contains(info.name)));
   EXPECT_TRUE(list_teaching_scenes(kScenes / "nowhere").empty());
   LoadOptions options = make_options();
-  EXPECT_THAT(error_of([&] { load("edges", options); }).message(), testing::HasSubstr("did you mean 'edge'"));
+  EXPECT_THAT(error_of([&] { load("edges", options); }).message(), HasSubstr("did you mean 'edge'"));
 }
 
 TEST(LoadTest, BuiltInScenes_LoadWithoutWarningsOnASmallFloor) {
@@ -159,7 +152,7 @@ TEST(LoadTest, Ground_LiesJustBelowTheModelAndCatchesItsShadow) {
 TEST(LoadTest, GroundUnderASceneFile_IsIgnoredWithAWarning) {
   const Scene scene = load("cubes", make_options(true));
   EXPECT_EQ(scene.meshes.size(), load("cubes", make_options()).meshes.size());
-  EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("bare models")));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("bare models")));
 }
 
 TEST(LoadTest, LongScene_IsSeenFromItsEnd) {
@@ -191,11 +184,11 @@ TEST(LoadTest, LightsOfIntensity0_AreLeftOut) {
     EXPECT_TRUE(scene.other_lights.empty());
     ASSERT_EQ(scene.cameras.size(), 1U) << "the other camera looks at the light that is left out";
     EXPECT_EQ(scene.cameras[0].name, "a");
-    EXPECT_THAT(scene.warnings, testing::ElementsAre(warning));
+    EXPECT_THAT(scene.warnings, ElementsAre(warning));
   }
   const Scene scene = load_with(off);
   EXPECT_GT(scene.light.intensity, 0.0f) << "a sun takes its place";
-  EXPECT_THAT(scene.warnings, testing::Contains(warning));
+  EXPECT_THAT(scene.warnings, Contains(warning));
 }
 
 TEST(LoadTest, LightOfAModelOfIntensity0_IsLeftOut) {
@@ -206,7 +199,7 @@ TEST(LoadTest, LightOfAModelOfIntensity0_IsLeftOut) {
   const Scene scene = load(folder.write("dark.gltf", gltf_of(parts)).string(), make_options());
   EXPECT_EQ(scene.light.name, "on");
   EXPECT_TRUE(scene.other_lights.empty());
-  EXPECT_THAT(scene.warnings, testing::Contains(HasSubstr("the light 'off' has an intensity of 0; it is left out")));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("the light 'off' has an intensity of 0; it is left out")));
 }
 
 TEST(WalkThrough, StandsOnTheFloorOfRealModels_AndLooksAlongThem) {

@@ -1,21 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <glm/gtc/constants.hpp>
-#include <random>
-
 #include "harness/scene/complete.h"
 #include "harness/scene/load.h"
 #include "tests/harness/scene/gltf_parts.h"
 #include "tests/harness/scene/same_scene.h"
-#include "tests/test_files.h"
 
 namespace shadowbench::scene {
 namespace {
-
-using testing::HasSubstr;
 
 /// A whole scene in eleven lines; the object's table starts on line 7.
 constexpr const char* kBase = R"(title = "Test"
@@ -251,7 +240,7 @@ TEST(SceneFileTest, ShapesBeyondAllMemory_AreRefusedBeforeTheyAreMade) {
       "[[object]]\nshape = \"bars\"\ncount = 10000\nbar_width = 0.1\nspacing = 0.3\nlength = 2\ndirection = "
       "\"both\"\ncells = 512\n";
   const Complaint c = complaint_about(kBase + bars);
-  EXPECT_THAT(c.message, testing::AllOf(HasSubstr("10000 bars"), HasSubstr("'count' or 'cells'")));
+  EXPECT_THAT(c.message, AllOf(HasSubstr("10000 bars"), HasSubstr("'count' or 'cells'")));
   EXPECT_EQ(c.line, "14");
   std::string spheres;
   for (int i = 0; i < 9; ++i) spheres += "[[object]]\nshape = \"sphere\"\nradius = 1\nsegments = 1024\n";
@@ -299,7 +288,7 @@ TEST(SceneFileTest, ListsInMessages_AreShortAndOnOneLine) {
                "size = [1, 2, inf, -inf, nan, 1e300, 7" + std::string(3000, ' ') + ", -9223372036854775808]");
   const Complaint c = complaint_about(many);
   EXPECT_THAT(c.message, HasSubstr("but is [1, 2, inf, -inf, nan, 1e+300, ...]"));
-  EXPECT_THAT(c.message, testing::Not(HasSubstr("\n")));
+  EXPECT_THAT(c.message, Not(HasSubstr("\n")));
 }
 
 constexpr const char* kTwoLights = R"(
@@ -549,7 +538,7 @@ TEST(SceneWriterTest, WhatNoFileTakes_IsRefusedByName) {
   camera.vertical_fov_rad = 3.14f;
   const Error error = error_of([&] { settle(camera); });
   EXPECT_EQ(error.kind(), ErrorKind::kInput);
-  EXPECT_THAT(error.message(), testing::AllOf(HasSubstr("camera 'far'"), HasSubstr("'vertical_fov_deg'")));
+  EXPECT_THAT(error.message(), AllOf(HasSubstr("camera 'far'"), HasSubstr("'vertical_fov_deg'")));
 }
 
 }  // namespace

@@ -1,15 +1,5 @@
 #include "harness/scene/scene.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <map>
-#include <numbers>
 #include <tuple>
 
 #include "harness/scene/lights/light_fit.h"
@@ -17,12 +7,9 @@
 #include "harness/scene/mesh_tools.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/scene/gltf_parts.h"
-#include "tests/test_files.h"
 
 namespace shadowbench::scene {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -97,7 +84,7 @@ TEST(ValidateTest, TrianglesWithoutArea_AreDroppedCountedAndTold) {
   scene.meshes[0].indices.insert(scene.meshes[0].indices.end(), {0, 0, 1, 0, 1, 2});
   const Scene valid = validate(scene, "file.toml");
   EXPECT_EQ(valid.triangle_count(), 8U);
-  EXPECT_THAT(valid.warnings, testing::ElementsAre(HasSubstr("2 of 10 triangles")));
+  EXPECT_THAT(valid.warnings, ElementsAre(HasSubstr("2 of 10 triangles")));
 }
 
 TEST(ValidateTest, TinyButSoundTriangles_AreKept) {
@@ -370,9 +357,9 @@ TEST(SceneOrigin, PositionsThatTheirFileHasRounded_AreAWarning) {
     folder.write("data.bin", parts.buffer);
     return load(folder.write("baked.gltf", gltf_of(parts)).string(), LoadOptions{{}, true}).warnings;
   };
-  EXPECT_THAT(load_at(0.0f), testing::IsEmpty());
-  EXPECT_THAT(load_at(100.0f), testing::IsEmpty());
-  EXPECT_THAT(load_at(10e3f), testing::ElementsAre(testing::HasSubstr("rounds positions in its file to 0.0012 m")));
+  EXPECT_THAT(load_at(0.0f), IsEmpty());
+  EXPECT_THAT(load_at(100.0f), IsEmpty());
+  EXPECT_THAT(load_at(10e3f), ElementsAre(HasSubstr("rounds positions in its file to 0.0012 m")));
 }
 
 glm::dvec3 corner(const Mesh& mesh, std::size_t i) { return mesh.vertices[mesh.indices[i]].position_ws; }

@@ -1,12 +1,9 @@
 // The lookup draws what it is told, and the axes' GL cases break where theory says.
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include "base/error.h"
 #include "harness/stress/axis.h"
 #include "harness/stress/synthetic_scene.h"
 #include "tests/harness/stress/stress_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::stress {
 namespace {

@@ -2,37 +2,23 @@
 
 #include "harness/stress/axis.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
-#include "base/error.h"
 #include "filters/model.h"
-#include "harness/options/options.h"
 #include "harness/stress/synthetic_scene.h"
 #include "tests/harness/stress/stress_fixture.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::stress {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
-
 /// Gives the message of the usage error that a range is refused with.
 std::string refuse(const std::string& range, const std::string& axes = "") {
   std::vector<Axis> chosen = choose_axes(axes);
-  try {
-    apply_range(chosen, range);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-    EXPECT_EQ(error.message().find('\n'), std::string::npos);
-    return error.message();
-  }
-  return "";
+  const Error error = error_of([&] { apply_range(chosen, range); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+  EXPECT_THAT(error.message(), Not(HasSubstr("\n")));
+  return error.message();
 }
 
 TEST(AxisTable, EveryAxisSaysWhatItIs) {
@@ -83,15 +69,10 @@ TEST(ChooseAxes, TakesThoseNamed_InThatOrder) {
 }
 
 TEST(ChooseAxes, UnknownOnes_AreRefusedWithTheNearest) {
-  for (const auto& [text, word] :
-       {std::pair("esm-exponnet", "did you mean 'esm-exponent'"), std::pair("zzz", "known: "), std::pair("", ""),
-        std::pair("esm-exponent,esm-exponent", "twice")}) {
-    try {
-      choose_axes(text);
-      EXPECT_EQ(std::string(text), "");
-    } catch (const Error& error) {
-      EXPECT_THAT(error.message(), AllOf(HasSubstr("--axes"), HasSubstr(word)));
-    }
+  for (const auto& [text, word] : {std::pair("esm-exponnet", "did you mean 'esm-exponent'"),
+                                   std::pair("zzz", "known: "), std::pair("esm-exponent,esm-exponent", "twice")}) {
+    const std::string message = error_of([&, text = text] { choose_axes(text); }).message();
+    EXPECT_THAT(message, AllOf(HasSubstr("--axes"), HasSubstr(word)));
   }
 }
 
@@ -132,8 +113,8 @@ TEST(Driven, ComesFromTheFrontMatter_AndKeepsTheUsersValues) {
     const bool blurs = item.variant.find("no blur") == std::string::npos;
     EXPECT_TRUE(!item.is_available() || !blurs || filters::number(item.params, "radius") == 3.0) << item.variant;
   }
-  EXPECT_THAT(list_choices(inputs.filters[1], "store"), ::testing::ElementsAre("r32f", "r16f"));
-  EXPECT_THAT(list_choices(make_inputs("esm:store=r16f").filters[0], "store"), ::testing::ElementsAre("r16f"));
+  EXPECT_THAT(list_choices(inputs.filters[1], "store"), ElementsAre("r32f", "r16f"));
+  EXPECT_THAT(list_choices(make_inputs("esm:store=r16f").filters[0], "store"), ElementsAre("r16f"));
   EXPECT_THAT(list_choices(inputs.filters[1], "nothing"), SizeIs(0));
 }
 
@@ -281,17 +262,9 @@ TEST(GeometryAxes, Models_MeetTheirTheories) {
     expect_theories_met(choose_axes(id)[0], inputs, Level::kModel, false);
 }
 
-Case find_model_case(const std::string& axis, const AxisInputs& inputs, const std::string& variant) {
-  for (Case& item : choose_axes(axis)[0].make_cases(inputs))
-    if (item.level == Level::kModel && item.variant == variant) return std::move(item);
-  ADD_FAILURE() << "no case " << variant;
-  return {};
-}
-
 /// Half each, first gap 1, second g: 1 / (1 + (1 + 2 g)^2), which is 0.1 at g = 1.
 TEST(LightBleeding, TwoOccluders_FollowTheClosedForm) {
-  const Case item =
-      find_model_case("light-bleeding", make_inputs("vsm:bleed_reduction=0,slope_variance=0"), "2 occluders");
+  const Case item = find_case("light-bleeding", "2 occluders", Level::kModel, "vsm:bleed_reduction=0,slope_variance=0");
   EXPECT_NEAR(item.theories.at(0).onset.value(), 1.0, 0.01);
   for (const double ratio : {1e-4, 0.01, 0.2, 1.0, 4.0})
     EXPECT_NEAR(item.observe(ratio).measured.value(), 1.0 / (1.0 + std::pow(1.0 + 2.0 * ratio, 2.0)), 2e-3) << ratio;
@@ -301,12 +274,12 @@ TEST(LightBleeding, TwoOccluders_FollowTheClosedForm) {
 
 TEST(LightBleeding, ParametersThatChangeTheFormula_AreNamed) {
   const Axis axis = choose_axes("light-bleeding")[0];
-  const Case item = find_model_case("light-bleeding", make_inputs("vsm:bleed_reduction=0.2"), "2 occluders");
+  const Case item = find_case("light-bleeding", "2 occluders", Level::kModel, "vsm:bleed_reduction=0.2");
   const auto limits = compare(item, find_onsets(item, axis), axis);
   ASSERT_EQ(limits.at(0).agreement, records::StressAgreement::kExplained);
   EXPECT_THAT(limits[0].explanation, HasSubstr("bleed_reduction"));
   for (const char* variant : {"2 occluders", "16 occluders"}) {
-    const Case defaults = find_model_case("light-bleeding", make_inputs("vsm"), variant);
+    const Case defaults = find_case("light-bleeding", variant, Level::kModel, "vsm");
     EXPECT_EQ(compare(defaults, find_onsets(defaults, axis), axis).at(0).agreement,
               records::StressAgreement::kExplained)
         << variant;
@@ -315,8 +288,7 @@ TEST(LightBleeding, ParametersThatChangeTheFormula_AreNamed) {
 
 /// An explanation must not cover for numbers that the exact model does not have.
 TEST(LightBleeding, WhatTheExactModelDoesNotDo_IsNotExplained) {
-  const Case item =
-      find_model_case("light-bleeding", make_inputs("vsm:bleed_reduction=0,slope_variance=0"), "2 occluders");
+  const Case item = find_case("light-bleeding", "2 occluders", Level::kModel, "vsm:bleed_reduction=0,slope_variance=0");
   records::StressCase record;
   record.samples = {{3.0, Verdict::kDegraded, 0.2, ""}};
   EXPECT_EQ(item.explain({item.theories.at(0), 3.0, record}), "");
@@ -325,7 +297,7 @@ TEST(LightBleeding, WhatTheExactModelDoesNotDo_IsNotExplained) {
 /// 16 bits do not hold exp(80), with or without a kernel.
 TEST(KernelRadius, OverflowOfTheStore_IsNotBlamedOnTheRadius) {
   const Axis axis = choose_axes("kernel-radius")[0];
-  const Case item = find_model_case("kernel-radius", make_inputs("esm:store=r16f"), "blurred map");
+  const Case item = find_case("kernel-radius", "blurred map", Level::kModel, "esm:store=r16f");
   const auto limits = compare(item, find_onsets(item, axis), axis);
   EXPECT_EQ(limits.at(0).agreement, records::StressAgreement::kExplained);
   EXPECT_THAT(limits[0].explanation, HasSubstr("every value"));
@@ -344,11 +316,11 @@ TEST(Explain, WhatBreaksWithinTheRange_IsNotBrokenThroughout) {
 TEST(KernelRadius, RadiusZero_IsNamedForWhatItIs) {
   const Axis axis = choose_axes("kernel-radius")[0];
   const records::StressCase disk =
-      find_onsets(find_model_case("kernel-radius", make_inputs("poisson"), "disk of comparisons"), axis);
+      find_onsets(find_case("kernel-radius", "disk of comparisons", Level::kModel, "poisson"), axis);
   ASSERT_EQ(disk.notes.size(), 1u);
   EXPECT_THAT(disk.notes[0], HasSubstr("one hardware 2x2 comparison"));
   const records::StressCase blurred =
-      find_onsets(find_model_case("kernel-radius", make_inputs("vsm"), "blurred map"), axis);
+      find_onsets(find_case("kernel-radius", "blurred map", Level::kModel, "vsm"), axis);
   ASSERT_EQ(blurred.notes.size(), 1u);
   EXPECT_THAT(blurred.notes[0], HasSubstr("its formula on one texel"));
 }
@@ -357,7 +329,7 @@ TEST(KernelRadius, RadiusZero_IsNamedForWhatItIs) {
 TEST(KernelRadius, ListedRadii_AreTheOnlyOnesAskedFor) {
   const Axis axis = choose_axes("kernel-radius")[0];
   const records::StressCase found =
-      find_onsets(find_model_case("kernel-radius", make_inputs("gather_pcf"), "disk of comparisons"), axis);
+      find_onsets(find_case("kernel-radius", "disk of comparisons", Level::kModel, "gather_pcf"), axis);
   ASSERT_EQ(found.samples.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(found.samples[i].value, static_cast<double>(i + 1));
@@ -366,9 +338,8 @@ TEST(KernelRadius, ListedRadii_AreTheOnlyOnesAskedFor) {
 }
 
 TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
-  const AxisInputs inputs = make_inputs("poisson");
   const records::StressCase found =
-      find_onsets(find_model_case("taps", inputs, "taps at radius 3"), choose_axes("taps")[0]);
+      find_onsets(find_case("taps", "taps at radius 3", Level::kModel, "poisson"), choose_axes("taps")[0]);
   ASSERT_EQ(found.notes.size(), 1u);
   for (const char* count : {"with 4,", "with 8,", "with 16,", "with 32;"})
     EXPECT_THAT(found.notes[0], HasSubstr(count));
@@ -377,7 +348,7 @@ TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
 TEST(Axes, FiltersThatTheyHaveNothingToAsk_AreReported) {
   const auto expect = [](const char* axis, const char* filters, const char* words) {
     const std::vector<Case> cases = choose_axes(axis)[0].make_cases(make_inputs(filters));
-    EXPECT_THAT(cases, ::testing::Contains(::testing::Field(&Case::not_available, HasSubstr(words)))) << axis;
+    EXPECT_THAT(cases, Contains(::testing::Field(&Case::not_available, HasSubstr(words)))) << axis;
   };
   for (const char* axis : {"esm-exponent", "warp-exponent", "vsm-cancellation"})
     expect(axis, "none", "front matter declares '");

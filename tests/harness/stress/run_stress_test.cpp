@@ -1,19 +1,12 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <limits>
-
-#include "base/error.h"
 #include "filters/kernel.h"
 #include "harness/stress/axis.h"
 #include "harness/stress/synthetic_scene.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::stress {
 namespace {
 
 using records::StressAgreement;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 Axis make_axis(double low, double high, bool log = true) {
   Axis axis;

@@ -1,16 +1,8 @@
 #include "harness/tune/tuning.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <set>
 #include <stdexcept>
 #include <tuple>
 
-#include "base/error.h"
 #include "harness/options/options.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/load.h"
@@ -20,8 +12,6 @@
 
 namespace shadowbench::tune {
 namespace {
-
-using ::testing::HasSubstr;
 
 SearchedParam make_param(double min, double max, double default_value, bool integer = false) {
   return {"p", min, max, default_value, integer};
@@ -359,7 +349,7 @@ class TunedParameters : public ::testing::Test {
   void expect_refusal(const std::filesystem::path& file, const std::string& words) {
     const Error error = error_of([&] { apply("vsm", file); });
     EXPECT_EQ(error.kind(), ErrorKind::kInput) << words;
-    EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr(words), HasSubstr("tuned.json")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr(words), HasSubstr("tuned.json")));
   }
 
   TestFolder folder_;
@@ -419,10 +409,9 @@ TEST_F(TunedParameters, OfAnotherMapSize_AreTakenWithANote) {
 TEST_F(TunedParameters, OfAnotherFit_AreTakenWithANote) {
   auto requests = catalogue_.parse_requests("vsm");
   const auto file = write_filters(R"({"id": "vsm", "params": {"radius": 2}, "fit": "view"})");
-  EXPECT_THAT(
-      apply_tuned(requests, catalogue_, file, {1024}, {{}}),
-      ::testing::ElementsAre(HasSubstr("tuned for vsm (radius=2) under --fit view, which this run does not draw")));
-  EXPECT_THAT(apply_tuned(requests, catalogue_, file, {1024}, {{}, {scene::FitMode::kView, {}}}), ::testing::IsEmpty());
+  EXPECT_THAT(apply_tuned(requests, catalogue_, file, {1024}, {{}}),
+              ElementsAre(HasSubstr("tuned for vsm (radius=2) under --fit view, which this run does not draw")));
+  EXPECT_THAT(apply_tuned(requests, catalogue_, file, {1024}, {{}, {scene::FitMode::kView, {}}}), IsEmpty());
 }
 
 TEST_F(TunedParameters, BadFiles_AreRefusedWithTheField) {

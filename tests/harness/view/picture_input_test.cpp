@@ -1,11 +1,5 @@
 #include "harness/view/picture_input.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "harness/view/view_state.h"
 #include "harness/view/workbench.h"
 #include "tests/test_files.h"
@@ -156,8 +150,6 @@ TEST_F(LessonsFile, Good_IsReadWhole) {
 }
 
 TEST_F(LessonsFile, Bad_IsRefusedWithItsLine) {
-  using ::testing::AllOf;
-  using ::testing::HasSubstr;
   EXPECT_THAT(refuse("'Three.'", ""), AllOf(HasSubstr("lessons.toml:4"), HasSubstr("three sentences")));
   EXPECT_THAT(refuse("layer = 'error'", "layer = 'eror'"), AllOf(HasSubstr("lessons.toml:9"), HasSubstr("error")));
   EXPECT_THAT(refuse("left = ", "lft = "), AllOf(HasSubstr("lessons.toml:6"), HasSubstr("left")));

@@ -1,13 +1,10 @@
 // The run that measures both sides beside the window: what it gives, how it fails, and that it leaves nothing.
 
-#include <gmock/gmock.h>
 #include <signal.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <thread>
 
-#include "base/error.h"
 #include "harness/view/side_measurement.h"
 #include "harness/view/workbench.h"
 #include "report/records/format.h"
@@ -18,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using State = view::SideMeasurement::State;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr int kMoment = 100;  // hundredths of a second, in which nothing ends by itself
 
@@ -92,7 +87,7 @@ class SideMeasurementTest : public ViewTest {
     wait_until([&] { return list_processes().empty(); }, kMoment);
     EXPECT_THAT(list_processes(), IsEmpty());
     for (const auto& entry : fs::directory_iterator(folder()))
-      EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr("shadowbench-view"))) << "left by the measurement";
+      EXPECT_THAT(entry.path().string(), Not(HasSubstr("shadowbench-view"))) << "left by the measurement";
   }
 
   /// The texels of the map under a pixel that the window shows, over those that count.
@@ -129,7 +124,7 @@ TEST_F(SideMeasurementTest, Finished_HasBothSides_WithPartsThatAddUpToTheError) 
   measurement.start(state);
   std::vector<std::string> said;
   ASSERT_EQ(finish(measurement, &said), State::kFinished) << measurement.text();
-  EXPECT_THAT(said, testing::Contains(HasSubstr("attribution of tent3x3")));
+  EXPECT_THAT(said, Contains(HasSubstr("attribution of tent3x3")));
   const view::MeasuredSides& sides = measurement.results();
   for (std::size_t side = 0; side < view::kSides; ++side) {
     const measure::MeasuredCell* cell = sides.find_side(side);
@@ -202,7 +197,7 @@ TEST_F(SideMeasurementTest, FilterWithBrokenGlsl_FailsWithItsFileAndLine) {
   measurement.start(state);
   EXPECT_EQ(finish(measurement), State::kFailed);
   EXPECT_THAT(measurement.text(), HasSubstr("broken_glsl.glsl:"));
-  EXPECT_THAT(measurement.text(), testing::Not(HasSubstr("\n0.0 %"))) << "nothing of what it said before";
+  EXPECT_THAT(measurement.text(), Not(HasSubstr("\n0.0 %"))) << "nothing of what it said before";
   expect_nothing_left();
   change(state, [&](view::ViewSettings& settings) { settings.sides[0].filter = request("none"); });
   measurement.start(state);

@@ -1,10 +1,6 @@
-#include <gmock/gmock.h>
-
 #include <chrono>
-#include <map>
 #include <thread>
 
-#include "base/error.h"
 #include "harness/run/float_images.h"
 #include "harness/run/run_plan.h"
 #include "harness/view/side_measurement.h"
@@ -18,8 +14,6 @@
 
 namespace shadowbench::test {
 namespace {
-
-using ::testing::HasSubstr;
 
 // What is saved from the window is what the window shows: loaded again, and run.
 

@@ -1,20 +1,10 @@
 #include "reference/metrics/artefacts.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <vector>
-
 #include "reference/metrics/map_stability.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::metrics {
 namespace {
-
-using ::testing::ElementsAre;
 
 // Rates of the faults that a person sees, over masks made by hand.
 

@@ -1,28 +1,18 @@
 #include "reference/metrics/error_stats.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 #include <numeric>
-#include <random>
-#include <set>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "reference/metrics/artefacts.h"
 #include "reference/metrics/flip.h"
 #include "reference/metrics/metric_table.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::metrics {
 namespace {
 
-using ::testing::Contains;
 using ::testing::DoubleNear;
 using ::testing::IsSupersetOf;
-using ::testing::Not;
 
 TEST(ErrorStats, OfFourPixels_AreWhatTheirDefinitionsGive) {
   const std::vector<float> image = {0.5f, 1.0f, 0.0f, 0.25f, 0.9f}, truth = {0.0f, 1.0f, 0.5f, 0.0f, 0.0f};
@@ -427,7 +417,7 @@ TEST(MetricTable, ArtefactLimits_AreTheOnesInUse) {
     number.erase(number.find_last_not_of('0') + 1);
     if (number.back() == '.') number.pop_back();
     for (const Metric& metric : metric_table())
-      if (metric.path == path) EXPECT_THAT(std::string(metric.definition), ::testing::HasSubstr(" " + number)) << path;
+      if (metric.path == path) EXPECT_THAT(std::string(metric.definition), HasSubstr(" " + number)) << path;
   }
 }
 

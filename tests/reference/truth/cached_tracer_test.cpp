@@ -1,14 +1,8 @@
 #include "reference/truth/cached_tracer.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <fstream>
-#include <functional>
 
 #include "tests/test_files.h"
 
@@ -184,8 +178,8 @@ TEST_F(Cache, AFolderThatCannotBeWritten_IsNotedOnce_AndNothingIsLost) {
   cache.store("a", make_layers(0.5f));
   cache.store("b", make_layers(0.5f));
   ASSERT_EQ(notes_.size(), 1u);
-  EXPECT_THAT(notes_[0], ::testing::HasSubstr(folder_.string()));
-  EXPECT_THAT(notes_[0], ::testing::HasSubstr("--cache"));
+  EXPECT_THAT(notes_[0], HasSubstr(folder_.string()));
+  EXPECT_THAT(notes_[0], HasSubstr("--cache"));
 }
 
 TEST_F(Cache, WithoutAFolder_KeepsNothing) {

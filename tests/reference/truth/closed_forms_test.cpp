@@ -1,16 +1,10 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdio>
-#include <functional>
-#include <numbers>
 
 #include "filters/kernel.h"
 #include "reference/metrics/error_stats.h"
-#include "reference/truth/visibility.h"
 #include "tests/reference/truth/shapes.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::truth {
 namespace {

@@ -1,22 +1,13 @@
 #include "reference/truth/visibility.h"
 
-#include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <functional>
-#include <limits>
 #include <new>
-#include <numbers>
-#include <numeric>
-#include <random>
 
 #include "reference/truth/occluders.h"
 #include "tests/reference/truth/shapes.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::truth {
 namespace {

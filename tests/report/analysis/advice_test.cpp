@@ -1,25 +1,12 @@
 #include "report/analysis/advice.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
-
-#include "base/error.h"
 #include "report/analysis/advice_words.h"
-#include "report/records/records.h"
 #include "tests/report/records/synthetic.h"
-#include "tests/test_files.h"
 
 namespace shadowbench::analysis {
 
 using namespace records;
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 const Quantity* find_limit(const std::string& option) {
   for (const Quantity& spec : limit_table())
@@ -30,15 +17,14 @@ const Quantity* find_limit(const std::string& option) {
 Demand limit(const std::string& option, double most) { return {find_limit(option), most}; }
 
 /// A cell whose lookup takes `ms` and its map 1 ms, within 1 % of both; its filter has no parameters.
-records::CellRecord measure(const std::string& scene, const std::string& filter, double ms, double rmse,
-                            int map_size = 1024) {
-  records::CellRecord cell = make_cell(scene, filter, ms);
+CellRecord measure(const std::string& scene, const std::string& filter, double ms, double rmse, int map_size = 1024) {
+  CellRecord cell = make_cell(scene, filter, ms);
   cell.params.clear();
   cell.map_size = map_size;
   cell.cost.map_bytes = 4LL * map_size * map_size;
   cell.cost.prefilter_texels = 0;
   const auto within_a_percent = [](double median) {
-    return records::OwnTime{{median, 0.99 * median, 1.01 * median, 9}, {0.99 * median, 1.01 * median}};
+    return OwnTime{{median, 0.99 * median, 1.01 * median, 9}, {0.99 * median, 1.01 * median}};
   };
   cell.time_ms.lookup = cell.time_ms.static_light = within_a_percent(ms);
   cell.time_ms.moving = within_a_percent(1.0 + ms);
@@ -46,7 +32,7 @@ records::CellRecord measure(const std::string& scene, const std::string& filter,
   cell.truth.se = 0.001;
   cell.artefact.acne = cell.artefact.leak = cell.artefact.contact_gap = cell.artefact.noise = 0.0;
   cell.absent.erase("error");
-  cell.key = records::cell_key(cell);
+  cell.key = cell_key(cell);
   return cell;
 }
 
@@ -62,21 +48,21 @@ std::vector<std::string> reasons(const Advice& advice) {
   return texts;
 }
 
-Advice advise_on(const std::vector<records::CellRecord>& cells, std::vector<Demand> demands) {
+Advice advise_on(const std::vector<CellRecord>& cells, std::vector<Demand> demands) {
   AdviceRequest request;
   request.demands = std::move(demands);
   return advise(cells, request);
 }
 
 /// All that keep the demands, in their order: those that are beaten or gain nothing, too.
-Advice rank_on(const std::vector<records::CellRecord>& cells, std::vector<Demand> demands) {
+Advice rank_on(const std::vector<CellRecord>& cells, std::vector<Demand> demands) {
   AdviceRequest request;
   request.demands = std::move(demands);
   request.whole = true;
   return advise(cells, request);
 }
 
-void expect_refusal(const std::vector<records::CellRecord>& cells, const AdviceRequest& request, ErrorKind kind,
+void expect_refusal(const std::vector<CellRecord>& cells, const AdviceRequest& request, ErrorKind kind,
                     const std::string& word) {
   const Error error = error_of([&] { advise(cells, request); });
   EXPECT_EQ(error.kind(), kind);
@@ -84,9 +70,8 @@ void expect_refusal(const std::vector<records::CellRecord>& cells, const AdviceR
 }
 
 TEST(Advice, WorstPlace_DecidesALimit) {
-  const std::vector<records::CellRecord> cells = {
-      measure("cubes", "none", 1.0, 0.01), measure("stack", "none", 1.0, 0.09), measure("cubes", "wide", 3.0, 0.03),
-      measure("stack", "wide", 3.0, 0.02)};
+  const std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("stack", "none", 1.0, 0.09),
+                                         measure("cubes", "wide", 3.0, 0.03), measure("stack", "wide", 3.0, 0.02)};
   const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03)});
   ASSERT_THAT(labels(advice.keeping), ElementsAre("wide"));
   ASSERT_THAT(labels(advice.failing), ElementsAre("none"));
@@ -97,18 +82,18 @@ TEST(Advice, WorstPlace_DecidesALimit) {
 }
 
 TEST(Advice, FiltersForTeaching_AreLeftOut_AndNamed) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "none", 3.0, 0.01), measure("cubes", "wrong", 1.0, 0.01)};
+  std::vector<CellRecord> cells = {measure("cubes", "none", 3.0, 0.01), measure("cubes", "wrong", 1.0, 0.01)};
   cells[1].teaching = true;
   const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03)});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
   EXPECT_THAT(list_advice_notes(advice, make_run().gl),
-              ::testing::Contains("Left out, for they show a mistake and are for teaching: wrong."));
+              Contains("Left out, for they show a mistake and are for teaching: wrong."));
   cells.erase(cells.begin());
   expect_refusal(cells, {}, ErrorKind::kUsage, "filters for teaching alone (wrong)");
 }
 
 TEST(Advice, EveryLimit_IsKeptUpToItsValueAndNotBeyond) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "none", 2.0, 0.25)};
+  std::vector<CellRecord> cells = {measure("cubes", "none", 2.0, 0.25)};
   for (const metrics::Metric& metric : metrics::metric_table())
     if (!metric.limit.empty() && metric.read(cells[0]).value_or(0.0) == 0.0)
       std::get<0>(metric.member)(cells[0]) = 0.25;
@@ -121,9 +106,8 @@ TEST(Advice, EveryLimit_IsKeptUpToItsValueAndNotBeyond) {
 }
 
 TEST(Advice, Cost_IsTheMeanOverAllPlaces) {
-  const std::vector<records::CellRecord> cells = {
-      measure("cubes", "even", 4.0, 0.0), measure("stack", "even", 4.0, 0.0), measure("cubes", "uneven", 1.0, 0.0),
-      measure("stack", "uneven", 6.0, 0.0)};
+  const std::vector<CellRecord> cells = {measure("cubes", "even", 4.0, 0.0), measure("stack", "even", 4.0, 0.0),
+                                         measure("cubes", "uneven", 1.0, 0.0), measure("stack", "uneven", 6.0, 0.0)};
   const Advice advice = rank_on(cells, {});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("uneven", "even"));
   EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.mean, 4.5);
@@ -134,7 +118,7 @@ TEST(Advice, Cost_IsTheMeanOverAllPlaces) {
 }
 
 TEST(Advice, CostsThatDifferOnTheWhole_AreNoTie_WhereEachPlaceIsUncertain) {
-  std::vector<records::CellRecord> cells;
+  std::vector<CellRecord> cells;
   for (const char* scene : {"a", "b", "c", "d"}) {
     cells.push_back(measure(scene, "cheap", 4.0, 0.0));
     cells.push_back(measure(scene, "dear", 6.0, 0.0));
@@ -146,7 +130,7 @@ TEST(Advice, CostsThatDifferOnTheWhole_AreNoTie_WhereEachPlaceIsUncertain) {
 }
 
 TEST(Advice, LightThatMovesOrStandsStill_HasItsOwnTime) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "wide", 4.0, 0.0), measure("cubes", "blurred", 2.0, 0.0)};
+  std::vector<CellRecord> cells = {measure("cubes", "wide", 4.0, 0.0), measure("cubes", "blurred", 2.0, 0.0)};
   cells[1].time_ms.moving->median = 11.0;
   AdviceRequest request;
   request.whole = true;
@@ -158,17 +142,17 @@ TEST(Advice, LightThatMovesOrStandsStill_HasItsOwnTime) {
 }
 
 TEST(Advice, FrameThatWasNotTimed_IsNotJudged) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "blurred", 2.0, 0.0)};
+  std::vector<CellRecord> cells = {measure("cubes", "blurred", 2.0, 0.0)};
   cells[0].time_ms.moving.reset();
   cells[0].absent = {{"time_ms.prefilter", "the clock stood still"}};
   EXPECT_THAT(reasons(advise_on(cells, {})), ElementsAre("no time_ms on cubes: the clock stood still"));
 }
 
 TEST(Advice, WhatWasNotMeasuredEverywhere_IsNotJudged) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("stack", "none", 1.0, 0.0),
-                                            measure("cubes", "gone", 1.0, 0.0), measure("cubes", "hung", 1.0, 0.0),
-                                            measure("stack", "hung", 1.0, 0.0)};
-  cells[4].status = records::CellStatus::kTimeout;
+  std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("stack", "none", 1.0, 0.0),
+                                   measure("cubes", "gone", 1.0, 0.0), measure("cubes", "hung", 1.0, 0.0),
+                                   measure("stack", "hung", 1.0, 0.0)};
+  cells[4].status = CellStatus::kTimeout;
   cells[4].message = "no answer after 10 s";
   const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0)});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
@@ -177,8 +161,8 @@ TEST(Advice, WhatWasNotMeasuredEverywhere_IsNotJudged) {
 }
 
 TEST(Advice, SuspectFilter_IsNotJudged) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "none", 2.0, 0.1), measure("cubes", "mine", 1.0, 0.0)};
-  cells[1].status = records::CellStatus::kSuspect;
+  std::vector<CellRecord> cells = {measure("cubes", "none", 2.0, 0.1), measure("cubes", "mine", 1.0, 0.0)};
+  cells[1].status = CellStatus::kSuspect;
   cells[1].message = "it reads nothing";
   const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0)});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
@@ -186,8 +170,8 @@ TEST(Advice, SuspectFilter_IsNotJudged) {
 }
 
 TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("cubes", "blind", 1.0, 0.0),
-                                            measure("cubes", "free", 1.0, 0.0)};
+  std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("cubes", "blind", 1.0, 0.0),
+                                   measure("cubes", "free", 1.0, 0.0)};
   cells[1].error = {};
   cells[1].absent["error"] = "no truth in this run";
   cells[2].cost.fetches.reset();
@@ -202,7 +186,7 @@ TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
 }
 
 TEST(Advice, CostThatIsNull_IsNotJudged) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "free", 1.0, 0.0)};
+  std::vector<CellRecord> cells = {measure("cubes", "free", 1.0, 0.0)};
   cells[0].cost.fetches.reset();
   AdviceRequest request;
   request.cheapest = CostKind::kFetches;
@@ -210,7 +194,7 @@ TEST(Advice, CostThatIsNull_IsNotJudged) {
 }
 
 TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
+  std::vector<CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
   Advice advice = rank_on(cells, {});
   EXPECT_FALSE(are_costs_tied(advice.keeping.at(0), advice.keeping[1], CostKind::kTime));
   cells[1].time_ms.moving->ci95.low *= 0.9;
@@ -219,8 +203,7 @@ TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
 }
 
 TEST(Advice, OfTwoMaps_QuartilesTellCostsApart) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "a", 4.0, 0.0, 256),
-                                            measure("cubes", "a", 4.2, 0.0, 1024)};
+  std::vector<CellRecord> cells = {measure("cubes", "a", 4.0, 0.0, 256), measure("cubes", "a", 4.2, 0.0, 1024)};
   cells[1].time_ms.moving->ci95.low *= 0.5;
   Advice advice = rank_on(cells, {});
   EXPECT_FALSE(are_costs_tied(advice.keeping.at(0), advice.keeping[1], CostKind::kTime));
@@ -230,17 +213,17 @@ TEST(Advice, OfTwoMaps_QuartilesTellCostsApart) {
 }
 
 TEST(Advice, EqualBytes_AreOrderedByRmse_AndWithoutByTime) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "slow", 9.0, 0.01), measure("cubes", "fast", 4.0, 0.03)};
+  std::vector<CellRecord> cells = {measure("cubes", "slow", 9.0, 0.01), measure("cubes", "fast", 4.0, 0.03)};
   AdviceRequest request;
   request.cheapest = CostKind::kBytes;
   EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("slow"));
   EXPECT_THAT(labels(advise(cells, request).beaten), ElementsAre("fast"));
-  for (records::CellRecord& cell : cells) cell.error.rmse.reset();
+  for (CellRecord& cell : cells) cell.error.rmse.reset();
   EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("fast", "slow"));
 }
 
 TEST(Advice, WhatAnotherBeats_IsLeftOutAndNamed) {
-  const std::vector<records::CellRecord> cells = {
+  const std::vector<CellRecord> cells = {
       measure("cubes", "none", 1.0, 0.07, 1024), measure("cubes", "none", 1.5, 0.057, 2048),
       measure("cubes", "pcss", 4.0, 0.065, 1024), measure("cubes", "pcss", 6.0, 0.05, 2048)};
   const Advice advice = advise_on(cells, {});
@@ -250,13 +233,13 @@ TEST(Advice, WhatAnotherBeats_IsLeftOutAndNamed) {
   EXPECT_THAT(labels(advice.no_gain), ElementsAre("none"));
   EXPECT_EQ(advice.unfiltered, "none, map 1024");
   EXPECT_THAT(list_advice_notes(advice, make_run().gl),
-              ::testing::Contains("Left out, as another is no dearer and has no larger RMSE: pcss, map 1024."));
+              Contains("Left out, as another is no dearer and has no larger RMSE: pcss, map 1024."));
 }
 
 TEST(Advice, WhatFails_IsOrderedByHowManyLimitsItBreaks_ThenByHowMuch_ThenByCost) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "best", 9.0, 0.01), measure("cubes", "far", 3.0, 0.04),
-                                            measure("cubes", "near", 6.0, 0.02), measure("cubes", "as near", 5.0, 0.02),
-                                            measure("cubes", "leaky", 1.0, 0.015)};
+  std::vector<CellRecord> cells = {measure("cubes", "best", 9.0, 0.01), measure("cubes", "far", 3.0, 0.04),
+                                   measure("cubes", "near", 6.0, 0.02), measure("cubes", "as near", 5.0, 0.02),
+                                   measure("cubes", "leaky", 1.0, 0.015)};
   cells.back().artefact.leak = 0.5;
   const Advice advice = advise_on(cells, {limit("--max-rmse", 0.012), limit("--max-leak", 0.1)});
   EXPECT_THAT(labels(advice.failing), ElementsAre("as near", "near", "far", "leaky"));
@@ -264,8 +247,8 @@ TEST(Advice, WhatFails_IsOrderedByHowManyLimitsItBreaks_ThenByHowMuch_ThenByCost
 }
 
 TEST(Advice, NothingFits_NamesTheClosest_WithALimitThatLetsItPass) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "a", 1.0, 0.0412345), measure("cubes", "b", 2.0, 0.06),
-                                            measure("cubes", "c", 9.0, 0.05)};
+  std::vector<CellRecord> cells = {measure("cubes", "a", 1.0, 0.0412345), measure("cubes", "b", 2.0, 0.06),
+                                   measure("cubes", "c", 9.0, 0.05)};
   const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03), limit("--max-ms", 5.0)});
   EXPECT_THAT(advice.keeping, IsEmpty());
   EXPECT_EQ(describe_failure(advice),
@@ -273,14 +256,14 @@ TEST(Advice, NothingFits_NamesTheClosest_WithALimitThatLetsItPass) {
 }
 
 TEST(Advice, NothingCanBeJudged_SaysWhy) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "a", 9.0, 0.3), measure("cubes", "b", 9.0, 0.3)};
-  for (records::CellRecord& cell : cells) cell.error.rmse.reset();
+  std::vector<CellRecord> cells = {measure("cubes", "a", 9.0, 0.3), measure("cubes", "b", 9.0, 0.3)};
+  for (CellRecord& cell : cells) cell.error.rmse.reset();
   EXPECT_EQ(describe_failure(advise_on(cells, {limit("--max-rmse", 0.03)})),
             "none of 2 configurations can be judged: 2: no error.rmse on cubes: not measured");
 }
 
 TEST(Advice, RmseKeptByLessThanTheTruthsStandardError_IsMarked) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "a", 9.0, 0.0295), measure("stack", "a", 9.0, 0.001)};
+  std::vector<CellRecord> cells = {measure("cubes", "a", 9.0, 0.0295), measure("stack", "a", 9.0, 0.001)};
   EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.03)}).keeping.at(0).verdicts[0].uncertain, &cells[0]);
   EXPECT_FALSE(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].uncertain);
   cells[1].truth.se = 0.04;
@@ -290,9 +273,9 @@ TEST(Advice, RmseKeptByLessThanTheTruthsStandardError_IsMarked) {
 }
 
 TEST(Advice, ContactHardening_IsRequiredOfTheFilter) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "hard", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01)};
+  std::vector<CellRecord> cells = {measure("cubes", "hard", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01)};
   cells[1].claims = {"contact-hardening"};
-  for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
+  for (CellRecord& cell : cells) cell.penumbra.growth = 1.0;
   AdviceRequest request;
   request.demands.resize(1);
   const Advice advice = advise(cells, request);
@@ -304,12 +287,12 @@ TEST(Advice, ContactHardening_IsRequiredOfTheFilter) {
 }
 
 TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
-  std::vector<records::CellRecord> cells;
+  std::vector<CellRecord> cells;
   for (const char* scene : {"ball", "cubes"})
     for (const char* filter : {"grows", "shrinks", "same", "unseen"}) {
       cells.push_back(measure(scene, filter, 1.0, 0.01));
       cells.back().claims = {"contact-hardening"};
-      records::explain(cells.back(), "penumbra", {"all are narrow", true});
+      explain(cells.back(), "penumbra", {"all are narrow", true});
     }
   cells[0].penumbra.growth = 0.9;
   cells[1].penumbra.growth = -1.0;
@@ -328,15 +311,15 @@ TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
 }
 
 /// A cell with a leak rate on "cubes", and none on "fence", where too little is blocked.
-std::vector<records::CellRecord> measure_leak_on_one(const std::string& filter, double ms, double leak) {
-  std::vector<records::CellRecord> cells = {measure("cubes", filter, ms, 0.01), measure("fence", filter, ms, 0.01)};
+std::vector<CellRecord> measure_leak_on_one(const std::string& filter, double ms, double leak) {
+  std::vector<CellRecord> cells = {measure("cubes", filter, ms, 0.01), measure("fence", filter, ms, 0.01)};
   cells[0].artefact.leak = leak;
   cells[1].artefact.leak.reset();
-  records::explain(cells[1], "artefact.leak", {"fewer than 100 receivers are blocked", true});
+  explain(cells[1], "artefact.leak", {"fewer than 100 receivers are blocked", true});
   return cells;
 }
 
-std::vector<records::CellRecord> join(std::vector<records::CellRecord> a, const std::vector<records::CellRecord>& b) {
+std::vector<CellRecord> join(std::vector<CellRecord> a, const std::vector<CellRecord>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
@@ -353,20 +336,20 @@ TEST(Advice, SceneWithNothingToSee_BarsNothingAndIsNamed) {
   const std::string note =
       "--max-leak 0.1 could not be judged on fence, and cannot be broken there: fewer than 100 receivers "
       "are blocked.";
-  EXPECT_THAT(list_advice_notes(advice, make_run().gl), ::testing::Contains(note));
+  EXPECT_THAT(list_advice_notes(advice, make_run().gl), Contains(note));
   EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-leak", 0.001)}), make_run().gl),
-              ::testing::Contains(HasSubstr("could not be judged on fence")))
+              Contains(HasSubstr("could not be judged on fence")))
       << "nothing fits";
   EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-acne", 0.1)}), make_run().gl),
-              ::testing::Each(::testing::Not(HasSubstr("fence"))));
+              Each(Not(HasSubstr("fence"))));
 }
 
 TEST(Advice, EveryFaultWithoutReceivers_BarsNothing) {
   for (const char* name : {"acne", "leak", "contact_gap"}) {
-    std::vector<records::CellRecord> cells = measure_leak_on_one("a", 1.0, 0.0);
+    std::vector<CellRecord> cells = measure_leak_on_one("a", 1.0, 0.0);
     cells[1].artefact = {};
     cells[1].absent.clear();
-    records::explain(cells[1], std::string("artefact.") + name, {"too few", true});
+    explain(cells[1], std::string("artefact.") + name, {"too few", true});
     std::string option = "--max-" + std::string(name);
     std::ranges::replace(option, '_', '-');
     EXPECT_THAT(advise_on(cells, {limit(option, 0.1)}).keeping, SizeIs(1)) << name;
@@ -392,8 +375,7 @@ TEST(Advice, NothingToSeeAnywhere_IsNotJudgedAndSaysSo) {
 }
 
 TEST(Advice, Scenes_ChooseWhatIsJudged) {
-  const std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01),
-                                                  measure("stack", "none", 1.0, 0.09)};
+  const std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("stack", "none", 1.0, 0.09)};
   AdviceRequest request;
   request.demands = {limit("--max-rmse", 0.03)};
   EXPECT_THAT(advise(cells, request).keeping, IsEmpty());
@@ -404,13 +386,12 @@ TEST(Advice, Scenes_ChooseWhatIsJudged) {
 }
 
 TEST(Advice, OfABiasInMetres_SaysThatItHoldsForOneTexelSize) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01)};
-  const auto says_so = ::testing::Contains(::testing::HasSubstr("right for one texel size alone"));
+  std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01)};
+  const auto says_so = Contains(HasSubstr("right for one texel size alone"));
   const auto list_notes = [&] { return list_advice_notes(advise(cells, {}), make_run().gl); };
   cells[0].bias.constant.texels = 1.0;
-  EXPECT_THAT(list_notes(), ::testing::Not(says_so));
-  for (records::BiasAmountRecord records::BiasRecord::*mode :
-       {&records::BiasRecord::constant, &records::BiasRecord::slope, &records::BiasRecord::normal_offset}) {
+  EXPECT_THAT(list_notes(), Not(says_so));
+  for (BiasAmountRecord BiasRecord::*mode : {&BiasRecord::constant, &BiasRecord::slope, &BiasRecord::normal_offset}) {
     cells[0].bias = {};
     (cells[0].bias.*mode).world = 0.01;
     EXPECT_THAT(list_notes(), says_so);
@@ -418,16 +399,15 @@ TEST(Advice, OfABiasInMetres_SaysThatItHoldsForOneTexelSize) {
 }
 
 TEST(Advice, Size_ChoosesThePicture) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("cubes", "none", 4.0, 0.01)};
+  std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("cubes", "none", 4.0, 0.01)};
   cells[0].width = 480;
   cells[0].height = 270;
   AdviceRequest request;
   request.whole = true;
   EXPECT_THAT(advise(cells, request).keeping, SizeIs(2));
-  EXPECT_THAT(
-      list_advice_notes(advise(cells, request), make_run().gl),
-      ::testing::Contains("Pictures of 480x270, 960x540 pixels compete here, and a smaller one costs less: --size "
-                          "chooses."));
+  EXPECT_THAT(list_advice_notes(advise(cells, request), make_run().gl),
+              Contains("Pictures of 480x270, 960x540 pixels compete here, and a smaller one costs less: --size "
+                       "chooses."));
   request.size = {960, 540};
   ASSERT_THAT(advise(cells, request).keeping, SizeIs(1));
   EXPECT_DOUBLE_EQ(advise(cells, request).keeping.at(0).cost.mean, 5.0);
@@ -438,14 +418,14 @@ TEST(Advice, Size_ChoosesThePicture) {
 TEST(Advice, RunWithoutCells_IsAnInputError) { expect_refusal({}, {}, ErrorKind::kInput, "holds no cell"); }
 
 TEST(Advice, Notes_SayWhatWeakensIt) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "none", 1.0, 0.01)};
-  records::GlRecord gl = make_run().gl;
+  std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01)};
+  GlRecord gl = make_run().gl;
   EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl),
               ElementsAre("Times are CPU time (software rasteriser): a GPU ranks filters differently."));
   gl.software = false;
-  gl.timer = records::TimerKind::kTimerQuery;
+  gl.timer = TimerKind::kTimerQuery;
   EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl), IsEmpty());
-  std::vector<records::CellRecord> two = {cells[0], measure("cubes", "better", 2.0, 0.001)};
+  std::vector<CellRecord> two = {cells[0], measure("cubes", "better", 2.0, 0.001)};
   EXPECT_THAT(list_advice_notes(advise_on(two, {}), gl),
               ElementsAre("No error limit set; left out as no better than none: none."));
   cells[0].nan = 12;

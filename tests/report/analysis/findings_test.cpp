@@ -1,55 +1,40 @@
 #include "report/analysis/findings.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cells.h"
 #include "report/analysis/gpu_costs.h"
 #include "report/analysis/measures.h"
 #include "report/analysis/trade.h"
-#include "report/records/format.h"
-#include "report/records/records.h"
 #include "tests/report/analysis/trade_cells.h"
-#include "tests/report/records/synthetic.h"
-#include "trade_cells.h"
 
 namespace shadowbench::analysis {
 namespace {
 
 using namespace records;
-using records::CellRecord;
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
-using ::testing::StartsWith;
 
 TEST(Summary, Numbers_HaveThreeDigits) {
-  EXPECT_EQ(records::format_number(0.05124), "0.0512");
-  EXPECT_EQ(records::format_number(4.0), "4");
-  EXPECT_EQ(records::format_number(13.94), "13.9");
-  EXPECT_EQ(records::format_number(99.96), "100");
-  EXPECT_EQ(records::format_number(1240.4), "1240");
-  EXPECT_EQ(records::format_number(4194304.0), "4194304");
+  EXPECT_EQ(format_number(0.05124), "0.0512");
+  EXPECT_EQ(format_number(4.0), "4");
+  EXPECT_EQ(format_number(13.94), "13.9");
+  EXPECT_EQ(format_number(99.96), "100");
+  EXPECT_EQ(format_number(1240.4), "1240");
+  EXPECT_EQ(format_number(4194304.0), "4194304");
 }
 
 TEST(Summary, SoftwareTimes_AreCalledCpuTime) {
-  records::GlRecord gl = make_run().gl;
-  EXPECT_EQ(records::describe_clock(gl), "CPU time (software rasteriser)");
-  EXPECT_EQ(records::time_unit(gl), "ms (CPU)");
+  GlRecord gl = make_run().gl;
+  EXPECT_EQ(describe_clock(gl), "CPU time (software rasteriser)");
+  EXPECT_EQ(time_unit(gl), "ms (CPU)");
   gl.software = false;
-  gl.timer = records::TimerKind::kTimerQuery;
-  EXPECT_EQ(records::describe_clock(gl), "GPU time (timer query)");
-  EXPECT_EQ(records::time_unit(gl), "ms (GPU)");
+  gl.timer = TimerKind::kTimerQuery;
+  EXPECT_EQ(describe_clock(gl), "GPU time (timer query)");
+  EXPECT_EQ(time_unit(gl), "ms (GPU)");
 }
 
 TEST(Summary, Groups_HoldOnlyWhatMayBeCompared) {
-  std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 4.0), make_cell("stack", "none", 4.0),
-                                            make_cell("cubes", "vsm", 4.0), make_cell("cubes", "vsm", 4.0)};
+  std::vector<CellRecord> cells = {make_cell("cubes", "none", 4.0), make_cell("stack", "none", 4.0),
+                                   make_cell("cubes", "vsm", 4.0), make_cell("cubes", "vsm", 4.0)};
   cells[3].map_size = 2048;
   const auto groups = group_cells(cells);
   ASSERT_THAT(groups, SizeIs(3));
@@ -59,12 +44,11 @@ TEST(Summary, Groups_HoldOnlyWhatMayBeCompared) {
 }
 
 TEST(Summary, OnlyAWrongRange_IsNamedInTheSettings) {
-  records::CellRecord cell = make_cell("cubes", "none", 4.0);
-  EXPECT_THAT(records::describe_settings(cell), Not(AnyOf(HasSubstr("outside"), HasSubstr("test off"))));
+  CellRecord cell = make_cell("cubes", "none", 4.0);
+  EXPECT_THAT(describe_settings(cell), Not(AnyOf(HasSubstr("outside"), HasSubstr("test off"))));
   cell.range = {"repeat", false, false};
-  EXPECT_THAT(records::describe_settings(cell),
-              AllOf(HasSubstr("outside the map: repeat"), HasSubstr("far-plane test off"),
-                    HasSubstr("behind-the-light test off")));
+  EXPECT_THAT(describe_settings(cell), AllOf(HasSubstr("outside the map: repeat"), HasSubstr("far-plane test off"),
+                                             HasSubstr("behind-the-light test off")));
 }
 
 TEST(Summary, Absences_AreCounted) {
@@ -73,37 +57,32 @@ TEST(Summary, Absences_AreCounted) {
 }
 
 TEST(Summary, ExperimentLine_SaysItsTitleAndWhichShardItIs) {
-  records::RunRecord run = make_run();
+  RunRecord run = make_run();
   run.experiment = {"A sweep", "", 30, 1, 1};
-  EXPECT_THAT(list_run_facts(run), Contains(::testing::Pair("experiment", "A sweep · 30 cells")));
+  EXPECT_THAT(list_run_facts(run), Contains(Pair("experiment", "A sweep · 30 cells")));
   run.experiment = {"", "", 30, 2, 3};
-  EXPECT_THAT(list_run_facts(run), Contains(::testing::Pair("experiment", "30 cells, shard 2 of 3")));
+  EXPECT_THAT(list_run_facts(run), Contains(Pair("experiment", "30 cells, shard 2 of 3")));
 }
 
 TEST(Summary, WorkLine_CountsTruthsTracedAndReadFromTheCache) {
-  EXPECT_THAT(
-      list_run_facts(make_run()),
-      Contains(::testing::Pair("work",
-                               "12 shader variants compiled, 40 passes run, 3 passes skipped because no "
-                               "filter needed them, 5 truths ray traced, 2 truths read from the cache; 1.5 s of timed "
-                               "passes in 2 s, of which attribution took 0.5 s")));
+  EXPECT_THAT(list_run_facts(make_run()),
+              Contains(Pair("work",
+                            "12 shader variants compiled, 40 passes run, 3 passes skipped because no "
+                            "filter needed them, 5 truths ray traced, 2 truths read from the cache; 1.5 s of timed "
+                            "passes in 2 s, of which attribution took 0.5 s")));
 }
 
-}  // namespace
-
-namespace {
-
-records::CellRecord make_light_cell(const SweepCell& from, double asked) {
-  records::CellRecord cell = make_sweep_cell(from);
+CellRecord make_light_cell(const SweepCell& from, double asked) {
+  CellRecord cell = make_sweep_cell(from);
   cell.kernel.width_class = "light";
   cell.kernel.light_texels = asked;
   if (from.filter != "none") cell.kernel.by_light = "radius";
-  cell.key = records::cell_key(cell);
+  cell.key = cell_key(cell);
   return cell;
 }
 
 /// On `ball` the filter is as wide as it should be, on `cubes` as narrow as it can.
-std::vector<records::CellRecord> make_cells() {
+std::vector<CellRecord> make_cells() {
   return {make_light_cell({.scene = "ball", .rmse = 0.1}, 4.0),
           make_light_cell({.scene = "ball", .filter = "vsm", .radius = 4.0, .rmse = 0.05}, 4.0),
           make_light_cell({.scene = "cubes", .rmse = 0.1}, 0.2),
@@ -124,12 +103,8 @@ TEST(LightWidths, OneFilter_IsOneConfigurationOnAllScenes) {
   EXPECT_EQ(name_class(points[0].group), "light") << "none is compared with them";
 }
 
-}  // namespace
-
-namespace {
-
-records::CellRecord make_stable_cell() {
-  records::CellRecord cell = make_cell("cubes", "odd", 4.0);
+CellRecord make_stable_cell() {
+  CellRecord cell = make_cell("cubes", "odd", 4.0);
   cell.params = {{"k", 20.0}, {"store", std::string("r16f")}};
   cell.map_size = 100;
   cell.stability = {0, 0, 0, 1e-7, 2.5, 11.08, 0.001, 0.0001, 0.0, 0, 0};
@@ -146,7 +121,7 @@ TEST(StabilityWords, NothingBreaks_NothingIsSaid) {
 }
 
 TEST(StabilityWords, Overflow_NamesLimitAndSafeValue) {
-  records::CellRecord cell = make_stable_cell();
+  CellRecord cell = make_stable_cell();
   cell.stability.overflow_texels = 290;
   cell.stability.nan_texels = 10;
   cell.stability.headroom.reset();
@@ -159,7 +134,7 @@ TEST(StabilityWords, Overflow_NamesLimitAndSafeValue) {
 }
 
 TEST(StabilityWords, EveryTrouble_HasItsSentence) {
-  records::CellRecord cell = make_stable_cell();
+  CellRecord cell = make_stable_cell();
   cell.stability.negative_variance_texels = 5000;
   cell.stability.lowest_variance = -7.2e-4;
   cell.stability.half_difference_max = 0.25;
@@ -184,9 +159,9 @@ TEST(FindDominatingPart, IsTheOnlyOneAboveHalf) {
 }
 
 TEST(RmseReach, IsHalfTheIntervalOrTheTruthsStandardError) {
-  records::CellRecord cell = make_attributed_cell("vsm", 0.04, {0.0, 0.7, 0.1, 0.2});
+  CellRecord cell = make_attributed_cell("vsm", 0.04, {0.0, 0.7, 0.1, 0.2});
   EXPECT_EQ(find_rmse_reach(cell), *cell.truth.se);
-  cell.rmse_ci95 = records::Interval{0.03, 0.05};
+  cell.rmse_ci95 = Interval{0.03, 0.05};
   EXPECT_DOUBLE_EQ(find_rmse_reach(cell), 0.01);
 }
 
@@ -199,10 +174,10 @@ TEST(LostInTruth, IsAnErrorThatTheTruthsOwnExplains) {
 // Cells that several kinds of machine measured: their times are not compared.
 
 TEST(MixedMachines, OneKind_CellsCompareAsTheyAre) {
-  std::vector<records::CellRecord> cells = make_mixed_cells();
-  for (records::CellRecord& cell : cells) cell.machine.reset();
+  std::vector<CellRecord> cells = make_mixed_cells();
+  for (CellRecord& cell : cells) cell.machine.reset();
   EXPECT_FALSE(withhold_mixed_times(cells)) << "cells of before";
-  for (records::CellRecord& cell : cells) cell.machine = make_kind("A CPU");
+  for (CellRecord& cell : cells) cell.machine = make_kind("A CPU");
   EXPECT_FALSE(withhold_mixed_times(cells));
   EXPECT_FALSE(withhold_mixed_times({}));
   cells[2].machine.reset();
@@ -216,12 +191,12 @@ TEST(MixedMachines, WarningCountsTheCellsOfEachKind) {
 }
 
 TEST(MixedMachines, HaveNoTimes_AndSayWhy) {
-  std::vector<records::CellRecord> cells = make_mixed_cells();
+  std::vector<CellRecord> cells = make_mixed_cells();
   cells[0].absent["time_ms.prefilter"] = "none is needed";
-  const records::CellRecord cell = withhold_mixed_times(cells).value().front();
+  const CellRecord cell = withhold_mixed_times(cells).value().front();
   EXPECT_FALSE(frame_time(cell, LightMotion::kMoving) || frame_time(cell, LightMotion::kStatic));
   for (const char* field : {"time_ms.prefilter", "time_ms.moving"})
-    EXPECT_THAT(records::explain_absence(cell, field), HasSubstr("times do not compare")) << field;
+    EXPECT_THAT(explain_absence(cell, field), HasSubstr("times do not compare")) << field;
 }
 
 TEST(MixedMachines, WithoutEstimates_NothingIsAdvised_AndOneSentenceSaysWhy) {
@@ -243,15 +218,15 @@ TEST(MixedMachines, BytesAreComparedAllTheSame) {
 
 /// Also where one of the machines has a GPU: its times are left out too.
 TEST(MixedMachines, CostIsAnEstimateWhereThereIsOne_AndNoTime) {
-  std::vector<records::CellRecord> cells = make_mixed_cells();
+  std::vector<CellRecord> cells = make_mixed_cells();
   EXPECT_EQ(choose_cost(cells), CostKind::kTime);
-  for (records::CellRecord& cell : cells) {
+  for (CellRecord& cell : cells) {
     cell.gpu.emplace();
-    (*cell.gpu)["navi21"].estimate = records::GpuEstimateRecord{};
+    (*cell.gpu)["navi21"].estimate = GpuEstimateRecord{};
   }
   EXPECT_EQ(choose_cost(cells), CostKind(CostKind::kGpu, "navi21"));
   for (const Quantity& cost : list_cost_measures(cells)) EXPECT_FALSE(cost.is(CostKind::kTime)) << cost.id;
-  for (records::CellRecord& cell : cells) cell.machine = cells[2].machine;
+  for (CellRecord& cell : cells) cell.machine = cells[2].machine;
   EXPECT_EQ(choose_cost(cells), CostKind::kTime) << "of one GPU";
 }
 
@@ -281,9 +256,9 @@ double to_us(double ms) { return 1e3 * ms / 2.0736; }
 
 /// A cell whose frame takes `ms` here, and `gpu_ms` on a GPU.
 CellRecord make_gpu_cell(const std::string& filter, double ms, double gpu_ms) {
-  CellRecord cell = records::make_cell("cubes", filter, 4.0);
-  cell.time_ms.moving = records::OwnTime{{ms, ms, ms, 3}, {ms, ms}};
-  records::ShaderFacts lookup, empty;
+  CellRecord cell = make_cell("cubes", filter, 4.0);
+  cell.time_ms.moving = OwnTime{{ms, ms, ms, 3}, {ms, ms}};
+  ShaderFacts lookup, empty;
   lookup.instructions = 50;
   lookup.compares = 4;
   lookup.loads = 2;
@@ -291,8 +266,7 @@ CellRecord make_gpu_cell(const std::string& filter, double ms, double gpu_ms) {
   empty.instructions = 27;
   empty.loads = 1;
   cell.gpu = {
-      {"one",
-       {{{"empty", 1, empty}, {"lookup", 1, lookup}}, records::GpuEstimateRecord{.lookup_us = to_us(gpu_ms)}, ""}}};
+      {"one", {{{"empty", 1, empty}, {"lookup", 1, lookup}}, GpuEstimateRecord{.lookup_us = to_us(gpu_ms)}, ""}}};
   return cell;
 }
 
@@ -308,8 +282,7 @@ struct Costs {
 TEST(GpuCosts, OfASoftwareRasteriser_NoTimesStandBesideEstimates) {
   std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 10), make_gpu_cell("b", 2, 20), make_gpu_cell("c", 3, 30)};
   for (const bool software : {false, true}) {
-    for (CellRecord& cell : cells)
-      cell.machine = records::MachineKind{"CPU", 2, "renderer", software, records::TimerKind::kWallClock};
+    for (CellRecord& cell : cells) cell.machine = MachineKind{"CPU", 2, "renderer", software, TimerKind::kWallClock};
     const Costs costs(cells);
     EXPECT_EQ(std::ranges::count(make_gpu_table(costs.costs).header, "measured here, ms"), software ? 0 : 1);
   }
@@ -346,8 +319,8 @@ TEST(GpuCosts, OfSeveralScenes_AreMeans) {
 TEST(GpuCosts, TheTableIsCheapestFirst_LessTheEmptyLookup) {
   std::vector<CellRecord> cells = {make_gpu_cell("a", 1, 30), make_gpu_cell("b", 2, 10)};
   cells.push_back(make_gpu_cell("wrong", 1, 1));
-  cells.back().status = records::CellStatus::kSuspect;
-  const records::TextTable table = make_gpu_table(Costs(cells).costs);
+  cells.back().status = CellStatus::kSuspect;
+  const TextTable table = make_gpu_table(Costs(cells).costs);
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_EQ(table.rows[0].front(), "b");
   EXPECT_EQ(table.rows[1].front(), "a");

@@ -1,8 +1,5 @@
 // Which of the candidates are called fast, balanced and best.
-#include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "report/analysis/advice.h"
 #include "report/analysis/advice_words.h"
@@ -12,9 +9,6 @@
 
 namespace shadowbench::analysis {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 std::vector<records::CellRecord> make_cells(const std::vector<Made>& all) {
   std::vector<records::CellRecord> cells;
@@ -55,7 +49,7 @@ TEST(Picks, ALargerMapWithoutAFilter_MayWin) {
   cells[2].map_size = 2048;
   const Advice advice = advise(cells, {});
   const std::vector<Pick> picks = analysis::list_picks(advice);
-  ASSERT_THAT(picks, ::testing::SizeIs(1));
+  ASSERT_THAT(picks, SizeIs(1));
   EXPECT_EQ(advice.keeping[0].configuration.name, "none, map 2048");
   EXPECT_EQ(picks[0].why, "the cheapest clearly better than none, map 0");
 }
@@ -75,7 +69,7 @@ TEST(Picks, OfErrorsAndCostsThatCannotBeToldApart_TheSmallerSeamIsBest_AndASeamT
 
 TEST(Picks, WhatIsMuchMoreWrong_IsNoBestOne_ThoughTooFewPhasesTellIt) {
   std::vector<records::CellRecord> cells = make_cells({{"none", 1, 0.09}, {"lispsm", 2, 0.0714}, {"psm", 3, 0.0443}});
-  EXPECT_THAT(list_picks(cells), testing::Contains("best: psm"));
+  EXPECT_THAT(list_picks(cells), Contains("best: psm"));
   for (records::CellRecord& cell : cells) cell.rmse_ci95 = records::Interval{0.0, 2.0};
   EXPECT_THAT(list_picks(cells), ElementsAre("fast: none"));
 }

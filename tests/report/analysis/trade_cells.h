@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::analysis {

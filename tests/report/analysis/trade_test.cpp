@@ -1,16 +1,10 @@
 #include "report/analysis/trade.h"
 
-#include <gmock/gmock.h>
-
-#include "trade_cells.h"
+#include "tests/report/analysis/trade_cells.h"
 
 namespace shadowbench::analysis {
 using namespace records;
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::EndsWith;
-using ::testing::SizeIs;
 
 Estimate error_of(const TradeScope& scope, std::size_t i, std::size_t which) {
   return *measure(scope.configurations[i], list_error_measures()[which]).estimate;
@@ -28,28 +22,27 @@ FrontPoint make_point(double error, double cost, std::optional<std::size_t> grou
 }
 
 TEST(TradeScopes, AreEachScene_AndAllTogetherFirst) {
-  const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"stack"})};
+  const std::vector<CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"stack"})};
   const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(3));
   EXPECT_EQ(scopes[0].title, "all 2 scenes · 960 × 540");
   EXPECT_EQ(scopes[1].title, "cubes · view main · 960 × 540");
   EXPECT_TRUE(scopes[0].is_joint);
   EXPECT_EQ(scopes[2].title, "stack · view main · 960 × 540");
-  const std::vector<records::CellRecord> one = {make_sweep_cell({"cubes"})};
+  const std::vector<CellRecord> one = {make_sweep_cell({"cubes"})};
   EXPECT_THAT(make_trade_scopes(one), SizeIs(1));
 }
 
 TEST(TradeScopes, APlaceThatTheAnswerLeavesOut_IsInNoMeanOverScenes) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"stack"}),
-                                            make_sweep_cell({"dark"})};
-  for (records::CellRecord& cell : cells) cell.truth.lit = 100;
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"stack"}), make_sweep_cell({"dark"})};
+  for (CellRecord& cell : cells) cell.truth.lit = 100;
   ASSERT_THAT(make_trade_scopes(cells)[0].configurations[0].cells, SizeIs(3));
   cells[2].truth.lit = 0;
   EXPECT_THAT(make_trade_scopes(cells)[0].configurations[0].cells, ElementsAre(&cells[0], &cells[1]));
 }
 
 TEST(TradeScopes, MapSizesShareAFront_PicturesDoNot) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({}), make_sweep_cell({})};
+  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({}), make_sweep_cell({})};
   cells[1].map_size = 2048;
   cells[2].width = 480;
   const auto scopes = make_trade_scopes(cells);
@@ -59,23 +52,23 @@ TEST(TradeScopes, MapSizesShareAFront_PicturesDoNot) {
 }
 
 TEST(TradeScopes, OfAll_HoldOnlyWhatEverySceneHas) {
-  const std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"cubes", "vsm", 4.0}),
-                                                  make_sweep_cell({"stack"})};
+  const std::vector<CellRecord> cells = {make_sweep_cell({"cubes"}), make_sweep_cell({"cubes", "vsm", 4.0}),
+                                         make_sweep_cell({"stack"})};
   const auto scopes = make_trade_scopes(cells);
   EXPECT_THAT(scopes[0].configurations, SizeIs(1));
 }
 
 TEST(TradeScopes, Labels_NameOnlyWhatDiffers) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "vsm", 2.0}),
-                                            make_sweep_cell({"cubes", "vsm", 4.0}), make_sweep_cell({})};
-  for (records::CellRecord& cell : cells) cell.params["store"] = std::string("rg32f");
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "vsm", 2.0}), make_sweep_cell({"cubes", "vsm", 4.0}),
+                                   make_sweep_cell({})};
+  for (CellRecord& cell : cells) cell.params["store"] = std::string("rg32f");
   const auto scopes = make_trade_scopes(cells);
   EXPECT_EQ(scopes[0].configurations[0].name, "vsm (radius 2)");
   EXPECT_EQ(scopes[0].configurations[2].name, "none");
 }
 
 TEST(TradeScopes, ScopesThatDifferOtherwise_HaveTheirOwnNames) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({})};
+  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({})};
   cells[1].fit = "sphere";
   const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(2));
@@ -88,7 +81,7 @@ TEST(TradeScopes, ScopesThatDifferOtherwise_HaveTheirOwnNames) {
 }
 
 TEST(TradeMeasures, Time_IsTheFiltersOwn_NotTheWholeLookup) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.25})};
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "vsm", 4.0, 2.0, 0.25})};
   cells[0].time_ms.lookup->median = 77.0;
   cells[0].time_ms.moving->median = 9.0;
   const auto scopes = make_trade_scopes(cells);
@@ -100,31 +93,31 @@ TEST(TradeMeasures, Time_IsTheFiltersOwn_NotTheWholeLookup) {
 }
 
 TEST(TradeMeasures, Rmse_HasItsIntervalOverPhases) {
-  records::CellRecord cell = make_sweep_cell({});
-  cell.rmse_ci95 = records::Interval{0.095, 0.105};
-  const std::vector<records::CellRecord> cells = {cell};
+  CellRecord cell = make_sweep_cell({});
+  cell.rmse_ci95 = Interval{0.095, 0.105};
+  const std::vector<CellRecord> cells = {cell};
   const auto scopes = make_trade_scopes(cells);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).low, 0.095);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).high, 0.105);
 }
 
 TEST(TradeMeasures, RmseOfOnePhase_HasTheTruthsStandardError) {
-  const std::vector<records::CellRecord> cells = {make_sweep_cell({})};
+  const std::vector<CellRecord> cells = {make_sweep_cell({})};
   const auto scopes = make_trade_scopes(cells);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).low, 0.099);
   EXPECT_DOUBLE_EQ(error_of(scopes[0], 0, 0).high, 0.101);
 }
 
 TEST(TradeMeasures, AllScenes_AreCombinedAsTheMeasureSays) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.3}),
-                                            make_sweep_cell({"stack", "none", 0.0, 1.0, 0.0, 0.4})};
+  std::vector<CellRecord> cells = {make_sweep_cell({"cubes", "none", 0.0, 1.0, 0.0, 0.3}),
+                                   make_sweep_cell({"stack", "none", 0.0, 1.0, 0.0, 0.4})};
   cells[0].artefact.leak = 0.1;
   cells[1].artefact.leak = 0.5;
   cells[0].error.flip = 0.1;
   cells[1].error.flip = 0.2;
   cells[0].cost.fetches = 1.0;
   cells[1].cost.fetches = 4.0;
-  cells[1].time_ms.moving = records::OwnTime{{9.0, 9.0, 9.0, 9}, {9.0, 9.0}};
+  cells[1].time_ms.moving = OwnTime{{9.0, 9.0, 9.0, 9}, {9.0, 9.0}};
   const TradeScope all = make_trade_scopes(cells)[0];
   EXPECT_NEAR(error_of(all, 0, 0).value, std::sqrt(0.125), 1e-12);
   // Both scenes' truths are uncertain by 0.001: sqrt((0.3 * 0.001)^2 + (0.4 * 0.001)^2) / (2 rms)
@@ -156,15 +149,15 @@ TEST(TradeMeasures, EveryCost_IsOneMeanOverScenes_WhateverItsIntervals) {
 }
 
 TEST(TradeFronts, WhatHasNoValue_IsLeftOutWithItsReason) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "mine"}),
-                                            make_sweep_cell({"cubes", "vsm"}), make_sweep_cell({"cubes", "esm"}),
-                                            make_sweep_cell({"cubes", "wrong"})};
+  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "mine"}),
+                                   make_sweep_cell({"cubes", "vsm"}), make_sweep_cell({"cubes", "esm"}),
+                                   make_sweep_cell({"cubes", "wrong"})};
   cells[1].cost.fetches.reset();
   cells[1].absent["cost.fetches"] = "the filter reads the map's samplers itself";
   cells[2].error.rmse.reset();
   cells[2].absent["error"] = "no truth";
   cells[3].error.rmse = std::nan("");
-  cells[4].status = records::CellStatus::kSuspect;
+  cells[4].status = CellStatus::kSuspect;
   const TradeScope scope = make_trade_scopes(cells)[0];
   const auto points = points_of(scope, 2);
   ASSERT_THAT(points, SizeIs(1));
@@ -183,7 +176,7 @@ TEST(TradeFronts, HoldWhatIsLessWrongThanAllThatCostsNoMore_AndNameTheCheapestTh
               ElementsAre(0, 1, 2, 2, 1));
   EXPECT_THAT(find_front({make_point(0.2, 1.0), make_point(0.1, 1.0)}), ElementsAre(1, 1)) << "as dear";
   EXPECT_THAT(find_front({make_point(0.2, 2.0), make_point(0.2, 1.0)}), ElementsAre(1, 1)) << "as wrong";
-  EXPECT_THAT(find_front({}), ::testing::IsEmpty());
+  EXPECT_THAT(find_front({}), IsEmpty());
 }
 
 TEST(TradeFronts, AreOfOneClass_AndWhatHasNoneIsComparedWithNothing) {
@@ -206,7 +199,7 @@ TEST(TradeFronts, WhatNeitherErrorNorCostTellsApart_IsTied) {
 }
 
 TEST(TradeFronts, OfFewerThanThreeCells_AreNotShown) {
-  std::vector<records::CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})};
+  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})};
   const auto has_any = [&] { return has_trade(make_trade_scopes(cells), list_cost_measures(cells)); };
   EXPECT_FALSE(has_any());
   cells.push_back(make_sweep_cell({"cubes", "esm"}));
@@ -214,15 +207,6 @@ TEST(TradeFronts, OfFewerThanThreeCells_AreNotShown) {
   cells[2].error = {};
   EXPECT_FALSE(has_any());
 }
-
-}  // namespace
-
-using namespace records;
-namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 std::vector<CostChart> make_width_charts_of(const std::vector<CellRecord>& cells) {
   return make_width_charts(make_trade_scopes(cells), list_cost_measures(cells));

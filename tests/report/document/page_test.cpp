@@ -1,21 +1,11 @@
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <regex>
-
-#include "report/document/blocks.h"
 #include "report/document/chart.h"
 #include "report/document/embedded.h"
 #include "report/document/markdown.h"
 #include "tests/report/pages/answer.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::document {
 namespace {
-
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 analysis::Estimate about(double value, double slack = 0.0) {
   return {value, value * (1.0 - slack), value * (1.0 + slack)};
@@ -121,7 +111,7 @@ TEST(Page, WithoutCharts_HasNoScript) {
 TEST(Page, LoadsNothingFromElsewhere) {
   const std::string html = write_html(make_example_page());
   EXPECT_THAT(html, Not(HasSubstr("@import")));
-  EXPECT_THAT(html, Not(::testing::ContainsRegex("(src|href)=\"(http|//)")));
+  EXPECT_THAT(html, Not(ContainsRegex("(src|href)=\"(http|//)")));
 }
 
 /// Relative luminance of "#rrggbb" (WCAG 2.1).
@@ -155,7 +145,7 @@ TEST(Table, WhatWasSaidFirst_Stays_AndWhatWasNotSaidIsNothing) {
   table.judge("cubes", "vsm", "2", Grade::kBad);
   table.judge("stack", "esm", "1", Grade::kGood);
   table.judge("cubes", "vsm", "3", Grade::kGood);
-  EXPECT_THAT(table.table.header, ::testing::ElementsAre("scene", "vsm", "esm"));
+  EXPECT_THAT(table.table.header, ElementsAre("scene", "vsm", "esm"));
   EXPECT_EQ(table.text_at(0, 1), "\u2717 2");
   EXPECT_EQ(table.text_at(0, 2), "–");
   EXPECT_EQ(table.grade_at(0, 2), Grade::kNone);
@@ -171,8 +161,8 @@ TEST(Chart, ShowsTheCurvesThatSayMost_AndSaysHowToSeeTheOthers) {
   }
   chart.series.emplace_back().title = "bound";
   show_most_telling(chart, weights);
-  EXPECT_THAT(list_shown(chart), ::testing::ElementsAre("a", "d", "e", "f", "g", "h", "bound"));
-  EXPECT_THAT(chart.notes, ::testing::Contains(HasSubstr("click a name")));
+  EXPECT_THAT(list_shown(chart), ElementsAre("a", "d", "e", "f", "g", "h", "bound"));
+  EXPECT_THAT(chart.notes, Contains(HasSubstr("click a name")));
   Chart few;
   show_most_telling(few, {{1.0, "a"}});
   EXPECT_TRUE(few.notes.empty());

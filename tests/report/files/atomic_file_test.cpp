@@ -1,26 +1,14 @@
-#include <gmock/gmock.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <filesystem>
-#include <functional>
-#include <set>
-
-#include "base/error.h"
-#include "base/files.h"
 #include "report/files/file_name.h"
 #include "report/files/folder_lock.h"
 #include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
-#include "tests/test_files.h"
 
 namespace shadowbench::files {
 namespace {
 
 using namespace records;
-using ::testing::HasSubstr;
 
 std::size_t count_files(const std::filesystem::path& dir) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(dir), {}));
@@ -108,22 +96,15 @@ TEST(AtomicFile, NameThatIsAFolder_IsAnOutputErrorAndLeavesNoTemporary) {
   EXPECT_EQ(count_files(folder.path()), 1u);
 }
 
-// A limit on file sizes stands for a full disk.
 TEST(AtomicFile, FullDisk_IsAnOutputErrorAndKeepsTheOldFile) {
   const TestFolder folder;
   write_text_file(folder.path() / "a.txt", "old");
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{4096, before.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
-  const std::string message = message_of([&] { write_text_file(folder.path() / "a.txt", std::string(100000, 'x')); });
-  const std::string short_message =
-      message_of([&] { write_text_file(folder.path() / "a.txt", std::string(4097, 'x')); });
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
-  EXPECT_THAT(message, HasSubstr("File too large"));
-  EXPECT_THAT(short_message, HasSubstr("File too large"));
+  for (const std::size_t bytes : {100000u, 4097u})
+    EXPECT_THAT(
+        with_file_limit(
+            4096,
+            [&] { return message_of([&] { write_text_file(folder.path() / "a.txt", std::string(bytes, 'x')); }); }),
+        HasSubstr("File too large"));
   EXPECT_EQ(read_text(folder.path() / "a.txt"), "old");
   EXPECT_EQ(count_files(folder.path()), 1u);
 }
@@ -137,7 +118,7 @@ TEST(FileName, AnyName_StaysInItsFolder) {
   for (const std::string name :
        {"../../etc/passwd", "..", ".", "", "/", "a/b", "a\\b", "-rf", ".hidden", "nul\0l", "ä"}) {
     const std::string stem = make_file_stem(name);
-    EXPECT_THAT(stem, ::testing::MatchesRegex("[A-Za-z0-9_][A-Za-z0-9_.-]*")) << name;
+    EXPECT_THAT(stem, MatchesRegex("[A-Za-z0-9_][A-Za-z0-9_.-]*")) << name;
     EXPECT_EQ(std::filesystem::path(stem + ".png").filename(), stem + ".png") << name;
   }
 }

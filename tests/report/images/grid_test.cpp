@@ -1,11 +1,6 @@
 #include "report/images/grid.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <limits>
 #include <span>
 
 #include "report/images/color_values.h"
@@ -17,9 +12,6 @@ namespace shadowbench::images {
 
 using namespace records;
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 bool overlaps(const Rect& a, const Rect& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
@@ -149,7 +141,7 @@ TEST(Grid, EveryText_IsShownWhole) {
   for (std::string text :
        {grid.title, grid.subtitle, grid.tiles[1].caption, grid.tiles[2].label, grid.tiles[4].message}) {
     text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
-    EXPECT_THAT(shown, ::testing::HasSubstr(text));
+    EXPECT_THAT(shown, HasSubstr(text));
   }
 }
 

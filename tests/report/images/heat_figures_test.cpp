@@ -1,14 +1,8 @@
 #include "report/images/heat_figures.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "report/images/color_values.h"
-#include "report/images/grid.h"
 #include "report/images/picture_io.h"
 #include "report/images/text.h"
 #include "tests/report/records/synthetic.h"
@@ -422,7 +416,7 @@ TEST(Text, WrappedLines_FitAndLoseNoCharacter) {
 }
 
 TEST(Text, ShortText_IsOneLineAndEmptyTextNone) {
-  EXPECT_THAT(wrap_text("vsm", {20, true}, 400), ::testing::ElementsAre("vsm"));
+  EXPECT_THAT(wrap_text("vsm", {20, true}, 400), ElementsAre("vsm"));
   EXPECT_TRUE(wrap_text("", {20, true}, 400).empty());
 }
 

@@ -1,24 +1,15 @@
 #include "report/pages/bias_page.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <functional>
 #include <glm/glm.hpp>
-#include <map>
-#include <numbers>
-#include <set>
 
 #include "report/records/format.h"
 #include "tests/report/pages/answer.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::pages {
 namespace {
 
 using document::Grade;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 const std::vector<double> kFactors = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
@@ -134,8 +125,7 @@ TEST(BiasPage, BeginsWithTheAnswer_AndJudgesEachMode) {
   EXPECT_EQ(document::verdict_of(page, "to ship", "esm").second, Grade::kBad);
   sweep = make_sweep();
   set_all(sweep, &records::BiasCell::contact_gap, {});
-  EXPECT_THAT(document::answer_of(make_bias_page("", {sweep})),
-              ::testing::StartsWith(of_two + "; contact gaps are absent"));
+  EXPECT_THAT(document::answer_of(make_bias_page("", {sweep})), StartsWith(of_two + "; contact gaps are absent"));
 }
 
 TEST(BiasPage, OfSeveralLights_HasAPartForEach_UnderItsName) {

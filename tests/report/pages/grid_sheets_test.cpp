@@ -1,13 +1,7 @@
 #include "report/pages/grid_sheets.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
-#include "base/files.h"
 #include "report/images/picture_io.h"
 #include "report/pages/frames_page.h"
 #include "report/pages/write_page.h"
@@ -18,8 +12,6 @@ namespace shadowbench::pages {
 namespace {
 
 using records::CellRecord;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr int kWidth = 200, kHeight = 120;
 
@@ -254,7 +246,7 @@ TEST(FramesPage, RecordsThatLackARule_AreBadInput) {
 }
 
 TEST(FramesPage, OfAnotherRunIntoTheFolder_IsRemoved) {
-  const ScratchFolder folder(make_temporary_folder_path(std::filesystem::temp_directory_path() / "frames", "test"));
+  const TestFolder folder;
   records::CellRecord cell = make_accumulated(4, "blue-noise", 0.25);
   write_report(folder.path(), {}, std::vector{cell});
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "frames.html"));

@@ -1,11 +1,4 @@
 // The page's script picks what advise() picks, in runs that nobody measured and under limits.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <fstream>
-#include <random>
 
 #include "report/analysis/advice.h"
 #include "report/pages/run_data.h"

@@ -1,40 +1,25 @@
 #include "report/pages/run_page.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <set>
-#include <sstream>
 
-#include "base/files.h"
 #include "report/analysis/findings.h"
 #include "report/images/picture_io.h"
 #include "report/pages/grid_sheets.h"
 #include "report/pages/tables.h"
 #include "report/pages/trade_section.h"
 #include "report/pages/write_page.h"
-#include "report/records/format.h"
 #include "report/records/json_io.h"
 #include "report/records/text_table.h"
 #include "tests/report/analysis/trade_cells.h"
-#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::pages {
 namespace {
 
 using namespace analysis;
 using namespace records;
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::SizeIs;
 
 std::set<std::string> list_links(const std::string& page) {
   static const std::regex kLink("(?:href|src)=\"([^\"]*)\"");
@@ -88,16 +73,16 @@ nlohmann::json read_data(const std::string& page) {
   return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
-std::string make_html(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+std::string make_html(const RunRecord& run, const std::vector<CellRecord>& cells) {
   return document::write_html(make_run_page(run, cells));
 }
 
-std::string make_summary(const records::RunRecord& run, const std::vector<records::CellRecord>& cells) {
+std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells) {
   return document::write_markdown(make_run_page(run, cells));
 }
 
-records::CellRecord make_illustrated_cell(const std::string& scene, const std::string& filter) {
-  records::CellRecord cell = make_cell(scene, filter, 4.0);
+CellRecord make_illustrated_cell(const std::string& scene, const std::string& filter) {
+  CellRecord cell = make_cell(scene, filter, 4.0);
   cell.images = {scene + "." + filter + ".png", scene + "." + filter + ".visibility.png", scene + ".depth.png",
                  scene + ".grid.png", scene + ".exr"};
   return cell;
@@ -105,8 +90,8 @@ records::CellRecord make_illustrated_cell(const std::string& scene, const std::s
 
 /// A row of the answer, and words of the configuration for the script that makes it anew.
 TEST(RunPage, TheBiasToShip_HasARow_WhereItWasSwept) {
-  const std::vector<records::CellRecord> cells = {make_cell("cubes", "none", 1.0)};
-  records::BiasCell ship;
+  const std::vector<CellRecord> cells = {make_cell("cubes", "none", 1.0)};
+  BiasCell ship;
   ship.scene = "cubes";
   ship.map_size = cells[0].map_size;
   ship.fit = cells[0].fit;
@@ -136,21 +121,21 @@ TEST(RunPage, Bars_HaveTheirNumbersAsText) {
 }
 
 TEST(RunPage, ASuspectCell_HasNoBar_SinceItWouldSetTheScale) {
-  records::CellRecord cell = make_attributed_cell("mine", 0.04, {0.0, 0.75, -0.25, 0.5});
+  CellRecord cell = make_attributed_cell("mine", 0.04, {0.0, 0.75, -0.25, 0.5});
   EXPECT_THAT(make_html(make_run(), {cell}), HasSubstr("Parts of the RMSE"));
-  cell.status = records::CellStatus::kSuspect;
+  cell.status = CellStatus::kSuspect;
   EXPECT_THAT(make_html(make_run(), {cell}), Not(HasSubstr("Parts of the RMSE")));
 }
 
 TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
-  std::vector<records::CellRecord> cells;
+  std::vector<CellRecord> cells;
   for (const auto& [filter, rmse, ms] :
        {std::tuple{"none", 0.09, 1.0}, {"cheap", 0.08, 2.0}, {"knee", 0.05, 3.0}, {"dear", 0.04, 12.0}}) {
     cells.push_back(make_attributed_cell(filter, rmse, {0.0, 0.1, 0.1, 0.8}));
-    cells.back().time_ms.moving = records::OwnTime{{ms, ms, ms, 9}, {ms, ms}};
+    cells.back().time_ms.moving = OwnTime{{ms, ms, ms, 9}, {ms, ms}};
     cells.back().images.picture = fmt::format("images/{}.png", filter);
     cells.back().images.truth_picture = "images/truth.png";
-    cells.back().images.hardest = records::TileRecord{900, 500, 60, 40};
+    cells.back().images.hardest = TileRecord{900, 500, 60, 40};
     cells.back().images.grid = "cubes.grid.png";
     cells.back().error.flip = rmse;
   }
@@ -180,7 +165,7 @@ TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
 }
 
 TEST(RunPage, AnswersForEachScene_AndSaysWhereTheChoiceDoesNotMatterOrWasNotTested) {
-  std::vector<records::CellRecord> cells;
+  std::vector<CellRecord> cells;
   for (const auto& [scene, filter, rmse, flip] : {std::tuple{"sun", "none", 0.09, 0.02},
                                                   {"sun", "soft", 0.05, 0.01},
                                                   {"spot", "none", 0.05, 0.02},
@@ -195,7 +180,7 @@ TEST(RunPage, AnswersForEachScene_AndSaysWhereTheChoiceDoesNotMatterOrWasNotTest
     cells.back().truth.lit = std::string(scene) == "lamp" ? 0 : 100000;
     cells.back().truth.penumbra = std::string(scene) == "lamp" ? 0 : 50000;
     const double ms = std::string(filter) == "none" ? 1.0 : 2.0;
-    cells.back().time_ms.moving = records::OwnTime{{ms, ms, ms, 9}, {ms, ms}};
+    cells.back().time_ms.moving = OwnTime{{ms, ms, ms, 9}, {ms, ms}};
   }
   const std::string page = make_html(make_run(), cells);
   EXPECT_THAT(page, HasSubstr(">sun</td><td>soft, RMSE 0.05</td>"));
@@ -215,7 +200,7 @@ TEST(RunPage, AnswersForEachScene_AndSaysWhereTheChoiceDoesNotMatterOrWasNotTest
 TEST(RunPage, WithoutErrorsOrTimes_SaysWhatCanBeSaid) {
   EXPECT_THAT(make_summary(make_run(), {make_cell("cubes", "vsm", 4.0)}),
               HasSubstr("vsm: 7.5 ms (CPU); the cheapest "));
-  records::CellRecord untimed = make_attributed_cell("vsm", 0.04, {0.0, 0.1, 0.1, 0.8});
+  CellRecord untimed = make_attributed_cell("vsm", 0.04, {0.0, 0.1, 0.1, 0.8});
   untimed.time_ms = {};
   EXPECT_THAT(make_summary(make_run(), {untimed}), HasSubstr("Nothing fits: none of 1 configurations can be judged"));
   untimed.teaching = true;
@@ -223,8 +208,8 @@ TEST(RunPage, WithoutErrorsOrTimes_SaysWhatCanBeSaid) {
 }
 
 TEST(RunPage, SceneWithSeveralMapsAndFits_IsNamedWithEach) {
-  std::vector<records::CellRecord> cells = {make_cell("cubes", "vsm", 4.0), make_cell("cubes", "vsm", 4.0),
-                                            make_cell("ball", "vsm", 4.0)};
+  std::vector<CellRecord> cells = {make_cell("cubes", "vsm", 4.0), make_cell("cubes", "vsm", 4.0),
+                                   make_cell("ball", "vsm", 4.0)};
   cells[1].map_size = 512;
   const std::string page = make_html(make_run(), cells);
   for (const char* link : {"<summary>cubes: Three cubes on a floor, map 1024<",
@@ -238,11 +223,11 @@ TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
   const TestFolder folder;
   std::vector<std::string> keys;
   for (const std::string scene : {"cubes", "we ird#%<scene>?"}) {
-    const records::CellRecord cell = make_illustrated_cell(scene, "vsm");
+    const CellRecord cell = make_illustrated_cell(scene, "vsm");
     for (const auto& path : {cell.images.picture, cell.images.visibility, cell.images.depth_map, cell.images.grid})
       images::write_grey_png(folder.path() / *path, images::Image(2, 2, 1));
     images::write_exr(folder.path() / *cell.images.exr, {{"a", {"Y"}, images::Image(2, 2, 1)}}, {});
-    records::write_cell(folder.path(), cell);
+    write_cell(folder.path(), cell);
     keys.push_back(cell.key);
   }
   const auto count_files = [&] {
@@ -260,22 +245,22 @@ TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
       EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(cell["picture"]))) << cell;
     return files;
   };
-  write_early_report(folder.path(), make_run(), records::read_cells(folder.path(), {keys.front()}), "1 of 2 scenes");
+  write_early_report(folder.path(), make_run(), read_cells(folder.path(), {keys.front()}), "1 of 2 scenes");
   EXPECT_THAT(read_text(folder.path() / "index.html"), HasSubstr("1 of 2 scenes"));
   EXPECT_FALSE(has_page(folder.path(), "run")) << "it is not whole";
   EXPECT_GE(count_files(), 3u);
   write_report(folder.path(), make_run(), keys);
   EXPECT_TRUE(has_page(folder.path(), "run"));
   EXPECT_GE(count_files(), 11u);
-  write_early_report(folder.path(), make_run(), records::read_cells(folder.path(), keys), "1 of 3 scenes");
+  write_early_report(folder.path(), make_run(), read_cells(folder.path(), keys), "1 of 3 scenes");
   EXPECT_FALSE(has_page(folder.path(), "run")) << "the page of another run is whole, and this one is not";
 }
 
 TEST(RunPage, Page_HoldsWhatTheReportIsOf) {
-  records::RunRecord run = make_run();
+  RunRecord run = make_run();
   run.warnings = {"something is odd"};
-  records::CellRecord failed = make_cell("cubes", "mine", 4.0);
-  failed.status = records::CellStatus::kCrashed;
+  CellRecord failed = make_cell("cubes", "mine", 4.0);
+  failed.status = CellStatus::kCrashed;
   failed.message = "signal 11";
   const std::string page = make_html(run, {make_illustrated_cell("cubes", "vsm"), failed});
   for (const char* text : {"cubes: Three cubes on a floor", "Some CPU", "something is odd", "crashed: signal 11",
@@ -285,7 +270,7 @@ TEST(RunPage, Page_HoldsWhatTheReportIsOf) {
 }
 
 TEST(RunPage, LargeRun_LeavesTablesOfScenesToTheCsvFiles_AndKeepsPictures) {
-  std::vector<records::CellRecord> cells(kMostCellsInDetail, make_cell("cubes", "vsm", 4.0));
+  std::vector<CellRecord> cells(kMostCellsInDetail, make_cell("cubes", "vsm", 4.0));
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i].params["radius"] = static_cast<double>(i);
   cells.front().images.grid = "cubes.grid.png";
   EXPECT_THAT(make_summary(make_run(), cells), HasSubstr("What it costs: "));
@@ -306,21 +291,20 @@ TEST(Report, OfNoCell_IsWritten) {
   expect_balanced(read_text(folder.path() / "index.html"));
 }
 
-std::string field(const records::TextTable& table, std::size_t row, const std::string& column) {
+std::string field(const TextTable& table, std::size_t row, const std::string& column) {
   const auto found = std::find(table.header.begin(), table.header.end(), column);
   EXPECT_NE(found, table.header.end()) << column;
   return table.rows.at(row).at(static_cast<std::size_t>(found - table.header.begin()));
 }
 
-records::CellRecord make_empty() {
-  records::CellRecord empty;
+CellRecord make_empty() {
+  CellRecord empty;
   empty.filter = "mine";
   return empty;
 }
 
 TEST(CostTable, Rows_AreAsLongAsTheHeader) {
-  const records::TextTable table =
-      make_cost_table({"cubes", {make_cell("cubes", "vsm", 4.0), make_empty()}}, make_run().gl);
+  const TextTable table = make_cost_table({"cubes", {make_cell("cubes", "vsm", 4.0), make_empty()}}, make_run().gl);
   EXPECT_THAT(table.rows, Each(SizeIs(table.header.size())));
   EXPECT_THAT(table.header, Contains("lookup, ms (CPU), median [quartiles]"));
   EXPECT_THAT(table.rows[0], Contains("4 [3.92, 4.08]"));
@@ -328,13 +312,13 @@ TEST(CostTable, Rows_AreAsLongAsTheHeader) {
 }
 
 TEST(AccuracyTable, HoldsErrorsPartsAndArtefacts) {
-  records::CellRecord cell = make_attributed_cell("vsm", 0.04, {0.001, 0.71, 0.089, 0.2});
+  CellRecord cell = make_attributed_cell("vsm", 0.04, {0.001, 0.71, 0.089, 0.2});
   cell.artefact.acne = 0.0;
   cell.artefact.leak = 0.0421;
   cell.artefact.contact_gap = 0.00012;
   cell.artefact.noise = 0.5;
-  cell.rmse_ci95 = records::Interval{0.03, 0.05};
-  const records::TextTable table = make_accuracy_table({"cubes", {cell}});
+  cell.rmse_ci95 = Interval{0.03, 0.05};
+  const TextTable table = make_accuracy_table({"cubes", {cell}});
   EXPECT_EQ(field(table, 0, "RMSE to the area truth [95 % over phases]"), "0.04 [0.03, 0.05]");
   EXPECT_EQ(field(table, 0, "kernel width (class)"), "0.65 texels (medium)");
   EXPECT_EQ(field(table, 0, "mean signed error"), "-0.005");
@@ -349,45 +333,36 @@ TEST(AccuracyTable, HoldsErrorsPartsAndArtefacts) {
 }
 
 TEST(AccuracyTable, WhatDoesNotExist_IsADash) {
-  const records::TextTable table = make_accuracy_table({"cubes", {make_empty(), make_empty()}});
+  const TextTable table = make_accuracy_table({"cubes", {make_empty(), make_empty()}});
   ASSERT_THAT(table.rows, Each(SizeIs(table.header.size())));
-  for (std::size_t i = 1; i < table.header.size(); ++i)
-    EXPECT_EQ(table.rows[0][i], records::kNothing) << table.header[i];
+  for (std::size_t i = 1; i < table.header.size(); ++i) EXPECT_EQ(table.rows[0][i], kNothing) << table.header[i];
 }
 
 TEST(AccuracyTable, DominatingPart_IsNamedOnlyWhereOneDoes) {
-  const records::TextTable table = make_accuracy_table({"cubes",
-                                                        {make_attributed_cell("a", 0.04, {0.0, 0.5, 0.1, 0.4}),
-                                                         make_attributed_cell("b", 0.0005, {0.0, 0.9, 0.1, 0.0})}});
+  const TextTable table = make_accuracy_table({"cubes",
+                                               {make_attributed_cell("a", 0.04, {0.0, 0.5, 0.1, 0.4}),
+                                                make_attributed_cell("b", 0.0005, {0.0, 0.9, 0.1, 0.0})}});
   EXPECT_EQ(field(table, 0, "dominating part, first phase"), "none");
   EXPECT_EQ(field(table, 1, "dominating part, first phase"), "none: within the truth's own error");
 }
 
 class WritePage : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::remove_all(report_); }
-  void TearDown() override { std::filesystem::remove_all(report_); }
-
   /// Writes a page into a folder of the report, and reads its HTML back.
   std::string write(const std::string& folder, const std::string& command) const {
-    write_page(report_ / folder, command, {"A page", {}, {}});
+    write_page(report_.path() / folder, command, {"A page", {}, {}});
     return read(folder, command);
   }
-
   std::string read(const std::string& folder, const std::string& command) const {
-    std::ifstream stream(report_ / folder / (command + ".html"));
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
+    return report_.read(folder + "/" + command + ".html");
   }
 
-  const std::filesystem::path report_ =
-      std::filesystem::temp_directory_path() / ("shadowbench.write_page_test." + std::to_string(::getpid()));
+  const TestFolder report_;
 };
 
 TEST_F(WritePage, LinksThePagesThatLieInTheSameReport) {
   write("bias", "bias");
-  write_text_file(report_ / "index.html", "");
+  report_.write("index.html", "");
   EXPECT_THAT(write("stress", "stress"),
               AllOf(HasSubstr("href=\"../index.html\""), HasSubstr("href=\"../bias/bias.html\""),
                     Not(HasSubstr("href=\"../tune/tune.html\""))));
@@ -401,14 +376,14 @@ TEST_F(WritePage, LinksPagesThatWereWrittenEarlier_WithTheNewOne) {
 }
 
 TEST_F(WritePage, LinksNoPipe) {
-  std::filesystem::create_directories(report_ / "stress");
-  ASSERT_EQ(mkfifo((report_ / "stress" / "stress.html").c_str(), 0600), 0);
+  std::filesystem::create_directories(report_.path() / "stress");
+  ASSERT_EQ(mkfifo((report_.path() / "stress" / "stress.html").c_str(), 0600), 0);
   EXPECT_THAT(write("bias", "bias"), Not(HasSubstr("stress.html")));
 }
 
 /// A folder of the user's choice may lie beside somebody else's index.html.
 TEST_F(WritePage, LinksNothingOutsideTheReport) {
-  write_text_file(report_ / "index.html", "");
+  report_.write("index.html", "");
   EXPECT_THAT(write("mine", "stress"), Not(HasSubstr("index.html")));
 }
 

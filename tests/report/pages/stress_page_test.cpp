@@ -1,21 +1,13 @@
 #include "report/pages/stress_page.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "report/records/stress_record.h"
 #include "tests/report/pages/answer.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::pages {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 records::StressCase make_case() {
   records::StressCase item;
@@ -118,8 +110,8 @@ TEST(StressTables, CaseThatNeverChanges_IsOkAllOver) {
 TEST(StressTables, LimitsStandBesideTheirTheory) {
   const records::TextTable table = make_limit_table(make_record());
   ASSERT_THAT(table.rows, SizeIs(2));
-  EXPECT_THAT(table.rows[0], ::testing::ElementsAre("esm-exponent", "esm: r16f, linear (GL)", "broken", "ln(65504)",
-                                                    "11.09", "20", "1.803", "overflow, 10 %", "disagrees"));
+  EXPECT_THAT(table.rows[0], ElementsAre("esm-exponent", "esm: r16f, linear (GL)", "broken", "ln(65504)", "11.09", "20",
+                                         "1.803", "overflow, 10 %", "disagrees"));
   EXPECT_EQ(table.rows[1][4], "none");
 }
 
@@ -190,11 +182,11 @@ TEST(StressChart, HasCasesTheoryAndBound_BrokenAtTheTopWhereNothingIsMeasured) {
   EXPECT_TRUE(chart.series[1].filled);
   EXPECT_EQ(chart.series[1].points[0].x.value, 20.0);
   EXPECT_EQ(chart.series[1].points[0].y.value, chart.y.high);
-  EXPECT_THAT(chart.series[1].points[0].details, ::testing::Contains("7 texels overflowed"));
+  EXPECT_THAT(chart.series[1].points[0].details, Contains("7 texels overflowed"));
   EXPECT_EQ(chart.series[2].title, "bound, 0.02");
   EXPECT_EQ(chart.series[3].title, "theoretical limits");
   for (const document::ChartPoint& point : chart.series[3].points) EXPECT_EQ(point.x.value, 11.09);
-  EXPECT_THAT(chart.notes, ::testing::Contains("some cases have no theoretical limit"));
+  EXPECT_THAT(chart.notes, Contains("some cases have no theoretical limit"));
 }
 
 TEST(StressChart, LevelsOfAVariant_ShareTheirColour_TheModelIsDashed) {
@@ -220,10 +212,10 @@ TEST(StressChart, AtMostSixCases_AreShown_TheWorstAndNone) {
     axis.cases.push_back(axis.cases.back());
     axis.cases.back().level = "model";
   }
-  EXPECT_THAT(document::list_shown(make_stress_chart(axis).value()),
-              ::testing::ElementsAre("none: r16f, linear (GL)", "f4: r16f, linear (GL)", "f5: r16f, linear (GL)",
-                                     "f6: r16f, linear (GL)", "f7: r16f, linear (GL)", "f8: r16f, linear (GL)",
-                                     "bound, 0.02", "theoretical limits"));
+  EXPECT_THAT(
+      document::list_shown(make_stress_chart(axis).value()),
+      ElementsAre("none: r16f, linear (GL)", "f4: r16f, linear (GL)", "f5: r16f, linear (GL)", "f6: r16f, linear (GL)",
+                  "f7: r16f, linear (GL)", "f8: r16f, linear (GL)", "bound, 0.02", "theoretical limits"));
 }
 
 TEST(StressChart, CaseWithNothingMeasured_IsNotDrawn) {

@@ -1,7 +1,5 @@
 #include "report/pages/trade_section.h"
 
-#include <gmock/gmock.h>
-
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -11,25 +9,17 @@
 #include "report/pages/run_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/json_io.h"
-#include "report/records/records.h"
 #include "tests/report/analysis/trade_cells.h"
-#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::pages {
 namespace {
 
 using namespace analysis;
 using namespace records;
-using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::SizeIs;
-using ::testing::StartsWith;
 
 constexpr const char* kHostile = "</script><script>alert('1', \"2\")</script><!--";
 
-std::string write_trade(const std::vector<records::CellRecord>& cells) {
+std::string write_trade(const std::vector<CellRecord>& cells) {
   return document::write_html({"", {*make_trade_section(make_run(), cells)}, {}});
 }
 
@@ -39,11 +29,10 @@ nlohmann::json read_charts(const std::string& page) {
   return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
-std::string write_and_read(const TestFolder& folder, const std::vector<records::CellRecord>& cells,
-                           const std::string& file) {
+std::string write_and_read(const TestFolder& folder, const std::vector<CellRecord>& cells, const std::string& file) {
   std::vector<std::string> keys;
-  for (const records::CellRecord& cell : cells) {
-    records::write_cell(folder.path(), cell);
+  for (const CellRecord& cell : cells) {
+    write_cell(folder.path(), cell);
     keys.push_back(cell.key);
   }
   write_report(folder.path(), make_run(), keys);
@@ -102,9 +91,9 @@ TEST(TradeSection, Fronts_AreChartsOfEveryErrorAndCost) {
 }
 
 TEST(TradeSection, Fronts_OfALargeRun_LeaveOutWhatIsBeaten) {
-  std::vector<records::CellRecord> cells;
+  std::vector<CellRecord> cells;
   for (int light = 0; cells.size() <= kMostCellsInDetail; ++light) {
-    for (records::CellRecord cell : make_crossing_cells("cubes")) {
+    for (CellRecord cell : make_crossing_cells("cubes")) {
       cell.light = std::to_string(light) + ",45";
       cells.push_back(cell);
     }
@@ -152,8 +141,8 @@ TEST(TradeSection, MapsOfSeveralFits_AreACurveEach) {
 }
 
 TEST(TradeSection, HostileTexts_EndNoElement) {
-  std::vector<records::CellRecord> cells = make_crossing_cells(kHostile);
-  for (records::CellRecord& cell : cells) {
+  std::vector<CellRecord> cells = make_crossing_cells(kHostile);
+  for (CellRecord& cell : cells) {
     if (cell.filter == "poisson") cell.filter = kHostile;
     cell.params["name"] = std::string(kHostile);
     cell.images.picture = kHostile;
@@ -187,34 +176,33 @@ TEST(TradeSection, OfAFewCells_IsNotThere) {
 
 constexpr std::size_t kLongestLine = 100;
 
-analysis::Demand max_rmse(double most) { return {&analysis::limit_table()[0], most}; }
+Demand max_rmse(double most) { return {&limit_table()[0], most}; }
 
-records::CellRecord measure(const std::string& scene, const std::string& filter, double ms, double rmse) {
-  records::CellRecord cell = make_cell(scene, filter, ms);
+CellRecord measure(const std::string& scene, const std::string& filter, double ms, double rmse) {
+  CellRecord cell = make_cell(scene, filter, ms);
   cell.cost.prefilter_texels = 0;
-  cell.ratio_to_none.moving = records::Ratio{ms / 4.0, {ms / 4.1, ms / 3.9}};
+  cell.ratio_to_none.moving = Ratio{ms / 4.0, {ms / 4.1, ms / 3.9}};
   cell.error.rmse = rmse;
   cell.truth.se = 0.001;
   cell.absent.erase("error");
   return cell;
 }
 
-std::vector<records::CellRecord> make_cells() {
+std::vector<CellRecord> make_cells() {
   return {measure("cubes", "none", 1.0, 0.04), measure("stack", "none", 1.0, 0.06),
           measure("cubes", "wide", 4.0, 0.02), measure("stack", "wide", 6.0, 0.0295),
           measure("cubes", "huge", 9.0, 0.01), measure("stack", "huge", 9.0, 0.01)};
 }
 
-analysis::Advice advise_on(const std::vector<records::CellRecord>& cells, std::vector<analysis::Demand> demands) {
-  analysis::AdviceRequest request;
+Advice advise_on(const std::vector<CellRecord>& cells, std::vector<Demand> demands) {
+  AdviceRequest request;
   request.demands = std::move(demands);
-  return analysis::advise(cells, request);
+  return advise(cells, request);
 }
 
-std::vector<std::string> list_labels(const std::vector<records::CellRecord>& cells) {
+std::vector<std::string> list_labels(const std::vector<CellRecord>& cells) {
   std::vector<std::string> labels;
-  for (const analysis::Configuration& configuration : analysis::list_configurations(analysis::point_to(cells)))
-    labels.push_back(configuration.name);
+  for (const Configuration& configuration : list_configurations(point_to(cells))) labels.push_back(configuration.name);
   return labels;
 }
 
@@ -225,22 +213,22 @@ std::vector<std::string> list_names(const nlohmann::json& json) {
 }
 
 TEST(Configurations, CellsOfOneChoice_AreTogetherWhateverTheScene) {
-  std::vector<records::CellRecord> cells = make_cells();
+  std::vector<CellRecord> cells = make_cells();
   cells[5].view = "top";
-  const auto pointers = analysis::point_to(cells);
-  const auto configurations = analysis::list_configurations(pointers);
+  const auto pointers = point_to(cells);
+  const auto configurations = list_configurations(pointers);
   ASSERT_EQ(configurations.size(), 3U);
   EXPECT_THAT(configurations[1].cells, ElementsAre(&cells[2], &cells[3]));
   EXPECT_EQ(configurations[0].surroundings, configurations[1].surroundings);
-  const auto places = analysis::list_places(pointers);
+  const auto places = list_places(pointers);
   ASSERT_EQ(places.size(), 3U);
-  EXPECT_EQ(analysis::describe_place(places[0], places), "cubes");
-  EXPECT_EQ(analysis::describe_place(places[2], places), "stack (top)");
+  EXPECT_EQ(describe_place(places[0], places), "cubes");
+  EXPECT_EQ(describe_place(places[2], places), "stack (top)");
 }
 
 TEST(Configurations, Labels_NameTheMapAndWhatDiffers) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "vsm", 1.0, 0.1), measure("cubes", "vsm", 1.0, 0.1),
-                                            measure("cubes", "none", 1.0, 0.1)};
+  std::vector<CellRecord> cells = {measure("cubes", "vsm", 1.0, 0.1), measure("cubes", "vsm", 1.0, 0.1),
+                                   measure("cubes", "none", 1.0, 0.1)};
   cells[1].params["radius"] = 8.0;
   EXPECT_THAT(list_labels(cells), ElementsAre("vsm (radius 4)", "vsm (radius 8)", "none"));
   cells[2].width = 480;
@@ -251,8 +239,8 @@ TEST(Configurations, Labels_NameTheMapAndWhatDiffers) {
 }
 
 TEST(Configurations, LengthsInUnitsOfAScenesMap_MakeNoDifference) {
-  std::vector<records::CellRecord> cells = {measure("cubes", "a", 1.0, 0.1), measure("cubes", "b", 1.0, 0.1)};
-  for (records::CellRecord& cell : cells) cell.bias.constant.depth = 0.01;
+  std::vector<CellRecord> cells = {measure("cubes", "a", 1.0, 0.1), measure("cubes", "b", 1.0, 0.1)};
+  for (CellRecord& cell : cells) cell.bias.constant.depth = 0.01;
   cells[0].map_scale = {0.1, 10.0};
   cells[1].map_scale = {0.2, 10.0};
   EXPECT_EQ(list_labels(cells)[0], "a");
@@ -270,8 +258,7 @@ TEST(AdviceText, BeginsWithThePicks_ThenTheFastOne) {
 
 TEST(AdviceText, ALimitKeptWithinTheIntervalOverPhases_SaysSo) {
   auto cells = make_cells();
-  for (records::CellRecord& cell : cells)
-    cell.rmse_ci95 = records::Interval{*cell.error.rmse - 0.002, *cell.error.rmse + 0.002};
+  for (CellRecord& cell : cells) cell.rmse_ci95 = Interval{*cell.error.rmse - 0.002, *cell.error.rmse + 0.002};
   EXPECT_THAT(make_advice_text(make_run(), advise_on(cells, {max_rmse(0.03)})),
               HasSubstr("0.0295  stack  kept by less than its interval over the phases of the map reaches, 0.002\n"));
 }
@@ -292,7 +279,7 @@ TEST(AdviceText, Evidence_IsQuoted) {
 
 TEST(AdviceText, LimitOnTimeWithinTheSpread_IsSaid) {
   const auto cells = make_cells();
-  const analysis::Demand limit{&analysis::cost_spec(analysis::CostKind::kTime), 4.51};
+  const Demand limit{&cost_spec(CostKind::kTime), 4.51};
   const std::string text = make_advice_text(make_run(), advise_on(cells, {limit}));
   EXPECT_THAT(text, HasSubstr("  --max-ms 4.51  4.5 ms (CPU)  cubes  its upper quartile, 4.59, is over it\n"));
 }
@@ -341,12 +328,12 @@ TEST(AdviceJson, Fields_AreTheSameWhateverTheAnswer) {
 
 TEST(AdviceJson, Claims_HaveNoSize) {
   auto cells = make_cells();
-  analysis::AdviceRequest request;
+  AdviceRequest request;
   request.demands.resize(1);
-  for (records::CellRecord& cell : cells) cell.penumbra.growth = 1.0;
-  for (records::CellRecord& cell : cells)
+  for (CellRecord& cell : cells) cell.penumbra.growth = 1.0;
+  for (CellRecord& cell : cells)
     if (cell.filter == "none") cell.claims = {"contact-hardening"};
-  const auto json = make_advice_json(make_run(), analysis::advise(cells, request));
+  const auto json = make_advice_json(make_run(), advise(cells, request));
   EXPECT_EQ(json["keeping"][0]["limits"].dump(),
             R"([{"claim":"contact-hardening","kept":true,"option":"--requires"}])");
   EXPECT_EQ(json["failing"][0]["limits"][0]["kept"], false);
@@ -358,9 +345,8 @@ TEST(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
     if (i % 2 == 0)
       cells[i].artefact.leak = 0.0;
     else
-      records::explain(cells[i], "artefact.leak", {"too few", true});
-  const analysis::Demand leak{
-      &*std::ranges::find(analysis::limit_table(), std::string("artefact.leak"), &analysis::Quantity::field), 0.1};
+      explain(cells[i], "artefact.leak", {"too few", true});
+  const Demand leak{&*std::ranges::find(limit_table(), std::string("artefact.leak"), &Quantity::field), 0.1};
   const auto limits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03), leak}))["keeping"][0]["limits"];
   EXPECT_TRUE(limits[0]["nothing_to_see"].empty());
   EXPECT_EQ(limits[1]["nothing_to_see"].dump(), R"([{"reason":"too few","scene":"stack","view":"main"}])");

@@ -2,12 +2,9 @@
 
 #include "report/records/bias_record.h"
 
-#include <gmock/gmock.h>
 #include <sys/stat.h>
 
-#include <fstream>
-
-#include "base/files.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::records {
 namespace {
@@ -27,8 +24,8 @@ TEST(BiasSweep, Csv_HasARowPerAmount_AbsentIsEmpty) {
   fixed.filter = "none";
   fixed.acne = 0.125;
   EXPECT_THAT(make_bias_csv({sweep}),
-              ::testing::EndsWith("\r\nsteps,,0,constant,depth,\"poisson (taps 8, radius 2)\",0.5,0.5,0.005,,,0.25,\r\n"
-                                  "steps,,0,midpoint,,none,,,,,,0.125,\r\n"));
+              EndsWith("\r\nsteps,,0,constant,depth,\"poisson (taps 8, radius 2)\",0.5,0.5,0.005,,,0.25,\r\n"
+                       "steps,,0,midpoint,,none,,,,,,0.125,\r\n"));
 }
 
 TEST(BiasToShip, IsReadFromTheReportsFolder_AsItWasWritten) {

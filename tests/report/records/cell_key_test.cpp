@@ -1,24 +1,14 @@
 #include "report/records/cell_key.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "reference/metrics/metric_table.h"
 #include "report/files/file_name.h"
 #include "report/records/csv_tables.h"
-#include "synthetic.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::records {
 namespace {
-
-using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::SizeIs;
 
 // Short names say what differs, and no more.
 
@@ -88,10 +78,6 @@ TEST(CellKey, OnlySixteenHexadecimalDigits_AreAKey) {
   EXPECT_FALSE(is_cell_key("0123456789ABCDEF"));
   EXPECT_FALSE(is_cell_key(""));
 }
-
-}  // namespace
-
-namespace {
 
 CellRecord make_named(const char* filter, const char* fit = "tight", int map_size = 1024, ParamMap params = {}) {
   CellRecord cell;
@@ -268,12 +254,12 @@ TEST(AccuracyCsv, EveryFieldOfTheRecord_HasItsColumnAndItsMeaning) {
   std::vector<std::string> names;
   for (const CsvColumn& column : list_csv_columns(CsvTable::kAccuracy)) {
     EXPECT_FALSE(column.meaning.empty()) << column.name;
-    EXPECT_THAT(names, ::testing::Not(::testing::Contains(column.name)));
+    EXPECT_THAT(names, Not(Contains(column.name)));
     names.push_back(column.name);
   }
   for (const metrics::Metric& metric : metrics::metric_table()) {
     const bool elsewhere = metric.group() == "cost" || metric.group() == "map_scale";
-    if (!elsewhere) EXPECT_THAT(names, ::testing::Contains(column_of(std::string(metric.path))));
+    if (!elsewhere) EXPECT_THAT(names, Contains(column_of(std::string(metric.path))));
   }
 }
 
@@ -308,7 +294,7 @@ TEST(ErrorParts, WithoutANumericPart_SaySo) {
 
 TEST(ErrorParts, SharesBelowZeroOrAboveHundred_AreExplained_OthersAreNot) {
   for (const auto& shares : {records::PartShares{0.0, 1.03, -0.03, 0.0}, {-0.004, -0.004, 1.008, 0.0}})
-    EXPECT_THAT(records::describe_shares(shares), ::testing::EndsWith("; parts below 0 offset the others"));
+    EXPECT_THAT(records::describe_shares(shares), EndsWith("; parts below 0 offset the others"));
   EXPECT_EQ(records::describe_shares({0.0, 0.0, 1.004, -0.004}),
             "numeric 0 %, estimator 0 %, discretisation 100 %, model 0 %");
 }

@@ -1,13 +1,5 @@
 #include "report/records/gpu_times.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-
-#include "base/error.h"
-#include "base/files.h"
 #include "report/pages/tune_page.h"
 #include "report/records/tuned_record.h"
 #include "tests/report/pages/answer.h"
@@ -16,23 +8,16 @@
 namespace shadowbench::records {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 // Times of a browser's GPU in place of a run's.
 
 constexpr const char* kFilter = R"({"median": 2, "interval": [1.5, 2.5], "rounds": 11})";
 
 class GpuTimesTest : public ::testing::Test {
  protected:
-  const ScratchFolder scratch_{make_temporary_folder_path(std::filesystem::temp_directory_path() / "times", "test")};
-  const std::filesystem::path file_ = scratch_.path() / "gpu-times.json";
+  const TestFolder folder_;
+  const std::filesystem::path file_ = folder_.path() / "gpu-times.json";
 
-  GpuTimes read(const std::string& text) const {
-    std::filesystem::create_directories(scratch_.path());
-    std::ofstream(file_) << text;
-    return read_gpu_times(file_);
-  }
+  GpuTimes read(const std::string& text) const { return read_gpu_times(folder_.write("gpu-times.json", text)); }
 
   static std::string write(const std::string& map, const std::string& prefilter, const std::string& key = "a") {
     return R"({"schema": "shadowbench gpu-times 1", "renderer": "A GPU", "isSoftware": false, "cells": {")" + key +
@@ -161,10 +146,8 @@ TEST(TunedJson, ReadsBackAsItWasWritten) {
   TunedFilterRecord filter = make_filter({0.10, 0.05}, {0.12, 0.08});
   filter.params["min_variance"] = 3.881e-08;
   filter.params["flag"] = true;
-  const auto file = std::filesystem::temp_directory_path() / "shadowbench.tuned_json_test.json";
-  write_text_file(file, make_tuned_json(make_record(filter)));
-  const TunedSettings settings = read_tuned_settings(file);
-  std::filesystem::remove(file);
+  const TestFolder folder;
+  const TunedSettings settings = read_tuned_settings(folder.write("tuned.json", make_tuned_json(make_record(filter))));
   EXPECT_EQ(settings.metric, "rmse");
   EXPECT_EQ(settings.map_size, 1024);
   ASSERT_EQ(settings.filters.size(), 1u);

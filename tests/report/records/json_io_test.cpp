@@ -1,26 +1,16 @@
 #include "report/records/json_io.h"
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
 #include <chrono>
-#include <cstdlib>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "base/error.h"
-#include "base/files.h"
 #include "reference/metrics/metric_table.h"
 #include "report/records/json_values.h"
-#include "synthetic.h"
-#include "tests/test_files.h"
+#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::records {
 namespace {
 
 using nlohmann::json;
-using ::testing::HasSubstr;
 
 // Debian's python3-jsonschema is the judge of the schema.
 bool is_valid(const std::filesystem::path& file, const std::filesystem::path& schema) {
@@ -151,8 +141,8 @@ TEST(JsonIo, FilesOfACell_AreAllThatItNames) {
   const std::vector<std::string> files = list_files(cell);
   EXPECT_EQ(files.size(), 16u);
   for (const auto& file : {cell.images.grid, cell.images.frames, cell.images.all_lights, cell.accumulation->picture})
-    EXPECT_THAT(files, ::testing::Contains(file.value()));
-  EXPECT_THAT(files, ::testing::Not(::testing::Contains(cell.images.parts.value())));
+    EXPECT_THAT(files, Contains(file.value()));
+  EXPECT_THAT(files, Not(Contains(cell.images.parts.value())));
 }
 
 TEST(JsonIo, FullCell_HasNoNull) { EXPECT_EQ(to_json(make_full_cell()).at("absent"), json::object()); }

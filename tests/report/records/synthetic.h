@@ -1,16 +1,5 @@
 #pragma once
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-
-#include "base/files.h"
 #include "report/images/grid.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"

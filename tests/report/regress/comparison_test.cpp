@@ -1,22 +1,13 @@
 #include "report/regress/comparison.h"
 
-#include <gmock/gmock.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <fstream>
-#include <limits>
-#include <random>
-
-#include "base/error.h"
 #include "report/records/cell_key.h"
 #include "report/regress/tolerances.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::regress {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr int kWidth = 32;
 constexpr int kHeight = 16;
@@ -57,13 +48,23 @@ BaselineCell expect(const ActualCell& cell) {
   return {name_cell(r), r.map_size, r.width, r.height, cell.origin, read_values(r)};
 }
 
+Comparison compare(const ActualCell& now, const ActualCell& before, const Tolerances& tolerances = Tolerances()) {
+  return compare_cell(now, expect(before), before.images, tolerances);
+}
+
 /// Compares what `change` makes of a cell with the cell as it was.
 template <class Change>
-Comparison compare_changed(const Change& change) {
-  const ActualCell before = make_cell();
+Comparison compare_changed(const Change& change, const ActualCell& before = make_cell()) {
   ActualCell now = before;
   change(now);
-  return compare_cell(now, expect(before), before.images, Tolerances());
+  return compare(now, before);
+}
+
+/// A cell whose pixels may all differ by so much for rounding.
+ActualCell make_rounded_cell(float bound) {
+  ActualCell cell = make_cell();
+  cell.images.uncertainty.rounding = make_image(bound);
+  return cell;
 }
 
 TEST(Comparison, OfTheSame_FindsNothing) {
@@ -96,30 +97,28 @@ TEST(Comparison, RoundingToHalf_IsNoChange) {
 
 TEST(Comparison, NotFinite_IsAChange_ExcusedOrNot) {
   for (const float bound : {0.0f, 1.0f, images::kMayFlip}) {
-    ActualCell before = make_cell();
-    before.images.uncertainty.rounding = make_image(bound);
+    ActualCell before = make_rounded_cell(bound);
     ActualCell now = before;
     *now.images.visibility.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged) << bound;
+    EXPECT_EQ(compare(now, before).outcome, Outcome::kChanged) << bound;
   }
 }
 
 TEST(Comparison, NotFiniteAsBefore_IsNoChange) {
   ActualCell cell = make_cell();
   *cell.images.visibility.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(compare_cell(cell, expect(cell), cell.images, Tolerances()).outcome, Outcome::kSame);
+  EXPECT_EQ(compare(cell, cell).outcome, Outcome::kSame);
   ActualCell more = cell;
   more.record.nan = 1;
-  EXPECT_EQ(compare_cell(more, expect(cell), cell.images, Tolerances()).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare(more, cell).outcome, Outcome::kChanged);
 }
 
 TEST(Comparison, BrokenBoundOfTheBaseline_ExcusesNothing) {
-  ActualCell before = make_cell();
-  before.images.uncertainty.rounding = make_image(0.0f);
+  ActualCell before = make_rounded_cell(0.0f);
   ActualCell now = before;
   before.images.uncertainty.rounding.texels[7] = std::numeric_limits<float>::quiet_NaN();
   now.images.visibility.texels[7] = 1.0f;
-  EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare(now, before).outcome, Outcome::kChanged);
 }
 
 TEST(Comparison, DamagedImages_AreUnreadable) {
@@ -148,11 +147,10 @@ TEST(Comparison, DamagedImages_AreUnreadable) {
 }
 
 TEST(Comparison, ManyExcusedPixelsThatDiffer_AreAChange) {
-  ActualCell before = make_cell();
-  before.images.uncertainty.rounding = make_image(images::kMayFlip);
+  ActualCell before = make_rounded_cell(images::kMayFlip);
   ActualCell now = before;
   *now.images.visibility.at(5, 5) = 1.0f;  // one of 512: more than one in a thousand
-  const Comparison found = compare_cell(now, expect(before), before.images, Tolerances());
+  const Comparison found = compare(now, before);
   EXPECT_EQ(found.outcome, Outcome::kChanged);
   EXPECT_EQ(found.findings.front().metric, kExcusedChanged);
 }
@@ -160,29 +158,27 @@ TEST(Comparison, ManyExcusedPixelsThatDiffer_AreAChange) {
 TEST(Comparison, PixelThatMayFlip_IsExcusedByName) {
   Tolerances tolerances;
   tolerances.set("tent", kExcusedChanged, {0.01, "a small picture"});
-  ActualCell before = make_cell();
-  before.images.uncertainty.rounding = make_image(0.0f);
+  ActualCell before = make_rounded_cell(0.0f);
   *before.images.uncertainty.rounding.at(5, 5) = images::kMayFlip;
   ActualCell now = before;
   *now.images.visibility.at(5, 5) = 1.0f;
-  const Comparison excused = compare_cell(now, expect(before), before.images, tolerances);
+  const Comparison excused = compare(now, before, tolerances);
   EXPECT_EQ(excused.outcome, Outcome::kSame);
   EXPECT_EQ(excused.pixels->excused_flips, 1);
   EXPECT_EQ(excused.pixels->excused_changed, 1);
   ASSERT_EQ(excused.notes.size(), 1u);
   *now.images.visibility.at(6, 5) = 1.0f;
-  EXPECT_EQ(compare_cell(now, expect(before), before.images, tolerances).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare(now, before, tolerances).outcome, Outcome::kChanged);
 }
 
 TEST(Comparison, RoundingBound_WidensItsPixelAlone) {
-  ActualCell before = make_cell();
-  before.images.uncertainty.rounding = make_image(0.0f);
+  ActualCell before = make_rounded_cell(0.0f);
   *before.images.uncertainty.rounding.at(5, 5) = 0x1p-7f;
   ActualCell now = before;
   *now.images.visibility.at(5, 5) += 0x1p-7f;
-  EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kSame);
+  EXPECT_EQ(compare(now, before).outcome, Outcome::kSame);
   *now.images.visibility.at(6, 5) += 0x1p-7f;
-  EXPECT_EQ(compare_cell(now, expect(before), before.images, Tolerances()).outcome, Outcome::kChanged);
+  EXPECT_EQ(compare(now, before).outcome, Outcome::kChanged);
 }
 
 /// Both images keep bounds below 2^-14 as 0, and the pixel's own tolerance is spent on storing visibility in 16 bits.
@@ -191,7 +187,7 @@ TEST(Comparison, SmallRounding_IsAddedToThatOfStoring) {
   const auto compare_moved = [&](float difference) {
     ActualCell now = before;
     *now.images.visibility.at(5, 5) += difference;
-    return compare_cell(now, expect(before), before.images, Tolerances()).outcome;
+    return compare(now, before).outcome;
   };
   EXPECT_EQ(compare_moved(0x1p-12f), Outcome::kSame);
   EXPECT_EQ(compare_moved(0x1p-12f + 0x1p-15f), Outcome::kChanged) << "there are no bounds";
@@ -202,12 +198,11 @@ TEST(Comparison, SmallRounding_IsAddedToThatOfStoring) {
 }
 
 TEST(Comparison, PixelThatRoundingMovesFar_DiffersWhereItMovesFartherThanItsBounds) {
-  ActualCell before = make_cell();
-  before.images.uncertainty.rounding = make_image(kWidestBound);
+  ActualCell before = make_rounded_cell(kWidestBound);
   const auto count_moved = [&](float difference) {
     ActualCell now = before;
     now.images.visibility = make_image(0.5f + difference);
-    return compare_cell(now, expect(before), before.images, Tolerances()).pixels->excused_changed;
+    return compare(now, before).pixels->excused_changed;
   };
   EXPECT_EQ(count_moved(0x1p-4f), 0);
   EXPECT_EQ(count_moved(0x1.1p-4f), kWidth * kHeight);
@@ -215,12 +210,11 @@ TEST(Comparison, PixelThatRoundingMovesFar_DiffersWhereItMovesFartherThanItsBoun
 
 /// A map that is broken has bounds that explain anything: no reason to excuse the whole image.
 TEST(Comparison, ExcusingMuchMoreThanTheBaseline_IsAChange) {
-  ActualCell before = make_cell();
-  before.images.uncertainty.rounding = make_image(0.0f);
+  ActualCell before = make_rounded_cell(0.0f);
   ActualCell now = before;
   now.images.uncertainty.rounding = make_image(1.0f);
   now.images.visibility = make_image(0.0f);
-  const Comparison broken = compare_cell(now, expect(before), before.images, Tolerances());
+  const Comparison broken = compare(now, before);
   EXPECT_EQ(broken.outcome, Outcome::kChanged);
   EXPECT_EQ(broken.findings.front().metric, kExcused);
 }
@@ -265,7 +259,7 @@ TEST(Comparison, TruthsNoise_CountsWhereTheTruthIsAnother) {
     ActualCell now = before;
     now.origin.seed = seed;
     now.record.error.rmse = *before.record.error.rmse + 0.003;  // 3 x sqrt 2 x 0.001 = 0.0042
-    return compare_cell(now, expect(before), before.images, Tolerances()).outcome;
+    return compare(now, before).outcome;
   };
   EXPECT_EQ(compare_with(1), Outcome::kLessAccurate);
   EXPECT_EQ(compare_with(2), Outcome::kSame);
@@ -440,7 +434,7 @@ class ToleranceFile : public ::testing::Test {
     const Error error = error_of([&] { read(text); });
     EXPECT_EQ(error.kind(), ErrorKind::kInput) << text;
     EXPECT_EQ(error.where(), (folder_.path() / "tolerances.toml").string() + ":" + std::to_string(line));
-    EXPECT_THAT(error.message(), ::testing::HasSubstr(words));
+    EXPECT_THAT(error.message(), HasSubstr(words));
   }
 
   TestFolder folder_;

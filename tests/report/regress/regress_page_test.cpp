@@ -1,18 +1,9 @@
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-
-#include <algorithm>
-
 #include "report/regress/regress.h"
 #include "tests/report/pages/answer.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::regress {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 Comparison make_difference(const std::string& filter) {
   Comparison comparison;
@@ -78,8 +69,8 @@ TEST(RegressText, InALog_TakesNineLinesAtMost_TheWorstFirst) {
   report.options.out = "now/regress";
   const std::string text = make_regress_text(report);
   EXPECT_LE(std::ranges::count(text, '\n'), 9) << text;
-  EXPECT_THAT(text, ::testing::StartsWith("less accurate: cubes filter0 (view main, map 512, 256 x 144): RMSE is 0.2, "
-                                          "and was 0.1\n"));
+  EXPECT_THAT(text, StartsWith("less accurate: cubes filter0 (view main, map 512, 256 x 144): RMSE is 0.2, "
+                               "and was 0.1\n"));
   EXPECT_THAT(text, AllOf(HasSubstr("and 17 more cells: see now/regress/regress.json\n"),
                           HasSubstr("report: now/regress/regress.html\n")));
 }

@@ -1,20 +1,11 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cctype>
-#include <functional>
 
-#include "harness/scene/files/mesh_file.h"
 #include "tests/harness/scene/gltf_parts.h"
 
 // Small scenes of the kinds that other programs write, with what is right for each.
 
 namespace shadowbench::scene {
 namespace {
-
-using testing::HasSubstr;
 
 /// What a file holds. Sizes are of all that is drawn, opacities of each material as rays meet it, on average.
 struct Content {
@@ -270,7 +261,7 @@ TEST(FoundScenes, PictureOfOpacities_KeepsTheColours) {
   const TestFolder folder;
   for (const auto& [name, bytes] : obj_of("", "map_Kd grey.tga\nmap_d half.tga\n", {}).files) folder.write(name, bytes);
   EXPECT_THAT(import_obj(folder.path() / "a.obj").textures.at(0).rgba,
-              testing::ElementsAre(128, 128, 128, 0, 128, 128, 128, 255));
+              ElementsAre(128, 128, 128, 0, 128, 128, 128, 255));
 }
 
 TEST(FoundScenes, WhatCannotBeRead_IsNamed) {

@@ -1,18 +1,8 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <random>
-
-#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/mesh_tools.h"
-#include "harness/scene/scene.h"
 #include "tests/harness/scene/gltf_parts.h"
 
 namespace shadowbench::scene {
 namespace {
-
-using testing::HasSubstr;
 
 Bounds bounds_of(const MeshFile& model) {
   Bounds box;
@@ -376,7 +366,7 @@ TEST(GltfFileTest, RequiredExtensionThatIsNotRead_IsNamed) {
 TEST(GltfFileTest, ExtensionThatIsOnlyUsed_IsIgnoredWithAWarning) {
   GltfParts parts;
   parts.more = R"(, "extensionsUsed": ["EXT_texture_webp", "KHR_materials_sheen"])";
-  EXPECT_THAT(import_parts(parts).warnings, testing::ElementsAre(HasSubstr("EXT_texture_webp")));
+  EXPECT_THAT(import_parts(parts).warnings, ElementsAre(HasSubstr("EXT_texture_webp")));
 }
 
 TEST(GltfFileTest, OtherVersion_IsAnError) {
@@ -413,7 +403,7 @@ TEST(GltfFileTest, Lights_ShineFromTheirNodes_AlongMinusZ) {
                               {R"({"type": "point"})", R"(, "translation": [1, 5, 2])"},
                               {R"({"type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}})",
                                std::string(R"(, "translation": [1, 5, 2])") + kDown}}));
-  EXPECT_THAT(model.warnings, testing::ElementsAre(HasSubstr("area lights are not modelled")));
+  EXPECT_THAT(model.warnings, ElementsAre(HasSubstr("area lights are not modelled")));
   ASSERT_EQ(model.lights.size(), 3u) << "each is measured by itself";
   EXPECT_NEAR(glm::distance(to_light(model.lights[0], {}), glm::vec3(0, 1, 0)), 0.0f, 1e-6f);
   EXPECT_EQ(model.lights[0].color, glm::vec3(1.0f, 0.5f, 0.25f));
@@ -439,7 +429,7 @@ TEST(GltfFileTest, Materials_KeepColourAndAlphaMode) {
   EXPECT_EQ(model.materials[0].alpha_mode, AlphaMode::kMask);
   EXPECT_FLOAT_EQ(model.materials[0].alpha_cutoff, 0.25f);
   EXPECT_EQ(model.materials[1].alpha_mode, AlphaMode::kBlend);
-  EXPECT_THAT(model.warnings, testing::ElementsAre(AllOf(HasSubstr("'glass'"), HasSubstr("opaque"))));
+  EXPECT_THAT(model.warnings, ElementsAre(AllOf(HasSubstr("'glass'"), HasSubstr("opaque"))));
 }
 
 // A picture of floats, which alone could hold a NaN.

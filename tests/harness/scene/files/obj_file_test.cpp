@@ -1,21 +1,10 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <string>
 
 #include "harness/scene/files/mesh_file.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::scene {
 namespace {
-
-using testing::EndsWith;
-using testing::HasSubstr;
 
 constexpr const char* kObjQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -52,13 +41,13 @@ TEST(ObjFileTest, Materials_GiveTheirColours) {
   for (const Mesh& mesh : model.meshes)
     colours.push_back(model.materials[static_cast<std::size_t>(mesh.material)].base_color);
   EXPECT_EQ(colours.size(), 3U);
-  EXPECT_THAT(colours, testing::Contains(glm::vec4(1, 0, 0, 1)));
-  EXPECT_THAT(colours, testing::Contains(glm::vec4(0, 0, 1, 1)));
+  EXPECT_THAT(colours, Contains(glm::vec4(1, 0, 0, 1)));
+  EXPECT_THAT(colours, Contains(glm::vec4(0, 0, 1, 1)));
 }
 
 TEST(ObjFileTest, MissingMaterialLibrary_IsAWarning) {
   const MeshFile model = import_text(std::string("mtllib absent.mtl\n") + kObjQuad + "f 1 2 3\n");
-  EXPECT_THAT(model.warnings, testing::Contains(HasSubstr("absent.mtl")));
+  EXPECT_THAT(model.warnings, Contains(HasSubstr("absent.mtl")));
 }
 
 /// A scene may be named without a folder, and what it names be missing.
@@ -88,7 +77,7 @@ TEST(ObjFileTest, CoordinateThatIsNoFiniteNumber_NamesItsLine) {
     const Error error = error_of([&] { import_text("v 0 0 0\nv 1 " + bad + " 0\nv 1 1 0\nf 1 2 3\n"); });
     EXPECT_EQ(error.kind(), ErrorKind::kInput);
     EXPECT_THAT(error.message(), HasSubstr("'" + bad + "'"));
-    EXPECT_THAT(error.where(), testing::EndsWith("test.obj:2"));
+    EXPECT_THAT(error.where(), EndsWith("test.obj:2"));
   }
   EXPECT_THAT(error_of([] { import_text("v 0 0\n"); }).message(), HasSubstr("at least 3 numbers"));
 }
@@ -99,7 +88,7 @@ TEST(ObjFileTest, IndexThatIsNone_NamesItsLine) {
       const Error error = error_of([&] { import_text(kObjQuad + ("f 1 2 " + corner + "\n")); });
       EXPECT_EQ(error.kind(), ErrorKind::kInput);
       EXPECT_THAT(error.message(), HasSubstr("'" + bad + "' is not an index"));
-      EXPECT_THAT(error.where(), testing::EndsWith("test.obj:5"));
+      EXPECT_THAT(error.where(), EndsWith("test.obj:5"));
     }
   }
 }
@@ -107,7 +96,7 @@ TEST(ObjFileTest, IndexThatIsNone_NamesItsLine) {
 TEST(ObjFileTest, LinesOfOldMacintosh_AreRead) {
   EXPECT_EQ(import_text("# made long ago\rv 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 3\r").meshes.at(0).indices.size(), 3U);
   EXPECT_THAT(error_of([] { import_text("# comment\rv 0 0 0\rv 1 nan 0\rf 1 2 3\r"); }).where(),
-              testing::EndsWith("test.obj:3"));
+              EndsWith("test.obj:3"));
 }
 
 TEST(ObjFileTest, NumbersInEverySpelling_Read) {
@@ -337,7 +326,7 @@ TEST(PictureHeader, ClaimsThatNoMemoryHolds_AreRefusedBeforeDecoding) {
   };
   EXPECT_THAT(complaint(bytes(kHugePng)),
               HasSubstr("'huge' cannot be decoded: use PNG or JPEG, 1 to 16384 pixels a side"));
-  EXPECT_THAT(complaint(bytes(kHugeTga)), testing::AllOf(HasSubstr("65535 x 65535"), HasSubstr("16384")));
+  EXPECT_THAT(complaint(bytes(kHugeTga)), AllOf(HasSubstr("65535 x 65535"), HasSubstr("16384")));
   EXPECT_THAT(complaint(bytes("P6 99999 99999 255\n")), HasSubstr("99999 x 99999"));
   EXPECT_THAT(complaint(bytes("\0\0\2\0\0\0\0\0\0\0\0\0\1\x20\1\x20\x20\x28")), HasSubstr("8193 x 8193"));
 }
@@ -349,7 +338,7 @@ TEST(PictureHeader, AllTexturesOfAModel_AreCountedTogether) {
   const Texture large{"large", 16384, 16384, {}};
   EXPECT_EQ(decode_texture(small, "small", "a.gltf", {}).rgba.size(), 4U);
   const Error error = error_of([&] { decode_texture(small, "small", "a.gltf", {large}); });
-  EXPECT_THAT(error.message(), testing::AllOf(HasSubstr("'small'"), HasSubstr("268435457")));
+  EXPECT_THAT(error.message(), AllOf(HasSubstr("'small'"), HasSubstr("268435457")));
 }
 
 }  // namespace

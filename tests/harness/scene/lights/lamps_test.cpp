@@ -1,13 +1,3 @@
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <numbers>
-#include <set>
-
-#include "base/error.h"
 #include "filters/depth_map.h"
 #include "harness/scene/complete.h"
 #include "harness/scene/lights/light.h"
@@ -18,8 +8,6 @@
 
 namespace shadowbench::scene {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr int kSpotMap = 256;
 constexpr double kSpotPadding = 5.5;
@@ -396,13 +384,10 @@ TEST(WarpedMap, StaysFiniteWhereThereIsNothingToWarp) {
 TEST(WarpedMap, CannotBeSnapped) {
   const Scene scene = load_deep_scene();
   for (const FitMode mode : kWarps) {
-    try {
-      fit_light(scene, {.mode = mode, .snap = true, .camera = &scene.cameras.front()});
-      FAIL() << name_of(mode);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-      EXPECT_NE(error.message().find("--snap on"), std::string::npos) << error.message();
-    }
+    const Error error =
+        error_of([&] { fit_light(scene, {.mode = mode, .snap = true, .camera = &scene.cameras.front()}); });
+    EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+    EXPECT_THAT(error.message(), HasSubstr("--snap on"));
   }
 }
 

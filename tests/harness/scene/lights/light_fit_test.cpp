@@ -1,12 +1,7 @@
 #include "harness/scene/lights/light_fit.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "base/error.h"
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "tests/test_files.h"
@@ -274,8 +269,6 @@ TEST_P(LightFitTest, Snapped_StillHoldsEveryVertexWithItsPadding) {
                   5.5 / 256.0);
   }
 }
-
-using testing::HasSubstr;
 
 TEST(FitRule, ReadsWhatItWrites) {
   for (const char* text : {"tight", "sphere", "view", "cascades:count=2,split=0.25,blend=0,depths=seen",
