@@ -116,7 +116,7 @@ TEST(ContentHash, TellsBytesOrderAndPiecesApart) {
 TomlTable parse(const std::string& text) { return {text, "the text", {"a.glsl", 3, ErrorKind::kFilter}}; }
 
 std::string error_of(const std::string& text, const std::function<void(const TomlTable&)>& read) {
-  const Error error = error_of([&] { read(parse(text)); });
+  const Error error = shadowbench::error_of([&] { read(parse(text)); });
   EXPECT_EQ(error.kind(), ErrorKind::kFilter);
   return error.what();
 }

@@ -23,7 +23,7 @@ class Advise : public ProgramTest {
   }
 
   static CellRecord make_cell(const std::string& scene, const std::string& filter, double ms, double rmse) {
-    CellRecord cell = make_cell(scene, filter, ms);
+    CellRecord cell = records::make_cell(scene, filter, ms);
     cell.error.rmse = rmse;
     cell.truth.se = 0.001;
     cell.absent.erase("error");
@@ -66,7 +66,7 @@ TEST_F(Advise, WhereNoGpuDrew_TheEstimateIsTheCost_AndMillisecondsLimitIt) {
 
 /// A report may be somebody else's, and its names would steer the terminal.
 TEST_F(Advise, NamesOfAReport_AreShownWithoutEscapes) {
-  std::vector<CellRecord> cells = read_results(folder() / "run" / "results.json").cells;
+  std::vector<CellRecord> cells = records::read_results(folder() / "run" / "results.json").cells;
   for (CellRecord& cell : cells) cell.scene += "\x1b[31m";
   write_results(folder() / "foreign", make_run(), cells);
   const Outcome outcome = run("advise foreign --max-rmse 0.03");

@@ -154,10 +154,7 @@ TEST_F(GlTest, VertexArray_FeedsInterleavedAttributes) {
 // What is drawn, written down: programs, inputs, targets, and what was there before.
 
 Program make_program(const std::string& label, const std::string& text) {
-  SourceOptions options;
-  options.main_file = "main";
-  options.pieces = {{"main", text, "main.frag", 1}};
-  return Program(label, FullscreenTriangle::vertex_source(), build_source(options));
+  return Program(label, FullscreenTriangle::vertex_source(), make_source(text));
 }
 
 /// A target, and programs that write a colour into it and copy it.

@@ -303,8 +303,7 @@ std::vector<float> draw_rows(Bench& bench, const std::string& filter) {
 }
 
 TEST(CubeFaces, ShowNoLineWhereTheyMeetOnALitFloor) {
-  const scene::Scene scene = make_floor({});
-  Bench bench(shared_context(), scene, kLayersMap, kLayersWidth, kLayersHeight);
+  Bench bench(shared_context(), make_floor({}), kLayersMap, kLayersWidth, kLayersHeight);
   const auto borders = mark_borders(list_shares(bench), 1);
   ASSERT_GT(std::ranges::count(borders, std::uint8_t{1}), 300);
   for (const std::string& filter : filter_ids()) {

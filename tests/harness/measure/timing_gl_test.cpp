@@ -94,8 +94,7 @@ TEST(OwnTime, EmptyLookupsReadWhatTheirFiltersRead) {
 }
 
 TEST(Timing, TwiceTheTaps_TakeLonger) {
-  const scene::Scene scene = load_builtin("cubes");
-  Bench bench(shared_context(), scene, 512, 480, 270);
+  Bench bench(shared_context(), load_builtin("cubes"), 512, 480, 270);
   const auto requests = catalogue().parse_requests("none,poisson:taps=16,poisson:taps=32");
   std::vector<std::unique_ptr<render::FilterPasses>> filters;
   std::vector<render::FilterPasses*> pointers;

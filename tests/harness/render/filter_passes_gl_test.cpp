@@ -147,8 +147,7 @@ bool agrees(Receiver r, ivec2 own) {
 class OwnPasses : public ::testing::TestWithParam<Checked> {};
 
 TEST_P(OwnPasses, WriteWhatTheyShould) {
-  const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, GetParam().side, 160, 90);
+  Bench bench(shared_context(), load_builtin("stack"), GetParam().side, 160, 90);
   const filters::FilterRequest request = make_request(GetParam());
   const std::vector<float> image = bench.draw(request);
   const auto receivers = bench.receivers(request);
@@ -168,8 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Steps, OwnPasses,
 
 /// Lights that take turns keep their maps apart.
 TEST(OwnPassesOfLights, KeepTheirMaps) {
-  const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, kPassSide, 160, 90);
+  Bench bench(shared_context(), load_builtin("stack"), kPassSide, 160, 90);
   const filters::FilterRequest request = catalogue().parse_requests("vsm_sat").front();
   const std::vector<float> expected = bench.draw(request);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
@@ -189,39 +187,31 @@ TEST(OwnPassesOfLights, KeepTheirMaps) {
 
 struct Refused {
   const char* passes;
-  const char* glsl;
+  std::string glsl;
   const char* where;
   const char* words;
 };
 
-class RefusedPasses : public ::testing::TestWithParam<Refused> {};
-
-TEST_P(RefusedPasses, AreNamedWithFileAndLine) {
-  const scene::Scene scene = load_builtin("ball");
-  Bench bench(shared_context(), scene, 96, 64, 36);
-  const Refused& refused = GetParam();
-  const Error error = error_of([&] { bench.draw(make_request({"", refused.passes, refused.glsl, 0})); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_EQ(error.where(), refused.where) << error.message();
-  EXPECT_THAT(error.message(), HasSubstr(refused.words));
+TEST(RefusedPasses, AreNamedWithFileAndLine) {
+  Bench bench(shared_context(), load_builtin("ball"), 96, 64, 36);
+  const std::string agree = "bool agrees(Receiver r, ivec2 own) { return true; }\n";
+  const Refused all[] = {
+      {"[pass.first]\nstore = \"r32f\"\n[pass.second]\nstore = \"r32f\"\n",
+       "vec4 first(PassInput p) { return vec4(load_second(p.texel)); }\nvec4 second(PassInput p) { return vec4(1.0); "
+       "}\n",
+       "checked.glsl:6", "reads the map 'second', which is not written yet"},
+      {"[pass.first]\nstore = \"r32f\"\n", "vec4 first(PassInput p) { return load_first(p.texel); }\n",
+       "checked.glsl:6", "reads the map 'first', which is not written yet"},
+      {"store = \"r32f\"\n[pass.first]\nstore = \"r32f\"\n",
+       "vec4 encode(EncodeInput e) { return load_first(ivec2(0)); }\nvec4 first(PassInput p) { return vec4(1.0); }\n",
+       "checked.glsl:7", "encode() reads the map 'first', which is not written yet"}};
+  for (const Refused& each : all) {
+    const Error error = error_of([&] { bench.draw(make_request({"", each.passes, (each.glsl + agree).c_str(), 0})); });
+    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
+    EXPECT_EQ(error.where(), each.where) << error.message();
+    EXPECT_THAT(error.message(), HasSubstr(each.words));
+  }
 }
-
-constexpr const char* kFirst = "vec4 first(PassInput p) { return vec4(load_second(p.texel)); }\n";
-constexpr const char* kSecond = "vec4 second(PassInput p) { return vec4(1.0); }\n";
-constexpr const char* kAgree = "bool agrees(Receiver r, ivec2 own) { return true; }\n";
-const std::string kTwo = std::string(kFirst) + kSecond + kAgree;
-const std::string kOwn = std::string("vec4 first(PassInput p) { return load_first(p.texel); }\n") + kAgree;
-const std::string kStored = std::string("vec4 encode(EncodeInput e) { return load_first(ivec2(0)); }\n") +
-                            "vec4 first(PassInput p) { return vec4(1.0); }\n" + kAgree;
-
-INSTANTIATE_TEST_SUITE_P(
-    Each, RefusedPasses,
-    ::testing::Values(Refused{"[pass.first]\nstore = \"r32f\"\n[pass.second]\nstore = \"r32f\"\n", kTwo.c_str(),
-                              "checked.glsl:6", "reads the map 'second', which is not written yet"},
-                      Refused{"[pass.first]\nstore = \"r32f\"\n", kOwn.c_str(), "checked.glsl:6",
-                              "reads the map 'first', which is not written yet"},
-                      Refused{"store = \"r32f\"\n[pass.first]\nstore = \"r32f\"\n", kStored.c_str(), "checked.glsl:7",
-                              "encode() reads the map 'first', which is not written yet"}));
 
 constexpr int kBlurredSide = 96;
 
@@ -246,8 +236,7 @@ class Blur : public ::testing::TestWithParam<int> {};
 
 TEST_P(Blur, IsTheSumOfItsTermsToTheBit) {
   const int radius = GetParam();
-  const scene::Scene scene = load_builtin("fence");
-  Bench bench(shared_context(), scene, kBlurredSide, 64, 36);
+  Bench bench(shared_context(), load_builtin("fence"), kBlurredSide, 64, 36);
   const auto request = catalogue().parse_requests("esm:radius=" + std::to_string(radius)).front();
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());

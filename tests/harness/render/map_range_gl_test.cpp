@@ -108,8 +108,7 @@ TEST_P(MapRange, MapFullOfCasters_DarkensNothingOutside) {
 
 /// Series repeat themselves where a receiver lies farther behind its caster than the map is deep.
 TEST_P(MapRange, NoFarTest_DarkensWhatIsBehindACaster_HoweverDeep) {
-  const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, kRangeMapSize, 160, 90);
+  Bench bench(shared_context(), load_builtin("stack"), kRangeMapSize, 160, 90);
   const filters::FilterRequest request = catalogue().parse_requests(GetParam()).front();
   render::LightLayers light = bench.light(request);
   for (int column = 0; column < 4; ++column) light.front().frustum.uv_depth_from_world[column].z *= 1.6f;
@@ -195,8 +194,7 @@ glm::dvec2 step_on_plane(const scene::LightFrustum& frustum, const filters::Rece
 }
 
 TEST_P(CurvedMap, ReceiversLieWhereTheFrustumSays) {
-  const scene::Scene scene = load_builtin(GetParam());
-  Bench bench(shared_context(), scene, kShapeMap);
+  Bench bench(shared_context(), load_builtin(GetParam()), kShapeMap);
   double worst_texel = 0.0, worst_depth = 0.0, worst_size = 0.0, worst_plane = 0.0;
   int compared = 0, steep = 0;
   for (const filters::Receiver& r : bench.receivers(catalogue().parse_requests("none").front())) {

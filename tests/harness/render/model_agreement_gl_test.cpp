@@ -165,8 +165,7 @@ class ModelFormats : public ::testing::TestWithParam<FormatCase> {};
 
 TEST_P(ModelFormats, GlImageEqualsModel) {
   const auto& [scene_name, format, reversed, ratio] = GetParam();
-  const scene::Scene scene = load_builtin(scene_name);
-  Bench bench(shared_context(), scene, 512, 160, 90, {format, {reversed, ratio}});
+  Bench bench(shared_context(), load_builtin(scene_name), 512, 160, 90, {format, {reversed, ratio}});
   for (const std::string& id : filter_ids()) {
     const filters::FilterRequest request = catalogue().parse_requests(id).front();
     const Agreement a = compare(bench, request);
@@ -270,8 +269,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// Every frame turns the taps of every filter that turns them, in the GL as in its model.
 TEST(ModelFrames, GlImageEqualsModel_AndDiffersFromTheFirstFrames) {
-  const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, 256, 160, 90);
+  Bench bench(shared_context(), load_builtin("stack"), 256, 160, 90);
   for (const filters::FilterSpec& spec : catalogue().filters()) {
     if (spec.kind != filters::FilterKind::kStochastic) continue;
     for (const char* rotation : {"none", "per-pixel", "interleaved-gradient", "blue-noise"}) {
@@ -322,8 +320,7 @@ class BorderAgreement : public ::testing::TestWithParam<std::tuple<filters::Bord
 
 TEST_P(BorderAgreement, GlImageEqualsModel) {
   const auto& [border, filter] = GetParam();
-  const scene::Scene scene = load_builtin("edge");
-  Bench bench(shared_context(), scene, 250, 240, 135);  // no power of two: nothing wraps by accident
+  Bench bench(shared_context(), load_builtin("edge"), 250, 240, 135);  // no power of two: nothing wraps by accident
   bench.set_range({border, false, true});
   const filters::FilterRequest request = catalogue().parse_requests(filter).front();
   const Agreement a = compare(bench, request);

@@ -295,8 +295,7 @@ TEST(DepthPrecision, FormatOfOtherBits_IsRefused) {
 }
 
 TEST(DepthMapSize, EightThousand_IsDrawnWhole) {
-  const scene::Scene scene = load_builtin("cubes");
-  Bench bench(shared_context(), scene, 8192, 32, 18, {GL_DEPTH_COMPONENT16});
+  Bench bench(shared_context(), load_builtin("cubes"), 8192, 32, 18, {GL_DEPTH_COMPONENT16});
   EXPECT_EQ(bench.map().bytes(), std::int64_t{8192} * 8192 * 2);
   const filters::DepthMap map = bench.map().read();
   const auto filled = std::count_if(map.stored.begin(), map.stored.end(), [](float d) { return d < 1.0f; });
@@ -363,8 +362,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, DepthSamples,
 
 /// The samples follow what is drawn into the map: its bias, another map's contents, and values from elsewhere.
 TEST(DepthSamplesOfAMap, FollowTheMap) {
-  const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, kSampledSide, 160, 90);
+  Bench bench(shared_context(), load_builtin("stack"), kSampledSide, 160, 90);
   const std::vector<float> drawn = encode(bench, make_sampled(4));
   bench.redraw({.polygon_factor = 4.0});
   EXPECT_GT(rms(encode(bench, make_sampled(4)), drawn), 1e-3);
@@ -377,16 +375,14 @@ TEST(DepthSamplesOfAMap, FollowTheMap) {
 }
 
 TEST(DepthSamplesOfAMap, OfLogarithms_GiveTheLogarithmOfTheMean) {
-  const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, kSampledSide, 160, 90);
+  Bench bench(shared_context(), load_builtin("stack"), kSampledSide, 160, 90);
   std::vector<float> expected = encode(bench, make_sampled(4, "exp(8.0 * e.depth)"));
   for (float& value : expected) value = std::log(value);
   EXPECT_LT(rms(encode(bench, make_sampled(4, "8.0 * e.depth", "combine = \"log\"\n")), expected), 1e-5);
 }
 
 TEST(DepthSamplesOfAMap, AreCounted) {
-  const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, kSampledSide, 160, 90);
+  Bench bench(shared_context(), load_builtin("stack"), kSampledSide, 160, 90);
   const filters::FilterRequest request = make_sampled(4);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
@@ -399,8 +395,7 @@ TEST(DepthSamplesOfAMap, MoreThanTheGlGives_AreRefusedWithTheLine) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &most);
   if (most >= 16) GTEST_SKIP() << "this GL gives " << most << " samples";
-  const scene::Scene scene = load_builtin("ball");
-  Bench bench(shared_context(), scene, kSampledSide, 64, 36);
+  Bench bench(shared_context(), load_builtin("ball"), kSampledSide, 64, 36);
   const Error error = error_of([&] { encode(bench, make_sampled(16)); });
   EXPECT_EQ(error.kind(), ErrorKind::kFilter);
   EXPECT_EQ(error.where(), "sampled.glsl:6");
