@@ -1,14 +1,13 @@
 #include <complex>
 #include <numeric>
 
-#include "filters/catalogue.h"
 #include "filters/kernel.h"
-#include "filters/model.h"
 #include "filters/moments.h"
 #include "filters/percentage_closer.h"
 #include "filters/random.h"
 #include "filters/scalar.h"
 #include "filters/store_format.h"
+#include "tests/filters/filtered.h"
 #include "tests/filters/perspective_depth.h"
 #include "tests/test_files.h"
 
@@ -276,29 +275,19 @@ Receiver make_blocks_receiver(std::mt19937& random) {
   return r;
 }
 
-FilterRequest request_blocks(const std::string& text) {
-  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  return catalogue.parse_requests(text).front();
-}
-
-std::unique_ptr<Lookup> prepare_blocks(const FilterRequest& request, const DepthMap& map,
-                                       Precision precision = Precision::kDouble) {
-  return make_model(request.spec)->prepare({request.spec, request.values, map, {}, 0}, precision);
-}
-
 class UpperBound : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(UpperBound, IsNeverDarkerThanPcfOfItsKernel_OnAnyMap) {
-  const FilterRequest request = request_blocks(GetParam());
+  const FilterRequest request = request_of(GetParam());
   std::mt19937 random(11);
   int dark = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const DepthMap map = make_blocks(seed);
-    const auto lookup = prepare_blocks(request, map);
+    const Filtered lookup(request, map);
     const PercentageCloser closer(*find_kernel(request.spec, request.values), map);
     for (int i = 0; i < 1000; ++i) {
       const Receiver r = make_blocks_receiver(random);
-      const double light = lookup->at(r).visibility;
+      const double light = lookup.at(r);
       ASSERT_GE(light, closer.at(r) - 1e-6) << "depth " << r.depth;  // the weights, as floats, sum to 1 within that
       dark += light < 0.5 ? 1 : 0;
     }
@@ -312,14 +301,13 @@ INSTANTIATE_TEST_SUITE_P(Filters, UpperBound,
 
 TEST(Msm, DepthsWithinTheMap_SayMoreThanAnyDepths) {
   const DepthMap map = make_blocks(5);
-  const auto any = prepare_blocks(request_blocks("msm_hamburger"), map),
-             in_range = prepare_blocks(request_blocks("msm_hausdorff"), map);
+  const Filtered any("msm_hamburger", map), in_range("msm_hausdorff", map);
   std::mt19937 random(12);
   int less = 0;
   for (int i = 0; i < 4000; ++i) {
     const Receiver r = make_blocks_receiver(random);
-    ASSERT_LE(in_range->at(r).visibility, any->at(r).visibility + 1e-9) << "depth " << r.depth;
-    less += in_range->at(r).visibility < any->at(r).visibility - 1e-3 ? 1 : 0;
+    ASSERT_LE(in_range.at(r), any.at(r) + 1e-9) << "depth " << r.depth;
+    less += in_range.at(r) < any.at(r) - 1e-3 ? 1 : 0;
   }
   EXPECT_GT(less, 100);
 }
@@ -327,19 +315,17 @@ TEST(Msm, DepthsWithinTheMap_SayMoreThanAnyDepths) {
 /// Moments of two depths are those of no other distribution.
 TEST(Moments, OfTwoDepths_GiveTheLitShare) {
   constexpr float kNear = 0.3f, kFar = 0.8f;
-  DepthMap map{kMomentMapSide, {}};
-  for (int i = 0; i < kMomentMapSide * kMomentMapSide; ++i)
-    map.stored.push_back(i % kMomentMapSide < kMomentMapSide / 2 ? kNear : kFar);
+  const DepthMap map = make_edge(kMomentMapSide, kMomentMapSide / 2, kNear, kFar);
   for (const char* text : {"msm_hamburger", "msm_hausdorff", "evsm2:bleed_reduction=0", "evsm4",
                            "msm_packed64:lookup=bilinear", "msm_packed32:lookup=bilinear"}) {
-    const FilterRequest request = request_blocks(text);
-    const auto lookup = prepare_blocks(request, map);
+    const FilterRequest request = request_of(text);
+    const Filtered lookup(request, map);
     const PercentageCloser closer(*find_kernel(request.spec, request.values), map);
     for (double x = 11.0; x < 21.0; x += 0.37) {
       Receiver r;
       r.uv = {static_cast<float>(x / kMomentMapSide), 0.5f};
       r.depth = kFar - 1e-5f;
-      ASSERT_NEAR(lookup->at(r).visibility, closer.at(r), 5e-3) << text << " at " << x;
+      ASSERT_NEAR(lookup.at(r), closer.at(r), 5e-3) << text << " at " << x;
     }
   }
 }
@@ -406,13 +392,12 @@ TEST(Moments, ParametersAreFitToTheStore) {
        {std::pair("evsm4:store=rgba16f,c=42,c_down=42", "evsm4:store=rgba16f,c=5.54,c_down=5.54"),
         {"evsm2:store=rg16f,c=30", "evsm2:store=rg16f,c=5.54"},
         {"msm_hamburger:store=rgba16,moment_bias=1e-5", "msm_hamburger:store=rgba16,moment_bias=1.2e-4"}}) {
-    const FilterRequest one = request_blocks(asked), other = request_blocks(given);
-    const auto a = prepare_blocks(one, map, Precision::kFloat), b = prepare_blocks(other, map, Precision::kFloat);
+    const Filtered a(asked, map, Precision::kFloat), b(given, map, Precision::kFloat);
     std::mt19937 random(13);
     for (int i = 0; i < 200; ++i) {
       const Receiver r = make_blocks_receiver(random);
-      ASSERT_EQ(a->at(r).visibility, b->at(r).visibility) << asked;
-      ASSERT_TRUE(std::isfinite(a->at(r).visibility));
+      ASSERT_EQ(a.at(r), b.at(r)) << asked;
+      ASSERT_TRUE(std::isfinite(a.at(r)));
     }
   }
 }
@@ -422,15 +407,10 @@ TEST(Moments, ParametersAreFitToTheStore) {
 /// Looks up a receiver at depth 0.5 in the middle of a map, of which the left half lies at one depth and the right half
 /// at another.
 double look_up_between(const std::string& text, float left, float right) {
-  constexpr int kHalvesSide = 32;
-  DepthMap map{kHalvesSide, {}};
-  for (int i = 0; i < kHalvesSide * kHalvesSide; ++i)
-    map.stored.push_back(i % kHalvesSide < kHalvesSide / 2 ? left : right);
-  const FilterRequest request = Catalogue(SHADOWBENCH_SOURCE_DIR "/filters").parse_requests(text).front();
-  const ModelInput input{request.spec, request.values, map, {}, 0};
+  const DepthMap map = make_edge(32, 16, left, right);
   Receiver r;
   r.depth = r.depth_unbiased = 0.5f;
-  return make_model("esm")->prepare(input, Precision::kDouble)->at(r).visibility;
+  return Filtered(text, map).at(r);
 }
 
 TEST(EsmFallback, BetweenABlockerAndWhatLiesBehind_IsPercentageCloser) {

@@ -1,52 +1,14 @@
 #include "filters/model.h"
 
-#include "filters/catalogue.h"
 #include "filters/percentage_closer.h"
 #include "filters/random.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::filters {
 namespace {
 
 // Models against results that can be worked out by hand.
-
-/// A map whose texels left of `edge` hold `near`, the others `far`.
-DepthMap make_edge(int size, int edge, float near, float far) {
-  DepthMap map{size, {}};
-  for (int i = 0; i < size * size; ++i) map.stored.push_back(i % size < edge ? near : far);
-  return map;
-}
-
-FilterRequest request_of(const std::string& text) {
-  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  return catalogue.parse_requests(text).front();
-}
-
-/// Looks receivers up by a filter.
-class Filtered {
- public:
-  Filtered(FilterRequest request, const DepthMap& map, Precision precision = Precision::kDouble)
-      : request_(std::move(request)),
-        lookup_(make_model(request_.spec)->prepare({request_.spec, request_.values, map, {}, 0}, precision)) {}
-  Filtered(const std::string& text, const DepthMap& map, Precision precision = Precision::kDouble)
-      : Filtered(request_of(text), map, precision) {}
-
-  ModelResult find(const Receiver& r) const { return lookup_->at(r); }
-  double at(const Receiver& r) const { return find(r).visibility; }
-  double radius_at(const Receiver& r) const { return find(r).disk_radius_texels; }
-
- private:
-  FilterRequest request_;
-  std::unique_ptr<Lookup> lookup_;
-};
-
-/// A receiver at a position in texels.
-Receiver make_receiver_at(const DepthMap& map, double x, double y, float depth) {
-  Receiver r;
-  r.uv = {static_cast<float>(x / map.size), static_cast<float>(y / map.size)};
-  r.depth = depth;
-  return r;
-}
 
 double look_up(const std::string& request, const DepthMap& map, double x, double y, float depth,
                Precision precision = Precision::kDouble) {

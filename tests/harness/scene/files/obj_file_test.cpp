@@ -175,15 +175,9 @@ std::string write_face(const Polygon& polygon) {
   return text + face + "\n";
 }
 
-MeshFile import_lines(const std::string& text) {
-  const TestFolder folder;
-  return import_obj(folder.write("test.obj", text));
-}
-
 /// Triangles cover a polygon once where all face its way and their areas add up to its own.
 void expect_covered(const Polygon& polygon, const std::string& name) {
-  const MeshFile model = import_lines(write_face(polygon));
-  const Mesh& mesh = model.meshes.at(0);
+  const Mesh mesh = import_text(write_face(polygon)).meshes.at(0);
   ASSERT_EQ(mesh.indices.size(), 3 * (polygon.size() - 2)) << name;
   const auto place = [&](std::size_t i) { return glm::dvec3(mesh.vertices[mesh.indices[i]].position_ws); };
   const glm::dvec3 whole = area_of(polygon);
@@ -243,14 +237,14 @@ TEST(ObjPolygon, ThatIsATangle_StillGivesTriangles) {
   std::uniform_real_distribution<double> place(0.0, 1.0);
   Polygon tangle;
   for (int i = 0; i < kMostCorners; ++i) tangle.emplace_back(place(random), place(random), 0.0);
-  EXPECT_EQ(import_lines(write_face(tangle)).meshes.at(0).indices.size(), 3U * (kMostCorners - 2U));
-  EXPECT_EQ(import_lines(write_face(Polygon(1000, {1.0, 2.0, 3.0}))).meshes.at(0).indices.size(), 3U * 998U)
+  EXPECT_EQ(import_text(write_face(tangle)).meshes.at(0).indices.size(), 3U * (kMostCorners - 2U));
+  EXPECT_EQ(import_text(write_face(Polygon(1000, {1.0, 2.0, 3.0}))).meshes.at(0).indices.size(), 3U * 998U)
       << "all corners at one point";
 }
 
 TEST(ObjPolygon, OfMoreCornersThanAreRead_IsRefused) {
-  EXPECT_EQ(import_lines(write_face(make_star(kMostCorners, 1.0))).meshes.size(), 1U);
-  const Error error = error_of([] { import_lines("# one more\n" + write_face(make_star(kMostCorners + 1, 1.0))); });
+  EXPECT_EQ(import_text(write_face(make_star(kMostCorners, 1.0))).meshes.size(), 1U);
+  const Error error = error_of([] { import_text("# one more\n" + write_face(make_star(kMostCorners + 1, 1.0))); });
   EXPECT_EQ(error.kind(), ErrorKind::kInput);
   EXPECT_EQ(error.message(),
             "this face has 2049 corners; at most 2048 are read: triangulate it in the modelling program");
@@ -261,7 +255,7 @@ TEST(ObjPolygon, OfMoreCornersThanAreRead_IsRefused) {
 TEST(ObjPolygon, AmongOtherLines_ChangesNoneOfThem) {
   const std::string vertices = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 1 0\nv 0 2 0\nvt 0 0\nvt 0.5 0\nvn 0 0 -1\n";
   const MeshFile model =
-      import_lines(vertices + "g a\nf 1 2 3\ng b\nf 1/1/1 2/2/1 3/1/1 4/1/1 -1/1/1 # five\nv 9 9 9\ng c\nf 1 2 6");
+      import_text(vertices + "g a\nf 1 2 3\ng b\nf 1/1/1 2/2/1 3/1/1 4/1/1 -1/1/1 # five\nv 9 9 9\ng c\nf 1 2 6");
   ASSERT_EQ(model.meshes.size(), 3U);
   EXPECT_EQ(model.meshes[0].indices.size(), 3U);
   const Mesh& polygon = model.meshes[1];
@@ -280,7 +274,7 @@ TEST(ObjPolygon, IndexThatNamesNoVertex_NamesItsLine) {
   for (const char* wrong : {"301", "-301"}) {
     std::string bad = text;
     bad.replace(bad.rfind("300"), 3, wrong);
-    const Error error = error_of([&] { import_lines(bad); });
+    const Error error = error_of([&] { import_text(bad); });
     EXPECT_THAT(error.message(), HasSubstr(fmt::format("vertex {}, but there are 300", wrong)));
     EXPECT_THAT(error.where(), EndsWith("test.obj:301"));
   }
@@ -293,7 +287,7 @@ TEST(ObjFileTest, PolygonsOfManyCorners_AreReadInSeconds) {
   for (int i = 0; i < kMostCorners; ++i) face += fmt::format(" {}", i + 1);
   for (int i = 0; i < 50; ++i) text += face + "\n";
   MeshFile model;
-  EXPECT_LT(seconds_of([&] { model = import_lines(text); }), 20.0);
+  EXPECT_LT(seconds_of([&] { model = import_text(text); }), 20.0);
   EXPECT_EQ(model.meshes.at(0).indices.size(), 150U * (kMostCorners - 2U));
 }
 
@@ -302,10 +296,8 @@ TEST(ObjFileTest, FanOfVeryManyTriangles_IsReadInSeconds) {
   std::string text = "v 0 0 1\n";
   for (const glm::dvec3& corner : make_star(kMany, 1.0)) text += fmt::format("v {} {} 0\n", corner.x, corner.y);
   for (int i = 0; i < kMany; ++i) text += fmt::format("f 1 {} {}\n", i + 2, (i + 1) % kMany + 2);
-  const TestFolder folder;
-  const auto file = folder.write("test.obj", text);
   MeshFile model;
-  EXPECT_LT(seconds_of([&] { model = import_obj(file); }), 20.0);
+  EXPECT_LT(seconds_of([&] { model = import_text(text); }), 20.0);
   const Vertex& tip = model.meshes.at(0).vertices.at(0);
   EXPECT_EQ(tip.position_ws, glm::vec3(0, 0, 1));
   EXPECT_NEAR(tip.normal_ws.z, 1.0f, 1e-3f) << "that of all faces: they are too many to compare";

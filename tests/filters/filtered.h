@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "filters/catalogue.h"
+#include "filters/model.h"
+
+namespace shadowbench::filters {
+
+/// A map whose texels left of `edge` hold `near`, the others `far`.
+inline DepthMap make_edge(int size, int edge, float near, float far) {
+  DepthMap map{size, {}};
+  for (int i = 0; i < size * size; ++i) map.stored.push_back(i % size < edge ? near : far);
+  return map;
+}
+
+inline FilterRequest request_of(const std::string& text) {
+  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
+  return catalogue.parse_requests(text).front();
+}
+
+/// Looks receivers up by a filter.
+class Filtered {
+ public:
+  Filtered(FilterRequest request, const DepthMap& map, Precision precision = Precision::kDouble)
+      : request_(std::move(request)),
+        lookup_(make_model(request_.spec)->prepare({request_.spec, request_.values, map, {}, 0}, precision)) {}
+  Filtered(const std::string& text, const DepthMap& map, Precision precision = Precision::kDouble)
+      : Filtered(request_of(text), map, precision) {}
+
+  ModelResult find(const Receiver& r) const { return lookup_->at(r); }
+  double at(const Receiver& r) const { return find(r).visibility; }
+  double radius_at(const Receiver& r) const { return find(r).disk_radius_texels; }
+
+ private:
+  FilterRequest request_;
+  std::unique_ptr<Lookup> lookup_;
+};
+
+/// A receiver at a position in texels.
+inline Receiver make_receiver_at(const DepthMap& map, double x, double y, float depth) {
+  Receiver r;
+  r.uv = {static_cast<float>(x / map.size), static_cast<float>(y / map.size)};
+  r.depth = depth;
+  return r;
+}
+
+}  // namespace shadowbench::filters
