@@ -16,46 +16,49 @@ using namespace measure;
 
 constexpr int kMapSize = 512;
 
+options::RunOptions make_options(int width, int height) {
+  options::RunOptions options;
+  options.resources = options::find_resources();
+  options.width = width;
+  options.height = height;
+  options.rounds = options::RoundLimits::exactly(1);
+  options.reference = catalogue().parse_requests("none").front();
+  return options;
+}
+
+/// A built-in scene with all that is measured with.
+struct Stand {
+  Stand(const std::string& name, options::RunOptions told, double pad_texels)
+      : scene(load_builtin(name)), options(std::move(told)), assets(renderer, options, scene, cache, pad_texels) {}
+
+  scene::Scene scene;
+  options::RunOptions options;
+  Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
+  truth::TruthCache cache{{}, [](const std::string&) {}};
+  SceneAssets assets;
+};
+
 /// A small scene to time filters in.
-class Timed {
- public:
-  Timed()
-      : scene_(load_builtin("cubes")),
-        renderer_(make_renderer(gl::Backend::kAuto, options::find_resources())),
-        cache_({}, [](const std::string&) {}),
-        assets_(renderer_, options_, scene_, cache_, 6.0) {}
+struct Timed : Stand {
+  Timed() : Stand("cubes", make_options(320, 180), 6.0) {}
 
   /// The own time of a filter, as records hold it.
   records::OwnTime time(const filters::FilterRequest& request) {
-    const scene::Camera& camera = scene_.cameras.front();
-    LightMap& map = assets_.light_map(camera, kMapSize);
-    const auto passes = make_filter_passes(renderer_, options_, scene_, map, request);
-    render::ImageTarget target("visibility", GL_R32F, options_.width, options_.height);
-    draw_visibility(*passes, map.map, assets_.gbuffer(camera), target);
+    const scene::Camera& camera = scene.cameras.front();
+    LightMap& map = assets.light_map(camera, kMapSize);
+    const auto passes = make_filter_passes(renderer, options, scene, map, request);
+    render::ImageTarget target("visibility", GL_R32F, options.width, options.height);
+    draw_visibility(*passes, map.map, assets.gbuffer(camera), target);
     const std::vector<render::FilterPasses*> filters = {passes.get()};
-    const auto empty = make_empty_lookups(renderer_, options_, scene_, map, filters);
+    const auto empty = make_empty_lookups(renderer, options, scene, map, filters);
     const RoundTimes times = time_rounds({.filters = filters,
                                           .empties = empty.passes,
-                                          .draw_map = [&] { assets_.redraw(map); },
+                                          .draw_map = [&] { assets.redraw(map); },
                                           .map = map.map,
-                                          .gbuffer = assets_.gbuffer(camera),
-                                          .timer = renderer_.timer},
+                                          .gbuffer = assets.gbuffer(camera),
+                                          .timer = renderer.timer},
                                          {.limits = options::RoundLimits::exactly(40)});
     return find_difference(times.filters[0].lookup, times.empties[0]);
-  }
-
- private:
-  scene::Scene scene_;
-  options::RunOptions options_ = make_options();
-  Renderer renderer_;
-  truth::TruthCache cache_;
-  SceneAssets assets_;
-
-  static options::RunOptions make_options() {
-    options::RunOptions options;
-    options.width = 320;
-    options.height = 180;
-    return options;
   }
 };
 
@@ -121,14 +124,9 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
 constexpr int kAccumulated = 32;
 
 /// The ball, small, with all that a task has.
-class AccumulationTest : public ::testing::Test {
+class AccumulationTest : public ::testing::Test, protected Stand {
  protected:
-  AccumulationTest()
-      : scene_(test::load_builtin("ball")),
-        renderer_(make_renderer(gl::Backend::kAuto, options_.resources)),
-        cache_({}, [](const std::string&) {}),
-        assets_(renderer_, options_, scene_, cache_, 5.0),
-        rig_{renderer_, options_, task_, assets_} {}
+  AccumulationTest() : Stand("ball", make_options(160, 90), 5.0) { options.frames = kAccumulated; }
 
   static filters::FilterRequest request(const std::string& text) {
     return test::catalogue().parse_requests(text).front();
@@ -144,20 +142,8 @@ class AccumulationTest : public ::testing::Test {
         record.resolves, [&](const auto& each) { return each.rule == rule && !each.jitter; });
   }
 
-  options::RunOptions options_ = [] {
-    options::RunOptions options;
-    options.resources = options::find_resources();
-    options.width = 160;
-    options.height = 90;
-    options.frames = kAccumulated;
-    return options;
-  }();
-  scene::Scene scene_;
-  Renderer renderer_;
-  truth::TruthCache cache_;
-  SceneAssets assets_;
-  SceneTask task_{&scene_, &scene_.cameras.front(), 256, {}};
-  TaskRig rig_;
+  SceneTask task_{&scene, &scene.cameras.front(), 256, {}};
+  TaskRig rig_{renderer, options, task_, assets};
 };
 
 TEST(Jitter, TakesEightPlacesInTurn_WithinAPixel) {
@@ -173,15 +159,15 @@ TEST(Jitter, TakesEightPlacesInTurn_WithinAPixel) {
 }
 
 TEST_F(AccumulationTest, FilterWithoutNoise_FramesEqualOne_ToTheBit) {
-  const LightMap& map = assets_.light_map(*task_.camera, task_.map_size);
-  const render::GBuffer& gbuffer = assets_.gbuffer(*task_.camera);
+  const LightMap& map = assets.light_map(*task_.camera, task_.map_size);
+  const render::GBuffer& gbuffer = assets.gbuffer(*task_.camera);
   for (const char* filter : {"pcf2x2", "vsm", "poisson:rotation=none"}) {
     FrameDrawing drawing(rig_, request(filter));
     std::vector<render::ResolvePass> resolves = make_resolves(rig_);
-    drawing.draw({0, scene_.light, map, gbuffer}, resolves);
+    drawing.draw({0, scene.light, map, gbuffer}, resolves);
     std::vector<images::Image> first;
     for (const auto& resolve : resolves) first.push_back(render::read_image(resolve.texture(), 1));
-    for (std::uint32_t i = 1; i < kAccumulated; ++i) drawing.draw({i, scene_.light, map, gbuffer}, resolves);
+    for (std::uint32_t i = 1; i < kAccumulated; ++i) drawing.draw({i, scene.light, map, gbuffer}, resolves);
     for (std::size_t i = 0; i < resolves.size(); ++i)
       EXPECT_EQ(render::read_image(resolves[i].texture(), 1).texels, first[i].texels)
           << filter << ", " << list_resolve_rules()[i].name;
@@ -228,7 +214,7 @@ TEST_F(AccumulationTest, Ghosts_FadeByTheWeight_AndSoonerWithClamping) {
 
 /// A light that stands overhead moves no shadow when it turns about the vertical.
 TEST_F(AccumulationTest, LightOverhead_HasNoGhosts) {
-  scene_.light = scene::place_in_sky(scene_.light, {0.0, 90.0});
+  scene.light = scene::place_in_sky(scene.light, {0.0, 90.0});
   EXPECT_THAT(make_ghost_bench(rig_).absent, HasSubstr("no shadow in view moves"));
 }
 
@@ -236,21 +222,14 @@ TEST_F(AccumulationTest, LightOverhead_HasNoGhosts) {
 
 /// The flicker of `none`, as a run notes it.
 double measure_flicker(const std::string& scene_name, const std::string& fit, bool snap) {
-  options::RunOptions options;
-  options.width = 160;
-  options.height = 90;
+  options::RunOptions options = make_options(160, 90);
   options.fit = scene::parse_fit_rule(fit);
   options.snap = snap;
-  options.rounds = options::RoundLimits::exactly(1);
-  const scene::Scene scene = load_builtin(scene_name);
-  Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
-  truth::TruthCache cache({}, [](const std::string&) {});
-  SceneAssets assets(renderer, options, scene, cache, 4.0);
-  const scene::Camera& camera = scene.cameras.front();
-  const SceneTask task{&scene, &camera, 512, catalogue().parse_requests("none")};
-  options.reference = task.filters.front();
-  MeasuredCell cell = std::move(measure_scene({renderer, options, task, assets}).cells.front());
-  score(cell, assets.truth(camera));
+  Stand stand(scene_name, options, 4.0);
+  const scene::Camera& camera = stand.scene.cameras.front();
+  const SceneTask task{&stand.scene, &camera, 512, {options.reference}};
+  MeasuredCell cell = std::move(measure_scene({stand.renderer, stand.options, task, stand.assets}).cells.front());
+  score(cell, stand.assets.truth(camera));
   return cell.record.error.flicker.value();
 }
 
@@ -274,14 +253,9 @@ std::vector<MeasuredCell> measure(const std::string& scene_name, const std::stri
   static Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
   renderer.context->make_current();
   const scene::Scene scene = load_builtin(scene_name);
-  options::RunOptions options;
-  options.resources = options::find_resources();
+  options::RunOptions options = make_options(width, height);
   options.filters = catalogue().parse_requests(filters);
-  options.width = width;
-  options.height = height;
-  options.rounds = options::RoundLimits::exactly(1);
   options.phases = 1;  // numbers are looked at in the first of them alone
-  options.reference = catalogue().parse_requests("none").front();
   options.truth = false;
   options.stability = true;
   truth::TruthCache cache({}, [](const std::string&) {});
