@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <charconv>
@@ -26,6 +27,69 @@ namespace {
               fmt::format("{} ({}); check the folder's rights and free space, or choose another with --out", what,
                           std::generic_category().message(code)),
               path.string());
+}
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kFileMark = ".shadowbench-tmp-";
+constexpr std::string_view kFolderMarks[] = {".worker-", ".gpu-"};
+
+std::string name_of(const Writer& writer) { return fmt::format("{}-{}", writer.process, writer.host); }
+
+/// Reads name_of() at the beginning of a text; nothing where other characters follow than `end`. Versions of before
+/// wrote the number alone.
+std::optional<Writer> parse_writer(std::string_view text, std::string_view end) {
+  Writer writer = this_writer();
+  if (!text.ends_with(end)) return std::nullopt;
+  text.remove_suffix(end.size());
+  const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), writer.process);
+  const std::string_view rest(last, static_cast<std::size_t>(text.data() + text.size() - last));
+  if (error != std::errc() || writer.process <= 0) return std::nullopt;
+  if (rest.starts_with('-'))
+    writer.host = rest.substr(1);
+  else if (!rest.empty())
+    return std::nullopt;
+  return writer;
+}
+
+/// The writer of a temporary file; nothing where it is no temporary file.
+std::optional<Writer> writer_of_file(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const std::size_t mark = name.rfind(kFileMark);
+  if (mark == std::string::npos) return std::nullopt;
+  return parse_writer(std::string_view(name).substr(mark + kFileMark.size()),
+                      path.extension().string().starts_with(kFileMark) ? "" : path.extension().string());
+}
+
+std::optional<Writer> writer_of_folder(const fs::path& path) {
+  const std::string name = path.filename().string();
+  for (const std::string_view mark : kFolderMarks)
+    if (name.starts_with(mark)) return parse_writer(std::string_view(name).substr(mark.size()), "");
+  return std::nullopt;
+}
+
+/// Removes the stale entries of one folder, and gives its folders that are not stale.
+std::vector<fs::path> clean(const fs::path& folder, const std::function<bool(const Writer&)>& is_stale) {
+  std::vector<fs::path> stale, folders;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    std::error_code unknown;
+    const bool is_folder = entry->symlink_status(unknown).type() == fs::file_type::directory;
+    const std::optional<Writer> writer = is_folder ? writer_of_folder(entry->path()) : writer_of_file(entry->path());
+    if (writer && is_stale(*writer))
+      stale.push_back(entry->path());
+    else if (is_folder)
+      folders.push_back(entry->path());
+  }
+  for (const fs::path& path : stale) fs::remove_all(path, error);
+  return folders;
+}
+
+constexpr std::size_t kMaxStem = 80;
+
+bool is_portable(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
 }
 
 }  // namespace
@@ -92,67 +156,6 @@ void copy_whole_file(const std::filesystem::path& from, const std::filesystem::p
         from.string());
   pending.commit();
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::string_view kFileMark = ".shadowbench-tmp-";
-constexpr std::string_view kFolderMarks[] = {".worker-", ".gpu-"};
-
-std::string name_of(const Writer& writer) { return fmt::format("{}-{}", writer.process, writer.host); }
-
-/// Reads name_of() at the beginning of a text; nothing where other characters follow than `end`. Versions of before
-/// wrote the number alone.
-std::optional<Writer> parse_writer(std::string_view text, std::string_view end) {
-  Writer writer = this_writer();
-  if (!text.ends_with(end)) return std::nullopt;
-  text.remove_suffix(end.size());
-  const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), writer.process);
-  const std::string_view rest(last, static_cast<std::size_t>(text.data() + text.size() - last));
-  if (error != std::errc() || writer.process <= 0) return std::nullopt;
-  if (rest.starts_with('-'))
-    writer.host = rest.substr(1);
-  else if (!rest.empty())
-    return std::nullopt;
-  return writer;
-}
-
-/// The writer of a temporary file; nothing where it is no temporary file.
-std::optional<Writer> writer_of_file(const fs::path& path) {
-  const std::string name = path.filename().string();
-  const std::size_t mark = name.rfind(kFileMark);
-  if (mark == std::string::npos) return std::nullopt;
-  return parse_writer(std::string_view(name).substr(mark + kFileMark.size()),
-                      path.extension().string().starts_with(kFileMark) ? "" : path.extension().string());
-}
-
-std::optional<Writer> writer_of_folder(const fs::path& path) {
-  const std::string name = path.filename().string();
-  for (const std::string_view mark : kFolderMarks)
-    if (name.starts_with(mark)) return parse_writer(std::string_view(name).substr(mark.size()), "");
-  return std::nullopt;
-}
-
-/// Removes the stale entries of one folder, and gives its folders that are not stale.
-std::vector<fs::path> clean(const fs::path& folder, const std::function<bool(const Writer&)>& is_stale) {
-  std::vector<fs::path> stale, folders;
-  std::error_code error;
-  fs::directory_iterator entry(folder, error);
-  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    std::error_code unknown;
-    const bool is_folder = entry->symlink_status(unknown).type() == fs::file_type::directory;
-    const std::optional<Writer> writer = is_folder ? writer_of_folder(entry->path()) : writer_of_file(entry->path());
-    if (writer && is_stale(*writer))
-      stale.push_back(entry->path());
-    else if (is_folder)
-      folders.push_back(entry->path());
-  }
-  for (const fs::path& path : stale) fs::remove_all(path, error);
-  return folders;
-}
-
-}  // namespace
 
 std::string host_name() {
   char name[256] = {};
@@ -223,6 +226,36 @@ std::vector<unsigned char> read_file_bytes(const std::filesystem::path& file, st
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!stream) fail("cannot be read to its end");
   return bytes;
+}
+
+std::uint64_t hash_text(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : text) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 0x100000001b3U;
+  }
+  return hash;
+}
+
+std::string make_file_stem(std::string_view name) {
+  const bool starts_plainly = !name.empty() && name.front() != '.' && name.front() != '-';
+  std::string stem(starts_plainly ? "" : "_");
+  stem += name;
+  std::replace_if(
+      stem.begin(), stem.end(), [](char c) { return !is_portable(c); }, '_');
+  if (stem == name && stem.size() <= kMaxStem) return stem;
+  const std::string suffix = fmt::format("-{:016x}", hash_text(name));
+  return stem.substr(0, kMaxStem - suffix.size()) + suffix;
+}
+
+std::string encode_url_path(std::string_view path) {
+  std::string url;
+  for (const char c : path)
+    if (is_portable(c) || c == '/')
+      url += c;
+    else
+      url += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+  return url;
 }
 
 }  // namespace shadowbench

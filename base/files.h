@@ -124,4 +124,16 @@ std::vector<unsigned char> read_file_bytes(const std::filesystem::path& file,
                                            std::uintmax_t most_bytes = 4096 * kMebibyte,
                                            ErrorKind kind = ErrorKind::kInput);
 
+/// Hashes bytes.
+/// Source: Fowler, Noll and Vo, FNV-1a, 64 bits.
+std::uint64_t hash_text(std::string_view text);
+
+/// Makes a file stem of any name, so that the file stays in the report folder.
+/// Returns letters, digits, '-', '_' and '.' only, at most 80 characters, not starting with '.' or '-'; a name that had
+/// to be changed gets its hash appended, so that two names never share a file.
+std::string make_file_stem(std::string_view name);
+
+/// Percent-encodes a relative path with '/' between folders for use as a URL.
+std::string encode_url_path(std::string_view path);
+
 }  // namespace shadowbench

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 
 #include "base/error.h"
 
@@ -30,6 +32,20 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
     }
   }
   return cost[a.size()][b.size()];
+}
+
+constexpr std::size_t kLongestLine = 2000;
+constexpr std::size_t kLongestMessage = 40000;
+
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
+
+/// Leaves out the middle, between characters.
+std::string shorten(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return std::string(text);
+  std::size_t begin = most / 2, end = text.size() - most / 2;
+  while (begin > 0 && continues_character(text[begin])) --begin;
+  while (end < text.size() && continues_character(text[end])) ++end;
+  return fmt::format("{} [... {} bytes ...] {}", text.substr(0, begin), end - begin, text.substr(end));
 }
 
 }  // namespace
@@ -88,24 +104,6 @@ std::vector<std::pair<std::string, std::string>> split_assignments(std::string_v
   return assignments;
 }
 
-namespace {
-
-constexpr std::size_t kLongestLine = 2000;
-constexpr std::size_t kLongestMessage = 40000;
-
-bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
-
-/// Leaves out the middle, between characters.
-std::string shorten(std::string_view text, std::size_t most) {
-  if (text.size() <= most) return std::string(text);
-  std::size_t begin = most / 2, end = text.size() - most / 2;
-  while (begin > 0 && continues_character(text[begin])) --begin;
-  while (end < text.size() && continues_character(text[end])) ++end;
-  return fmt::format("{} [... {} bytes ...] {}", text.substr(0, begin), end - begin, text.substr(end));
-}
-
-}  // namespace
-
 std::string make_visible(std::string_view text) {
   std::string visible;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -129,6 +127,19 @@ std::string make_readable(std::string_view message) {
     begin = end + 1;
   }
   return shorten(lines, kLongestMessage);
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_whole = error == std::errc() && end == text.data() + text.size();
+  return is_whole && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+std::size_t find_name(std::string_view name, const std::vector<std::string>& known, std::string_view what) {
+  const auto found = std::ranges::find(known, name);
+  if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+  throw Error(ErrorKind::kUsage, fmt::format("unknown {} '{}'; known: {}", what, name, fmt::join(known, ", ")));
 }
 
 }  // namespace shadowbench

@@ -37,4 +37,31 @@ std::string make_visible(std::string_view text);
 /// length. What is left out of the middle of a line, or of all lines, is counted.
 std::string make_readable(std::string_view message);
 
+/// A finite number that is the whole text.
+std::optional<double> parse_number(std::string_view text);
+
+// The words for the values of an enumeration stand beside it, in its order:
+// `constexpr auto names_of(Border) { return std::array{"border", "edge", "repeat"}; }`
+
+template <class Enum>
+constexpr const char* name_of(Enum value) {
+  return names_of(value)[static_cast<std::size_t>(value)];
+}
+
+/// All words.
+template <class Enum>
+std::vector<std::string> list_names() {
+  const auto names = names_of(Enum());
+  return {names.begin(), names.end()};
+}
+
+/// The place of a name. Throws Error(kUsage) "unknown WHAT 'x'; known: a, b" where it is none of these.
+std::size_t find_name(std::string_view name, const std::vector<std::string>& known, std::string_view what);
+
+/// The value of a word. Throws likewise.
+template <class Enum>
+Enum parse_name(std::string_view name, std::string_view what) {
+  return static_cast<Enum>(find_name(name, list_names<Enum>(), what));
+}
+
 }  // namespace shadowbench

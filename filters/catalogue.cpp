@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <system_error>
 #include <tuple>
@@ -39,14 +38,12 @@ std::string list_choices(const ParamSpec& param) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-double parse_number(const FilterSpec& spec, const ParamSpec& param, const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    fail(fmt::format("{}:{}='{}' is not a finite number", spec.id, param.name, text));
-  if (param.integer && value != std::floor(value))
+double parse_param(const FilterSpec& spec, const ParamSpec& param, const std::string& text) {
+  const std::optional<double> value = parse_number(text);
+  if (!value) fail(fmt::format("{}:{}='{}' is not a finite number", spec.id, param.name, text));
+  if (param.integer && *value != std::floor(*value))
     fail(fmt::format("{}:{}={} must be a whole number", spec.id, param.name, text));
-  return value;
+  return *value;
 }
 
 void check_range(const FilterSpec& spec, const ParamSpec& param, double value) {
@@ -109,6 +106,32 @@ FilterSpec strip(FilterSpec spec) {
   return spec;
 }
 
+std::string read_text(const TomlTable& table, const char* key) {
+  std::string text = table.string(key);
+  if (text.empty()) throw table.error(key, fmt::format("'{}' is empty; say it, as the other presets do", key));
+  return text;
+}
+
+Preset read_preset(const TomlTable& table) {
+  table.require_known_keys({"name", "title", "filter", "bias", "bias_options", "differs", "source", "version"});
+  Preset preset{read_text(table, "name"),
+                read_text(table, "title"),
+                read_text(table, "filter"),
+                read_text(table, "bias"),
+                table.strings("bias_options", std::vector<std::string>()),
+                read_text(table, "differs"),
+                table.strings("source"),
+                read_text(table, "version"),
+                table.where()};
+  if (preset.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789.-") != std::string::npos)
+    throw table.error("name", fmt::format("'{}' cannot be a preset's name: lower-case letters, digits, '.' and '-' can",
+                                          preset.name));
+  if (preset.filter.find('@') != std::string::npos)
+    throw table.error("filter", fmt::format("'{}' is a preset; name a filter with its parameters", preset.filter));
+  if (preset.sources.empty()) throw table.error("source", "'source' is empty; give the address of what was read");
+  return preset;
+}
+
 }  // namespace
 
 std::string FilterRequest::label() const {
@@ -169,7 +192,7 @@ ParamValue parse_value(const FilterSpec& spec, const std::string& name, const st
     return text == "true";
   }
   const bool numeric = std::holds_alternative<double>(param->default_value);
-  const ParamValue value = numeric ? ParamValue(parse_number(spec, *param, text)) : ParamValue(text);
+  const ParamValue value = numeric ? ParamValue(parse_param(spec, *param, text)) : ParamValue(text);
   if (!param->choices.empty()) {
     if (std::find(param->choices.begin(), param->choices.end(), value) != param->choices.end()) return value;
     fail(fmt::format("{}:{}={} is not among its choices: {}", spec.id, name, text, list_choices(*param)));
@@ -290,36 +313,6 @@ std::vector<FilterRequest> Catalogue::parse_requests(const std::string& text) co
   for (FilterRequest& request : requests) apply_width(request);
   return merge_presets(std::move(requests));
 }
-
-namespace {
-
-std::string read_text(const TomlTable& table, const char* key) {
-  std::string text = table.string(key);
-  if (text.empty()) throw table.error(key, fmt::format("'{}' is empty; say it, as the other presets do", key));
-  return text;
-}
-
-Preset read_preset(const TomlTable& table) {
-  table.require_known_keys({"name", "title", "filter", "bias", "bias_options", "differs", "source", "version"});
-  Preset preset{read_text(table, "name"),
-                read_text(table, "title"),
-                read_text(table, "filter"),
-                read_text(table, "bias"),
-                table.strings("bias_options", std::vector<std::string>()),
-                read_text(table, "differs"),
-                table.strings("source"),
-                read_text(table, "version"),
-                table.where()};
-  if (preset.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789.-") != std::string::npos)
-    throw table.error("name", fmt::format("'{}' cannot be a preset's name: lower-case letters, digits, '.' and '-' can",
-                                          preset.name));
-  if (preset.filter.find('@') != std::string::npos)
-    throw table.error("filter", fmt::format("'{}' is a preset; name a filter with its parameters", preset.filter));
-  if (preset.sources.empty()) throw table.error("source", "'source' is empty; give the address of what was read");
-  return preset;
-}
-
-}  // namespace
 
 std::vector<Preset> load_presets(const std::filesystem::path& file) {
   const TomlTable root = read_toml(file, "the file of presets");

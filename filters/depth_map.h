@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,6 +16,7 @@ enum class Border {
   kEdge,    ///< the nearest texel of the map: casters at its edge are smeared outwards
   kRepeat,  ///< the map over and over: its shadows are tiled
 };
+constexpr auto names_of(Border) { return std::array{"border", "edge", "repeat"}; }
 
 /// What a lookup does with receivers that the map says nothing about. The defaults are right; each other choice shows
 /// an artefact.
@@ -24,15 +26,6 @@ struct RangeRule {
   bool behind_test =
       true;  ///< projective maps: behind the light is lit; without, the map is mirrored through the light
 };
-
-/// Lists the names of the borders, in the order of the enumerators: border, edge, repeat.
-const std::vector<std::string>& border_names();
-
-/// A border's name.
-const std::string& to_string(Border border);
-
-/// The border of that name. Throws Error(kUsage) for any other, with the names that there are.
-Border parse_border(const std::string& name);
 
 /// How a map stores depth. Filters see linear depth z in [0,1], 0 near; a map may instead hold the depth of a
 /// perspective projection, R z / (1 + (R - 1) z), where R = `far_over_near` is the distance of its far plane divided by
@@ -77,11 +70,19 @@ struct DepthFormat {
 
 /// The distance between neighbouring values of a format at a depth: 1 / (2^bits - 1), or the ULP of a float with 24
 /// significant bits.
-double depth_quantum(double depth, const DepthFormat& format);
+inline double depth_quantum(double depth, const DepthFormat& format) {
+  if (!format.is_float) return 1.0 / (std::exp2(format.bits) - 1.0);
+  // Depth below the smallest normal number is 0 on most GLs.
+  const double size = std::max(std::abs(depth), double{std::numeric_limits<float>::min()});
+  return std::exp2(std::floor(std::log2(size)) - 23.0);
+}
 
 /// By how much two depths must differ at a depth for a format to tell them apart: (1 + (R - 1) z)^2 / R times the
 /// format's quantum at what is stored.
-double depth_step(double depth, const DepthCurve& curve, const DepthFormat& format);
+inline double depth_step(double depth, const DepthCurve& curve, const DepthFormat& format) {
+  const double ratio = curve.far_over_near, distance = 1.0 + (ratio - 1.0) * depth;  // in units of the near plane's
+  return distance * distance / ratio * depth_quantum(curve.store(depth), format);
+}
 
 /// A depth map as read back from the GL; row 0 is v = 0.
 struct DepthMap {

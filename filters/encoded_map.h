@@ -13,7 +13,7 @@
 
 namespace shadowbench::filters {
 
-/// What encode() is told of a texel; the same in shaders/lib/encode_input.glsl, but for the sign of the slopes.
+/// What encode() is told of a texel; the same in shaders/lib/filter.glsl, but for the sign of the slopes.
 template <class T>
 struct EncodeInput {
   T depth{};

@@ -22,11 +22,6 @@ const ParamSpec* FilterSpec::find_param(const std::string& name) const {
   return found == params.end() ? nullptr : &*found;
 }
 
-std::string to_string(FilterKind kind) {
-  constexpr const char* kNames[] = {"comparison", "stochastic", "bound", "other"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
 Ends ends_of(const ParamSpec& param) {
   if (param.choices.empty()) return {*param.min, *param.max};
   Ends ends{std::get<double>(param.choices.front()), std::get<double>(param.choices.front())};

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <fmt/format.h>
-
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,6 +23,7 @@ inline constexpr int kMaxPrefilterRadius = 64;
 
 /// Which contract a filter keeps, and so which tests apply to it.
 enum class FilterKind { kComparison, kStochastic, kBound, kOther };
+constexpr auto names_of(FilterKind) { return std::array{"comparison", "stochastic", "bound", "other"}; }
 
 /// One parameter, as the front matter declares it.
 struct ParamSpec {
@@ -128,9 +128,6 @@ struct FilterSpec {
   bool operator==(const FilterSpec&) const = default;
 };
 
-/// The names `comparison`, `bound`, `stochastic`, `other`.
-std::string to_string(FilterKind kind);
-
 /// Writes a value as the command line would take it.
 std::string to_string(const ParamValue& value);
 
@@ -178,11 +175,11 @@ std::vector<ScreenSpec> list_screens(const FilterSpec& spec, const ParamValues& 
 /// How far a screen pass says that it reads, pixels.
 int reach_pixels(const ScreenSpec& screen, const ParamValues& values);
 
-/// The samples of depth a texel that encode() is asked for, and whose mean is stored: 1, or what `samples` says.
-int depth_samples(const ParamValues& values);
-
 /// The radius in texels of the Gaussian prefilter, 0 where the filter has none.
 int prefilter_radius_texels(const FilterSpec& spec, const ParamValues& values);
+
+/// The samples of depth a texel that encode() is asked for, and whose mean is stored: 1, or what `samples` says.
+int depth_samples(const ParamValues& values);
 
 /// A filter whose file cannot be used, and why.
 struct FilterMistake {
@@ -205,7 +202,7 @@ class FilterErrors : public Error {
 
   static std::string describe(const std::vector<FilterMistake>& mistakes) {
     if (mistakes.size() == 1) return mistakes.front().message;
-    std::string text = fmt::format("{} filters have mistakes", mistakes.size());
+    std::string text = std::to_string(mistakes.size()) + " filters have mistakes";
     for (const FilterMistake& mistake : mistakes) text += "\n" + mistake.message;
     return text;
   }

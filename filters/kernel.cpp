@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -39,6 +38,77 @@ double half_width_of(Reconstruction reconstruction) {
   }
   return 0.0;
 }
+
+constexpr double kSlack = 0.005;           // of a width: what three digits round off
+constexpr double kRadiiPerTexel = 1000.0;  // among those that need not be whole
+
+std::array<WidthClass, 3> make_classes() {
+  const Kernel fetch = Kernel::make_point(Reconstruction::kBilinear), disk = Kernel::make_disk(3.0);
+  const Kernel tent = Kernel::make_box(2);
+  const double sharp = fetch.sigma_texels(), medium = tent.sigma_texels(), soft = disk.sigma_texels();
+  return {WidthClass{"sharp", sharp, std::sqrt(sharp * medium)}, WidthClass{"medium", medium, std::sqrt(medium * soft)},
+          WidthClass{"soft", soft, soft * std::sqrt(soft / medium)}};
+}
+
+[[noreturn]] void refuse_width(const FilterSpec& spec, const std::string& width, const std::string& why) {
+  throw Error(ErrorKind::kUsage, fmt::format("{}:width={}: {}", spec.id, width, why));
+}
+
+/// What a width stands for, in texels.
+double parse_width(const FilterSpec& spec, const std::string& width) {
+  if (const auto texels = find_width(width)) return *texels;
+  refuse_width(spec, width, explain_no_width(width));
+}
+
+/// The radii that a parameter can be, ascending: all of them, or the two ends of a range.
+std::vector<double> list_radii(const ParamSpec& param) {
+  std::vector<double> radii;
+  for (const ParamValue& choice : param.choices) radii.push_back(std::get<double>(choice));
+  if (radii.empty() && !param.integer) radii = {*param.min, *param.max};
+  if (radii.empty())
+    for (double radius = *param.min; radius <= *param.max; radius += 1.0) radii.push_back(radius);
+  std::ranges::sort(radii);
+  return radii;
+}
+
+/// The radii of a filter, and the width of its kernel with each.
+class RadiusRange {
+ public:
+  RadiusRange(const FilterSpec& spec, const ParamValues& values, const std::string& name)
+      : spec_(spec), values_(values), param_(*spec.find_param(name)), radii_(list_radii(param_)) {}
+
+  double sigma_at(double radius) const {
+    ParamValues trial = values_;
+    trial[param_.name] = radius;
+    return *find_kernel_sigma(spec_, trial);
+  }
+  double narrowest() const { return sigma_at(radii_.front()); }
+  double widest() const { return sigma_at(radii_.back()); }
+
+  /// The radius nearest to a width; of whole numbers and choices one within the class, where there is one.
+  double find_nearest(double wanted, const WidthClass* wanted_class) const {
+    if (param_.integer || !param_.choices.empty()) {
+      const auto distance = [&](double radius) {
+        const double sigma = sigma_at(radius);
+        const double strays = wanted_class && find_width_class(sigma) != wanted_class ? 1e3 : 0.0;
+        return strays + std::abs(std::log(sigma / wanted));
+      };
+      return *std::ranges::min_element(radii_, {}, distance);
+    }
+    double low = radii_.front(), high = radii_.back();
+    while (high - low > 0.01 / kRadiiPerTexel) {
+      const double middle = 0.5 * (low + high);
+      (sigma_at(middle) < wanted ? low : high) = middle;
+    }
+    return std::clamp(std::round(high * kRadiiPerTexel) / kRadiiPerTexel, radii_.front(), radii_.back());
+  }
+
+ private:
+  const FilterSpec& spec_;
+  const ParamValues& values_;
+  const ParamSpec& param_;
+  std::vector<double> radii_;
+};
 
 }  // namespace
 
@@ -134,81 +204,6 @@ std::vector<float> gaussian_weights(int radius_texels) {
   return weights;
 }
 
-namespace {
-
-constexpr double kSlack = 0.005;           // of a width: what three digits round off
-constexpr double kRadiiPerTexel = 1000.0;  // among those that need not be whole
-
-std::array<WidthClass, 3> make_classes() {
-  const Kernel fetch = Kernel::make_point(Reconstruction::kBilinear), disk = Kernel::make_disk(3.0);
-  const Kernel tent = Kernel::make_box(2);
-  const double sharp = fetch.sigma_texels(), medium = tent.sigma_texels(), soft = disk.sigma_texels();
-  return {WidthClass{"sharp", sharp, std::sqrt(sharp * medium)}, WidthClass{"medium", medium, std::sqrt(medium * soft)},
-          WidthClass{"soft", soft, soft * std::sqrt(soft / medium)}};
-}
-
-[[noreturn]] void refuse_width(const FilterSpec& spec, const std::string& width, const std::string& why) {
-  throw Error(ErrorKind::kUsage, fmt::format("{}:width={}: {}", spec.id, width, why));
-}
-
-/// What a width stands for, in texels.
-double parse_width(const FilterSpec& spec, const std::string& width) {
-  if (const auto texels = find_width(width)) return *texels;
-  refuse_width(spec, width, explain_no_width(width));
-}
-
-/// The radii that a parameter can be, ascending: all of them, or the two ends of a range.
-std::vector<double> list_radii(const ParamSpec& param) {
-  std::vector<double> radii;
-  for (const ParamValue& choice : param.choices) radii.push_back(std::get<double>(choice));
-  if (radii.empty() && !param.integer) radii = {*param.min, *param.max};
-  if (radii.empty())
-    for (double radius = *param.min; radius <= *param.max; radius += 1.0) radii.push_back(radius);
-  std::ranges::sort(radii);
-  return radii;
-}
-
-/// The radii of a filter, and the width of its kernel with each.
-class RadiusRange {
- public:
-  RadiusRange(const FilterSpec& spec, const ParamValues& values, const std::string& name)
-      : spec_(spec), values_(values), param_(*spec.find_param(name)), radii_(list_radii(param_)) {}
-
-  double sigma_at(double radius) const {
-    ParamValues trial = values_;
-    trial[param_.name] = radius;
-    return *find_kernel_sigma(spec_, trial);
-  }
-  double narrowest() const { return sigma_at(radii_.front()); }
-  double widest() const { return sigma_at(radii_.back()); }
-
-  /// The radius nearest to a width; of whole numbers and choices one within the class, where there is one.
-  double find_nearest(double wanted, const WidthClass* wanted_class) const {
-    if (param_.integer || !param_.choices.empty()) {
-      const auto distance = [&](double radius) {
-        const double sigma = sigma_at(radius);
-        const double strays = wanted_class && find_width_class(sigma) != wanted_class ? 1e3 : 0.0;
-        return strays + std::abs(std::log(sigma / wanted));
-      };
-      return *std::ranges::min_element(radii_, {}, distance);
-    }
-    double low = radii_.front(), high = radii_.back();
-    while (high - low > 0.01 / kRadiiPerTexel) {
-      const double middle = 0.5 * (low + high);
-      (sigma_at(middle) < wanted ? low : high) = middle;
-    }
-    return std::clamp(std::round(high * kRadiiPerTexel) / kRadiiPerTexel, radii_.front(), radii_.back());
-  }
-
- private:
-  const FilterSpec& spec_;
-  const ParamValues& values_;
-  const ParamSpec& param_;
-  std::vector<double> radii_;
-};
-
-}  // namespace
-
 const std::array<WidthClass, 3>& width_classes() {
   static const std::array<WidthClass, 3> classes = make_classes();
   return classes;
@@ -242,10 +237,7 @@ std::optional<double> find_kernel_sigma(const FilterSpec& spec, const ParamValue
 std::optional<double> find_width(const std::string& width) {
   for (const WidthClass& each : width_classes())
     if (each.name == width) return each.sigma_texels;
-  double texels = 0.0;
-  const auto [end, error] = std::from_chars(width.data(), width.data() + width.size(), texels);
-  const bool is_number = error == std::errc() && end == width.data() + width.size() && std::isfinite(texels);
-  return is_number ? std::optional(texels) : std::nullopt;
+  return parse_number(width);
 }
 
 std::string explain_no_width(const std::string& width) {

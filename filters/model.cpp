@@ -1,5 +1,8 @@
 #include "filters/model.h"
 
+#include <tbb/parallel_for.h>
+
+#include "filters/encoded_map.h"
 #include "filters/front_matter.h"
 #include "filters/screen.h"
 
@@ -26,6 +29,8 @@ const char* explain_no_kernel(const FilterSpec& spec, const ParamValues& values)
   return make_model(spec) ? "the filter's kernel differs from pixel to pixel"
                           : "the filter declares no kernel, and has no scalar model that knows it";
 }
+
+void visit_rows(int rows, const std::function<void(int row)>& visit) { tbb::parallel_for(0, rows, visit); }
 
 void ScreenPicture::add(const Receiver& receiver, const ModelResult& result) {
   Pixel& pixel = pixels_[static_cast<std::size_t>(receiver.pixel.y * size_.x + receiver.pixel.x)];

@@ -105,26 +105,27 @@ class TemplatedLookup final : public Lookup {
   Filter filter_;
 };
 
+/// Calls `use` with the type of that arithmetic.
+auto with_type(Precision precision, const auto& use) {
+  switch (precision) {
+    case Precision::kFloat: return use.template operator()<float>();
+    case Precision::kExtended: return use.template operator()<long double>();
+    case Precision::kTracked: return use.template operator()<Tracked>();
+    default: return use.template operator()<double>();
+  }
+}
+
 template <template <class> class Filter>
 std::unique_ptr<Lookup> prepare_templated(const ModelInput& input, Precision precision) {
-  switch (precision) {
-    case Precision::kFloat: return std::make_unique<TemplatedLookup<Filter<float>>>(input);
-    case Precision::kDouble: return std::make_unique<TemplatedLookup<Filter<double>>>(input);
-    case Precision::kExtended: return std::make_unique<TemplatedLookup<Filter<long double>>>(input);
-    case Precision::kTracked: return std::make_unique<TemplatedLookup<Filter<Tracked>>>(input);
-  }
-  return nullptr;
+  return with_type(
+      precision,
+      [&]<class T>() -> std::unique_ptr<Lookup> { return std::make_unique<TemplatedLookup<Filter<T>>>(input); });
 }
 
 template <template <class> class Filter>
 ModelResult screen_templated(const ScreenPicture& picture, glm::ivec2 pixel, int step, Precision precision) {
-  switch (precision) {
-    case Precision::kFloat: return Filter<float>::screen(picture, pixel, step);
-    case Precision::kDouble: return Filter<double>::screen(picture, pixel, step);
-    case Precision::kExtended: return Filter<long double>::screen(picture, pixel, step);
-    case Precision::kTracked: return Filter<Tracked>::screen(picture, pixel, step);
-  }
-  return {};
+  return with_type(
+      precision, [&]<class T>() { return Filter<T>::screen(picture, pixel, step); });
 }
 
 /// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and

@@ -1,12 +1,5 @@
 // Turns the depth map into what the filter stores; of several samples a texel it stores the mean.
-#include "lib/receiver.glsl"
-#include "lib/map_access.glsl"
-#include "lib/random.glsl"
-#include "lib/encode_input.glsl"
-#include "lib/pass_input.glsl"
-#include "lib/screen_input.glsl"
-#include "filter_parameters"
-#include "filter"
+#include "lib/filter.glsl"
 
 uniform int encode_border;  // 1: encode depth 1, which is what lies outside the map
 

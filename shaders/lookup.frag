@@ -1,12 +1,5 @@
 // Asks the filter for the visibility of every receiver; timed.
-#include "lib/receiver.glsl"
-#include "lib/map_access.glsl"
-#include "lib/random.glsl"
-#include "lib/encode_input.glsl"
-#include "lib/pass_input.glsl"
-#include "lib/screen_input.glsl"
-#include "filter_parameters"
-#include "filter"
+#include "lib/filter.glsl"
 
 #ifdef SCREEN
 layout(location = 0) out vec2 out_screen;  // as screen passes read it

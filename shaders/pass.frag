@@ -1,12 +1,5 @@
 // One step of a pass of a filter's own. PASS is the name of its function, PASS_TEXEL what that gives.
-#include "lib/receiver.glsl"
-#include "lib/map_access.glsl"
-#include "lib/random.glsl"
-#include "lib/encode_input.glsl"
-#include "lib/pass_input.glsl"
-#include "lib/screen_input.glsl"
-#include "filter_parameters"
-#include "filter"
+#include "lib/filter.glsl"
 
 uniform ivec2 pass_size;
 uniform int pass_step;

@@ -1,12 +1,5 @@
 // One step of a filter's screen pass. PASS is the name of its function.
-#include "lib/receiver.glsl"
-#include "lib/map_access.glsl"
-#include "lib/random.glsl"
-#include "lib/encode_input.glsl"
-#include "lib/pass_input.glsl"
-#include "lib/screen_input.glsl"
-#include "filter_parameters"
-#include "filter"
+#include "lib/filter.glsl"
 
 uniform int pass_step;
 

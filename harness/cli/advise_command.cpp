@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -9,6 +8,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "filters/kernel.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
@@ -42,9 +42,7 @@ struct AdviseArguments {
 };
 
 double parse_limit(const std::string& text, const char* option) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value >= 0.0) return value;
+  if (const std::optional<double> value = parse_number(text); value && *value >= 0.0) return *value;
   fail(fmt::format("{}: '{}' must be a number, 0 or more", option, text));
 }
 

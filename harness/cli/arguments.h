@@ -68,7 +68,7 @@ std::filesystem::path choose_cache(const DrawingArguments& arguments);
 template <class Options>
 void take_drawing_options(const DrawingArguments& arguments, Options& options) {
   options.resources = options::find_resources();
-  options.backend = gl::parse_backend(arguments.backend);
+  options.backend = parse_name<gl::Backend>(arguments.backend, "GL back end");
   options.cache = choose_cache(arguments);
   options.out = arguments.out;
   options.force = arguments.force;

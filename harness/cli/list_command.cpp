@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
 #include "base/toml.h"
 #include "filters/catalogue.h"
 #include "filters/kernel.h"
@@ -54,7 +55,7 @@ records::KernelRecord find_kernel(const FilterSpec& spec) {
 }
 
 void print_filter(const FilterSpec& spec) {
-  print("{}  {}\n  kind {}{}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title, filters::to_string(spec.kind),
+  print("{}  {}\n  kind {}{}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title, name_of(spec.kind),
         spec.bound_at_zero.empty() ? "" : ", with " + spec.bound_at_zero + "=0", spec.teaching ? ", for teaching" : "",
         filters::make_model(spec) ? "" : ", without a model", records::describe_kernel(find_kernel(spec)), spec.source);
   if (const std::string stored = describe_stored(spec); !stored.empty()) print("  its map holds: {}\n", stored);
@@ -98,7 +99,7 @@ nlohmann::json to_json(const FilterSpec& spec) {
   return {{"id", spec.id},
           {"title", spec.title},
           {"source", spec.source},
-          {"kind", filters::to_string(spec.kind)},
+          {"kind", name_of(spec.kind)},
           {"claims", spec.claims},
           {"teaching", spec.teaching},
           {"kernel", to_json(find_kernel(spec))},
@@ -215,7 +216,7 @@ int list_gpus(const ListArguments& arguments) {
 }
 
 int list_gl(const ListArguments& arguments) {
-  const gl::ContextChoice choice = gl::create_context(gl::parse_backend(arguments.backend));
+  const gl::ContextChoice choice = gl::create_context(parse_name<gl::Backend>(arguments.backend, "GL back end"));
   for (const std::string& reason : choice.refused) print("not used: {}\n", reason);
   const gl::GlInfo& info = choice.context->info();
   print("{}: {}, OpenGL {}, maps up to {} x {}\n", info.backend, info.renderer, info.version, info.max_texture_size,

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/folder_lock.h"
 #include "filters/filter_spec.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
@@ -13,7 +14,6 @@
 #include "harness/gpu/facts_request.h"
 #include "harness/run/merge.h"
 #include "harness/run/run_experiment.h"
-#include "report/files/folder_lock.h"
 #include "report/pages/advice_text.h"
 #include "report/pages/answer.h"
 #include "report/records/json_io.h"
@@ -75,7 +75,7 @@ void note_filter_mistakes(const RunArguments& arguments, const std::exception& c
     mistakes = {{std::filesystem::path(file).stem().string(), file, error->what()}};
   }
   try {
-    const files::FolderLock lock(out, arguments.force);
+    const FolderLock lock(out, arguments.force);
     records::write_filter_mistakes(out, mistakes);
   } catch (const Error&) {
     // What is wrong with the filters is to be told first; the folder is complained of once they are right.

@@ -9,10 +9,10 @@
 #include "harness/cli/terminal.h"
 #include "harness/engines/exported_scene.h"
 #include "harness/engines/score_run.h"
+#include "report/records/csv_tables.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
 #include "report/records/records.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::cli {
 namespace {

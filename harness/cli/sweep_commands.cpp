@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "harness/cli/arguments.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/terminal.h"
@@ -60,7 +61,7 @@ stress::StressOptions make_stress_options(const StressArguments& arguments, cons
   }
   stress::StressOptions options;
   options.resources = options::find_resources();
-  options.backend = gl::parse_backend(arguments.backend);
+  options.backend = parse_name<gl::Backend>(arguments.backend, "GL back end");
   options.out = arguments.out;
   options.force = arguments.force;
   options.filters = parse_builtin_filters(arguments.filters, options.resources);

@@ -8,12 +8,11 @@
 #include <sstream>
 
 #include "base/files.h"
+#include "base/folder_lock.h"
 #include "harness/run/provenance.h"
 #include "harness/run/task_images.h"
 #include "harness/scene/files/mesh_file.h"
 #include "reference/truth/cached_tracer.h"
-#include "report/files/file_name.h"
-#include "report/files/folder_lock.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::engines {
@@ -22,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A model's scene is called like its file.
-std::string model_name(const run::PlannedScene& planned) { return files::make_file_stem(planned.scene.name) + ".glb"; }
+std::string model_name(const run::PlannedScene& planned) { return make_file_stem(planned.scene.name) + ".glb"; }
 
 Json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
@@ -130,7 +129,7 @@ void write_exported_scene(const std::filesystem::path& folder, const run::Planne
 
 ExportedScenes export_scenes(const options::RunOptions& options, options::Progress& progress) {
   measure::Renderer renderer = measure::make_renderer(options.backend, options.resources);
-  const files::FolderLock lock(options.out, options.force);
+  const FolderLock lock(options.out, options.force);
   truth::TruthCache cache(options.cache, [&](const std::string& message) { progress.note("warning: " + message); });
   const run::RunPlan plan = run::make_plan(options, renderer.context->info().renderer);
   ExportedScenes exported;

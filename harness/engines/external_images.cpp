@@ -7,12 +7,11 @@
 #include <cctype>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 #include "base/error.h"
 #include "base/files.h"
 #include "base/text.h"
-#include "report/images/stored_picture.h"
+#include "report/images/picture_io.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::engines {
@@ -212,16 +211,7 @@ std::vector<double> look_up(const OwnMap& map, const truth::ReceiverImage& recei
 
 Meta read_meta(const std::filesystem::path& file) {
   const std::string where = file.string();
-  json read;
-  try {
-    const std::vector<unsigned char> bytes = read_file_bytes(file, kMebibyte);
-    std::istringstream text(std::string(bytes.begin(), bytes.end()));
-    read = records::parse_json(text);
-  } catch (const json::exception& e) {
-    fail_input(fmt::format("this is no JSON ({})", e.what()), where);
-  } catch (const std::invalid_argument& e) {
-    fail_input(e.what(), where);
-  }
+  const json read = records::read_json_file(file, kMebibyte, "write it anew");
   if (!read.is_object())
     fail_input("a meta.json is one object, such as {\"engine\": \"three.js\", \"version\": \"r187\"}", where);
   Meta meta;

@@ -10,6 +10,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "base/folder_lock.h"
 #include "harness/engines/exported_scene.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/render/picture_passes.h"
@@ -17,8 +18,6 @@
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
 #include "reference/metrics/error_stats.h"
-#include "report/files/file_name.h"
-#include "report/files/folder_lock.h"
 #include "report/images/picture_io.h"
 #include "report/pages/write_page.h"
 #include "report/records/cell_key.h"
@@ -406,10 +405,10 @@ std::pair<records::CellRecord, std::vector<Finding>> RunScorer::score(const Scor
   ContentHash content;
   content.add_values(std::span<const float>(cell.visibility.texels));
   cell.record.content = content.name();
-  const files::FolderLock lock(options_.out);
+  const FolderLock lock(options_.out);
   run::write_cell_pictures(planned.options, task.task, cell, truth.mask);
   cell.record.images.exr =
-      fmt::format("{}.{}.exr", run::task_stem(planned.options, task.task), files::make_file_stem(request.name));
+      fmt::format("{}.{}.exr", run::task_stem(planned.options, task.task), make_file_stem(request.name));
   cell.record.images.parts = cell.label;
   images::write_exr(options_.out / *cell.record.images.exr,
                     {{cell.label + ".visibility", {"Y"}, cell.visibility, false}},
@@ -452,7 +451,7 @@ void RunScorer::export_place(const analysis::Place& place, const std::filesystem
 }
 
 void RunScorer::finish() {
-  const files::FolderLock lock(options_.out);
+  const FolderLock lock(options_.out);
   results_ = records::read_results(options_.out / "results.json");  // others may have scored meanwhile
   for (const records::CellRecord& row : rows_) insert(row);
   std::vector<std::string> keys;

@@ -47,6 +47,16 @@ const PixelFormat& find_by_name(std::string_view name, const char* kind, bool de
               fmt::format("unknown {} format '{}'; there are {}", kind, name, fmt::join(known, ", ")));
 }
 
+// Transfers depend on global state that other code may have changed.
+void reset_transfer_state() {
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  for (const GLenum name : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(name, 1);
+  for (const GLenum name : {GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_UNPACK_ROW_LENGTH,
+                            GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS})
+    glPixelStorei(name, 0);
+}
+
 }  // namespace
 
 GLenum PixelFormat::transfer_format(int count) const {
@@ -132,20 +142,6 @@ void require_allocated(std::string_view what) {
     throw std::logic_error(fmt::format("{}: {} in making it, or before", what, gl_error_name(errors.front())));
 }
 
-namespace {
-
-// Transfers depend on global state that other code may have changed.
-void reset_transfer_state() {
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-  for (const GLenum name : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(name, 1);
-  for (const GLenum name : {GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_UNPACK_ROW_LENGTH,
-                            GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS})
-    glPixelStorei(name, 0);
-}
-
-}  // namespace
-
 void require_texture_size(std::string_view label, int width, int height) {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
@@ -184,12 +180,6 @@ void Texture::set_wrap(GLenum mode) {
 }
 
 void Texture::set_last_level(int level) { glTextureParameteri(id(), GL_TEXTURE_MAX_LEVEL, level); }
-
-void Texture::set_compare(GLenum function) {
-  const bool on = function != GL_NONE;
-  glTextureParameteri(id(), GL_TEXTURE_COMPARE_MODE, on ? GL_COMPARE_REF_TO_TEXTURE : GL_NONE);
-  if (on) glTextureParameteri(id(), GL_TEXTURE_COMPARE_FUNC, static_cast<GLint>(function));
-}
 
 void Texture::upload_floats(std::span<const float> texels, int channels) {
   upload(texels.size(), channels, GL_FLOAT, texels.data());
@@ -241,7 +231,10 @@ int Texture::depth_bits() const {
   return bits;
 }
 
-void Texture::bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
+void Texture::bind(GLuint unit) const {
+  glBindSampler(unit, 0);
+  glBindTextureUnit(unit, id());
+}
 
 std::size_t Texture::bytes() const {
   std::size_t total = 0;
@@ -346,8 +339,6 @@ void Sampler::set_compare(GLenum function) {
 }
 
 void Sampler::bind(GLuint unit) const { glBindSampler(unit, id()); }
-
-void Sampler::unbind(GLuint unit) { glBindSampler(unit, 0); }
 
 VertexArray::VertexArray(std::string_view label) : handle_(label) {}
 

@@ -94,8 +94,6 @@ class Texture {
   void set_wrap(GLenum mode);
   /// Hides the mip levels above this one from reading.
   void set_last_level(int level);
-  /// Compares on sampling, with GL_LEQUAL for instance; GL_NONE turns that off.
-  void set_compare(GLenum function);
 
   /// Overwrites level 0. Requires: width * height * channels values.
   void upload_floats(std::span<const float> texels, int channels);
@@ -110,7 +108,7 @@ class Texture {
   /// The same for the one texel at (x, y).
   std::vector<float> read_texel(int x, int y, int channels) const;
 
-  /// Binds to texture unit `unit`; a bound Sampler overrides this texture's own filter, wrap, border and compare.
+  /// Binds to a texture unit, where its own filter and wrap hold until a Sampler is bound there.
   void bind(GLuint unit) const;
 
   int width() const { return width_; }
@@ -220,8 +218,6 @@ class Sampler {
 
   /// Binds to texture unit `unit`, overriding the state of whatever texture is bound there.
   void bind(GLuint unit) const;
-  /// Unbinds from a texture unit, where the texture's own state then holds again.
-  static void unbind(GLuint unit);
 
   GLuint id() const { return handle_.id(); }
 

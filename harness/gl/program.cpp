@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "filters/glsl_words.h"
 
 namespace shadowbench::gl {
 namespace {
@@ -90,6 +91,7 @@ class Builder {
     for (const auto& [name, value] : options_.defines) source_.text += fmt::format("#define {} {}\n", name, value);
     auto found = find(options_.main_file);
     if (!found) throw Error(ErrorKind::kInput, describe_missing(options_.main_file));
+    done_.insert(found->key);
     append(*found);
     return std::move(source_);
   }
@@ -121,7 +123,6 @@ class Builder {
       throw Error(found.blame, "a NUL byte: this is no text, or was damaged; take the byte out",
                   fmt::format("{}:{}", found.display_name, found.first_line + lines));
     }
-    open_.push_back(found.key);
     const auto index = source_.files.size();
     source_.files.push_back(found.display_name);
     std::string_view rest = found.text;
@@ -141,7 +142,6 @@ class Builder {
     }
     if (in_comment)
       throw Error(found.blame, "a comment is not closed", fmt::format("{}:{}", found.display_name, comment_line));
-    open_.pop_back();
   }
 
   // Returns whether the line was an include and has been replaced.
@@ -165,8 +165,6 @@ class Builder {
     }
     const auto found = find(*name);
     if (!found) throw Error(from.blame, describe_missing(*name), where);
-    if (std::ranges::find(open_, found->key) != open_.end())
-      throw Error(from.blame, fmt::format("'{}' includes itself, directly or through others", *name), where);
     if (done_.insert(found->key).second) append(*found);
     append_line_directive(number + 1, index);
     return true;
@@ -179,29 +177,8 @@ class Builder {
 
   const SourceOptions& options_;
   ShaderSource source_;
-  std::vector<std::string> open_;
   std::set<std::string> done_;
 };
-
-}  // namespace
-
-ShaderSource build_source(const SourceOptions& options) { return Builder(options).build(); }
-
-extern const std::string_view kOwnShaders;  // shaders.glsl
-
-ShaderSource embedded_source(const std::string& name) {
-  const std::string mark = "\n//: ", heading = mark + name + "\n";
-  const std::size_t at = kOwnShaders.find(heading);
-  if (at == std::string_view::npos) throw std::logic_error("no embedded shader '" + name + "'");
-  const std::string_view before = kOwnShaders.substr(0, at + heading.size()), rest = kOwnShaders.substr(before.size());
-  const auto first_line = static_cast<int>(std::ranges::count(before, '\n')) + 1;
-  SourceOptions options;
-  options.main_file = name;
-  options.pieces = {{name, std::string(rest.substr(0, rest.find(mark))), "harness/gl/shaders.glsl", first_line}};
-  return build_source(options);
-}
-
-namespace {
 
 constexpr std::string_view kErrorWord = "error: ";  ///< which the caller's sentence has already
 
@@ -253,37 +230,6 @@ Complaint parse_line(const std::string& line, const std::vector<std::string>& fi
   return complaint;
 }
 
-}  // namespace
-
-std::string Complaint::where() const { return file.empty() ? "" : fmt::format("{}:{}", file, line); }
-
-ShaderLog translate_log(std::string_view log, const std::vector<std::string>& files) {
-  ShaderLog result;
-  std::string others;
-  while (!log.empty()) {
-    const std::size_t end = log.find('\n');
-    std::string line(log.substr(0, end));
-    log.remove_prefix(end == std::string_view::npos ? log.size() : end + 1);
-    while (!line.empty() && (line.back() == '\r' || line.back() == '\0' || line.back() == ' ')) line.pop_back();
-    if (line.empty()) continue;
-    Complaint complaint = parse_line(line, files);
-    const std::string told = complaint.text;
-    if (!complaint.file.empty() && told.starts_with(kErrorWord)) complaint.text.erase(0, kErrorWord.size());
-    if (result.message.empty() && complaint.is_error) {
-      result.where = complaint.where();
-      result.message = complaint.text;
-    } else {
-      others += complaint.file.empty() ? "\n" + line : fmt::format("\n{}: {}", complaint.where(), told);
-    }
-    result.complaints.push_back(std::move(complaint));
-  }
-  result.message += others;
-  if (result.message.starts_with('\n')) result.message.erase(0, 1);
-  return result;
-}
-
-namespace {
-
 using Shader = Handle<GL_SHADER>;
 
 std::string read_log(GLuint id, decltype(glGetShaderInfoLog) read, GLint length) {
@@ -318,18 +264,50 @@ Shader compile(std::string_view label, GLenum type, const ShaderSource& source, 
        source.files, blame);
 }
 
-bool is_word_character(char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; }
+}  // namespace
 
-bool contains_word(std::string_view text, std::string_view word) {
-  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    const bool starts = at == 0 || !is_word_character(text[at - 1]);
-    if (starts && (end == text.size() || !is_word_character(text[end]))) return true;
-  }
-  return false;
+ShaderSource build_source(const SourceOptions& options) { return Builder(options).build(); }
+
+extern const std::string_view kOwnShaders;  // shaders.glsl
+
+ShaderSource embedded_source(const std::string& name) {
+  const std::string mark = "\n//: ", heading = mark + name + "\n";
+  const std::size_t at = kOwnShaders.find(heading);
+  if (at == std::string_view::npos) throw std::logic_error("no embedded shader '" + name + "'");
+  const std::string_view before = kOwnShaders.substr(0, at + heading.size()), rest = kOwnShaders.substr(before.size());
+  const auto first_line = static_cast<int>(std::ranges::count(before, '\n')) + 1;
+  SourceOptions options;
+  options.main_file = name;
+  options.pieces = {{name, std::string(rest.substr(0, rest.find(mark))), "harness/gl/shaders.glsl", first_line}};
+  return build_source(options);
 }
 
-}  // namespace
+std::string Complaint::where() const { return file.empty() ? "" : fmt::format("{}:{}", file, line); }
+
+ShaderLog translate_log(std::string_view log, const std::vector<std::string>& files) {
+  ShaderLog result;
+  std::string others;
+  while (!log.empty()) {
+    const std::size_t end = log.find('\n');
+    std::string line(log.substr(0, end));
+    log.remove_prefix(end == std::string_view::npos ? log.size() : end + 1);
+    while (!line.empty() && (line.back() == '\r' || line.back() == '\0' || line.back() == ' ')) line.pop_back();
+    if (line.empty()) continue;
+    Complaint complaint = parse_line(line, files);
+    const std::string told = complaint.text;
+    if (!complaint.file.empty() && told.starts_with(kErrorWord)) complaint.text.erase(0, kErrorWord.size());
+    if (result.message.empty() && complaint.is_error) {
+      result.where = complaint.where();
+      result.message = complaint.text;
+    } else {
+      others += complaint.file.empty() ? "\n" + line : fmt::format("\n{}: {}", complaint.where(), told);
+    }
+    result.complaints.push_back(std::move(complaint));
+  }
+  result.message += others;
+  if (result.message.starts_with('\n')) result.message.erase(0, 1);
+  return result;
+}
 
 Program::Program(std::string_view label, const ShaderSource& vertex, const ShaderSource& fragment,
                  std::optional<ErrorKind> blame, const std::optional<ShaderSource>& geometry)
@@ -365,7 +343,7 @@ GLint Program::location(std::string_view name) {
   const GLint found = glGetUniformLocation(id(), std::string(name).c_str());
   if (found < 0) {
     const std::string_view base = name.substr(0, name.find_first_of(".["));  // `lights` of "lights[0].color"
-    const auto declares = [&](const ShaderSource& source) { return contains_word(source.text, base); };
+    const auto declares = [&](const ShaderSource& source) { return filters::has_word(source.text, base); };
     if (std::ranges::none_of(sources_, declares))
       throw std::logic_error(fmt::format("program '{}' has no uniform '{}'", label_, name));
   }

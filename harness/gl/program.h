@@ -44,8 +44,8 @@ struct SourceOptions {
 /// Puts a shader together: `#version 450 core`, the defines, then `main_file` with every `#include "..."` replaced by
 /// what it names, once each. Every piece keeps its own line numbers.
 /// Throws Error with file and line of the include: kFilter inside a piece, kInput in a file of ours; for a name that no
-/// root has or that leaves the roots, a circle of includes, a malformed include, a comment left open, a `#version` or a
-/// `#line` in the text, a NUL byte, or a text of kLinesPerFile lines.
+/// root has or that leaves the roots, a malformed include, a comment left open, a `#version` or a `#line` in the text,
+/// a NUL byte, or a text of kLinesPerFile lines.
 ShaderSource build_source(const SourceOptions& options);
 
 /// Returns one of this folder's own shaders (shaders.glsl), which are compiled into the program: unlike those in

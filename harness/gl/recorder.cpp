@@ -272,8 +272,7 @@ void Recorder::read_uniforms(GLuint program, DrawStep& draw) const {
     const auto found = textures_.find(id);
     if (found == textures_.end()) continue;
     const auto sampler = static_cast<GLuint>(read_indexed(GL_SAMPLER_BINDING, index));
-    draw.inputs.push_back({uniform.name, found->second.texture,
-                           is_multisampled ? Sampling() : read_sampling(id, sampler), found->second.levels});
+    draw.inputs.push_back({uniform.name, found->second.texture, read_sampling(id, sampler), found->second.levels});
   }
 }
 

@@ -70,8 +70,6 @@ std::vector<Run> collect_runs(const std::function<void(int)>& work) {
 
 }  // namespace
 
-const char* timer_name(TimerKind kind) { return kind == TimerKind::kQuery ? "query" : "wall clock"; }
-
 TimerKind TimerCheck::choice() const {
   constexpr double kEnough = 0.9;
   return agreement >= kEnough ? TimerKind::kQuery : TimerKind::kWallClock;
@@ -115,92 +113,47 @@ namespace {
 
 // Fractions are sampled in two goes: all of [0, 1) in steps of 2^-12, and where that shows no steps, the 4096 finest
 // steps that an fp32 coordinate above 0.5 can make.
-constexpr int kCoarseBits = 12;
-constexpr int kSamples = 1 << kCoarseBits;
+constexpr int kCoarseBits = 12, kFinestBits = 23;
+constexpr int kSteps = 1 << kCoarseBits;
 
-struct Window {
-  float first = 0.0f;
-  float step = 0.0f;
-};
+/// The bits follow from the mean distance between the values that occur.
+int count_bits(std::vector<float> weights) {
+  std::ranges::sort(weights);
+  const double range = static_cast<double>(weights.back()) - static_cast<double>(weights.front());
+  weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
+  if (weights.size() < 2) return 0;
+  return static_cast<int>(std::lround(-std::log2(range / static_cast<double>(weights.size() - 1))));
+}
 
-constexpr Window kCoarse = {0.0f, 1.0f / static_cast<float>(kSamples)};
-constexpr Window kFine = {0.5f, 1.0f / static_cast<float>(1 << WeightPrecision::kMaxBits)};
-
-Texture make_step_map(GLenum format) {
+/// The fractional bits of the weights between two texels of a colour format: 8 means steps of 1/256.
+int measure_weight_bits(GLenum format) {
   Texture map("survey step", format, 2, 1);
   map.set_filter(GL_LINEAR, GL_LINEAR);
-  if (map.format().channels == 1)
-    map.upload_floats(std::array{0.0f, 1.0f}, 1);
-  else
-    map.upload_floats(std::array{0.0f, 0.0f, 1.0f, 1.0f}, 2);
-  if (map.format().depth) map.set_compare(GL_LEQUAL);
-  return map;
+  map.upload_floats(map.format().channels == 1 ? std::vector{0.0f, 1.0f} : std::vector{0.0f, 0.0f, 1.0f, 1.0f},
+                    map.format().channels);
+  SurveyShader shader("survey_filter.frag", {kSteps, 1});
+  const auto count = [&](float first, int bits) {
+    map.bind(0);
+    shader.program().set("u_map", 0);
+    shader.program().set("u_first", first);
+    shader.program().set("u_step", std::exp2(-static_cast<float>(bits)));
+    return count_bits(shader.run());
+  };
+  const int coarse = count(0.0f, kCoarseBits);
+  return coarse < kCoarseBits ? coarse : std::clamp(count(0.5f, kFinestBits), kCoarseBits, kFinestBits);
 }
-
-std::vector<float> sample(SurveyShader& shader, const Texture& map, const Window& window) {
-  Sampler::unbind(0);
-  map.bind(0);
-  shader.program().set("u_map", 0);
-  shader.program().set("u_first", window.first);
-  shader.program().set("u_step", window.step);
-  return shader.run();
-}
-
-int count_distinct(std::vector<float> values) {
-  std::ranges::sort(values);
-  return static_cast<int>(values.size() - std::ranges::unique(values).size());
-}
-
-double find_max_error(std::span<const float> weights, const Window& window) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const double exact = static_cast<double>(window.first) + static_cast<double>(i) * static_cast<double>(window.step);
-    worst = std::max(worst, std::abs(static_cast<double>(weights[i]) - exact));
-  }
-  return worst;
-}
-
-// The bits follow from the mean distance between the values that occur.
-int count_bits(const std::vector<float>& weights) {
-  const auto [low, high] = std::ranges::minmax(weights);
-  const int distinct = count_distinct(weights);
-  if (distinct < 2) return 0;
-  const double step = (static_cast<double>(high) - static_cast<double>(low)) / (distinct - 1);
-  return static_cast<int>(std::lround(-std::log2(step)));
-}
-
-WeightPrecision measure_weights(SurveyShader& shader, const Texture& map) {
-  const auto coarse = sample(shader, map, kCoarse);
-  WeightPrecision precision;
-  precision.bits = count_bits(coarse);
-  precision.max_error = find_max_error(coarse, kCoarse);
-  if (precision.bits < kCoarseBits) return precision;
-  const auto fine = sample(shader, map, kFine);
-  precision.bits = std::clamp(count_bits(fine), kCoarseBits, WeightPrecision::kMaxBits);
-  precision.max_error = std::max(precision.max_error, find_max_error(fine, kFine));
-  return precision;
-}
-
-/// Measures the weights of linear filtering of a colour format.
-WeightPrecision measure_color_weights(GLenum format) {
-  const Texture map = make_step_map(format);
-  SurveyShader shader("survey_filter.frag", {kSamples, 1});
-  return measure_weights(shader, map);
-}
-
-constexpr int kArguments = 256;
 
 /// The worst relative error of exp() over [-80, 80], in units of 2^-24.
-double measure_exp_ulp() {
+double measure_exp_roundoffs() {
+  constexpr int kSide = 256;
   constexpr double kLimit = 80.0;
-  std::vector<float> arguments(kArguments * kArguments);
+  std::vector<float> arguments(kSide * kSide);
   for (std::size_t i = 0; i < arguments.size(); ++i)
     arguments[i] =
         static_cast<float>(kLimit * (2.0 * static_cast<double>(i) / static_cast<double>(arguments.size() - 1) - 1.0));
-  Texture texture("survey arguments", GL_R32F, kArguments, kArguments);
+  Texture texture("survey arguments", GL_R32F, kSide, kSide);
   texture.upload_floats(arguments, 1);
-  SurveyShader shader("survey_exp.frag", {kArguments, kArguments});
-  Sampler::unbind(0);
+  SurveyShader shader("survey_exp.frag", {kSide, kSide});
   texture.bind(0);
   shader.program().set("u_arguments", 0);
   const std::vector<float> values = shader.run();
@@ -213,23 +166,17 @@ double measure_exp_ulp() {
 
 }  // namespace
 
-WeightPrecision measure_pcf_weights(Context&, GLenum depth_format) {
-  const Texture map = make_step_map(depth_format);
-  SurveyShader shader("survey_compare.frag", {kSamples, 1});
-  shader.program().set("u_reference", 0.5f);
-  return measure_weights(shader, map);
+filters::GlAccuracy survey_gl() {
+  return {.exp_roundoffs = measure_exp_roundoffs(),
+          .weight_bits = static_cast<double>(std::min(measure_weight_bits(GL_R32F), measure_weight_bits(GL_RG32F)))};
 }
 
-int measure_loop_turns(Context&) {
+int measure_loop_turns() {
   constexpr int kTurns = 1 << 20;
   SurveyShader shader("survey_loop.frag", {1, 1});
   shader.program().set("u_turns", kTurns);
   const int turns = static_cast<int>(shader.run().front());
   return turns < kTurns ? turns : 0;
-}
-
-GlSurvey survey_gl(Context&) {
-  return {measure_color_weights(GL_R32F), measure_color_weights(GL_RG32F), measure_exp_ulp()};
 }
 
 SurveyShader::SurveyShader(const std::string& fragment, glm::ivec2 size, GLenum format)

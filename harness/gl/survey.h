@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/scalar.h"
 #include "harness/gl/context/context.h"
 #include "harness/gl/objects.h"
 #include "harness/gl/program.h"
@@ -16,9 +17,6 @@ enum class TimerKind {
   kWallClock,  ///< the CPU's clock around the work, closed by glFinish
   kQuery,      ///< GL_TIME_ELAPSED
 };
-
-/// Returns "wall clock" or "query", as results record it.
-const char* timer_name(TimerKind kind);
 
 /// What timing the same work by both clocks showed.
 struct TimerCheck {
@@ -42,32 +40,13 @@ TimerKind choose_timer(Context& context);
 /// Runs `work` and returns how long the GL took over it, in milliseconds. Waits for what was queued before, and for it.
 double time_ms(TimerKind kind, const std::function<void()>& work);
 
-/// How finely the GL interpolates between two texels.
-struct WeightPrecision {
-  /// As many bits as fp32 coordinates can tell apart; from 22 on weights count as exact.
-  static constexpr int kMaxBits = 23;
+/// Finds out by experiment how exact this GL is: the weights of linear filtering, and exp() over [-80, 80]. Requires a
+/// current context.
+filters::GlAccuracy survey_gl();
 
-  int bits = 0;            ///< fractional bits of the weight: 8 means steps of 1/256
-  double max_error = 0.0;  ///< largest distance from the exact weight, over [0, 1]
-
-  bool exact() const { return bits >= 22; }
-};
-
-/// What a GL really does, as found by experiment.
-struct GlSurvey {
-  WeightPrecision r32f;  ///< linear filtering of colour
-  WeightPrecision rg32f;
-  double exp_ulp = 0.0;  ///< worst relative error of exp() over [-80, 80], in units of 2^-24
-};
-
-/// Finds out what this GL does. Requires: `context` is current.
-GlSurvey survey_gl(Context& context);
-
-/// Measures the weights of hardware PCF on a map of GL_DEPTH_COMPONENT16, 24 or 32F.
-WeightPrecision measure_pcf_weights(Context& context, GLenum depth_format);
-
-/// After how many turns this GL ends a loop of a shader; 0: it let the longest one go on. Cost: a few milliseconds.
-int measure_loop_turns(Context& context);
+/// After how many turns this GL ends a loop of a shader; 0: it let the longest one go on. Requires likewise. Cost: a
+/// few milliseconds.
+int measure_loop_turns();
 
 /// Runs one of this folder's own fragment shaders over a grid and hands back what it wrote.
 class SurveyShader {

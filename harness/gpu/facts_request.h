@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/gl/program.h"
@@ -38,5 +39,13 @@ void answer_request(const std::filesystem::path& request, const std::filesystem:
 
 /// Reads what a process wrote until it ended, be it in the middle; in the order of the request's passes.
 std::vector<FactsAnswer> read_answers(const std::filesystem::path& answers);
+
+/// Counts in a listing of AMD machine code how textures are read, and its loops: samples, compares, gathers, loads and
+/// loops of `facts`. What a read is follows from its mnemonic: image_load, image_gather4*, image_sample*, of which
+/// those with a part "c" compare. A branch to a block at or above its own ends a loop.
+/// Mesa's own listing of its compiler's last step, which stands in where there is no disassembler, has results first
+/// ("v1: %2 = image_load"), and names the heads of loops in comments.
+/// Source: AMD, "RDNA 2" Instruction Set Architecture (2020), chapter 8.2; listings as LLVM's disassembler has them.
+void count_reads(std::string_view listing, records::ShaderFacts& facts);
 
 }  // namespace shadowbench::gpu

@@ -1,5 +1,8 @@
 #include "harness/gpu/null_device.h"
 
+#include "base/error.h"
+
+#ifdef SHADOWBENCH_HAS_GPU_ESTIMATES
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,9 +12,8 @@
 #include <string_view>
 #include <vulkan/vulkan_raii.hpp>
 
-#include "base/error.h"
 #include "harness/gl/program.h"
-#include "harness/gpu/machine_code.h"
+#include "harness/gpu/facts_request.h"
 #include "harness/spirv/spirv.h"
 
 namespace shadowbench::gpu {
@@ -226,3 +228,21 @@ records::ShaderFacts NullDevice::compile(const gl::ShaderSource& source, const s
 }
 
 }  // namespace shadowbench::gpu
+#else
+namespace shadowbench::gpu {
+
+struct NullDevice::Vulkan {
+  std::string driver;
+};
+
+NullDevice::NullDevice(const std::string&) {
+  throw Error(ErrorKind::kContext,
+              "this build has no compiler for GPUs; install glslang-dev, glslang-tools, libvulkan-dev and spirv-tools, "
+              "and configure it again");
+}
+NullDevice::~NullDevice() = default;
+const std::string& NullDevice::driver() const { return vulkan_->driver; }
+records::ShaderFacts NullDevice::compile(const gl::ShaderSource&, const std::string&) { return {}; }
+
+}  // namespace shadowbench::gpu
+#endif

@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "harness/gl/objects.h"
-#include "harness/spirv/webgl.h"
+#include "harness/spirv/spirv.h"
 #include "report/images/value_file.h"
 
 namespace shadowbench::live {

@@ -142,7 +142,7 @@ class SceneBench {
                         .prefilter_texels = cell.cost.prefilter_texels};
     if (filter.has_screen()) cell.record.screen_reads = cell.cost.screen.per_receiver;
     if (!cell.cost.fetches) cell.record.absent["cost.fetches"] = "the filter reads the map's samplers itself";
-    check_drawing(cell, *rig_.renderer.context);
+    check_drawing(cell);
     return cell;
   }
 
@@ -412,10 +412,10 @@ void check_reads(MeasuredCell& cell) {
 }
 
 /// A GL that ends a loop too early says nothing, and the image is wrong.
-void check_loops(MeasuredCell& cell, gl::Context& context) {
+void check_loops(MeasuredCell& cell) {
   constexpr int kFewestOfAnyLimit = 10'000;
   if (cell.cost.most_turns < kFewestOfAnyLimit) return;
-  const int limit = gl::measure_loop_turns(context);
+  const int limit = gl::measure_loop_turns();
   if (limit == 0 || cell.cost.most_turns < limit) return;
   suspect(cell, fmt::format("one of its loops goes on after {} turns, where this GL ends it without a word; write one "
                             "that ends sooner",
@@ -423,13 +423,6 @@ void check_loops(MeasuredCell& cell, gl::Context& context) {
 }
 
 }  // namespace
-
-records::ParamMap record_params(const filters::ParamValues& values) {
-  records::ParamMap params;
-  for (const auto& [name, value] : values)
-    std::visit([&params, &key = name](const auto& v) { params[key] = v; }, value);
-  return params;
-}
 
 std::string describe_light(const scene::SkyAngles& light) {
   return fmt::format("{},{}", light.azimuth_deg, light.elevation_deg);
@@ -441,7 +434,7 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
   record.scene = task.scene->name;
   record.view = task.camera->name;
   record.filter = request.spec.id;
-  record.params = record_params(request.values);
+  record.params = request.values;
   set_kernel(record, request);
   record.teaching = request.spec.teaching;
   record.claims = request.spec.claims;
@@ -461,7 +454,7 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
                  .polygon_units = bias.map.polygon_units,
                  .front_cull = bias.map.cull_front,
                  .midpoint = bias.map.midpoint};
-  record.range = {filters::to_string(options.range.border), options.range.far_test, options.range.behind_test};
+  record.range = options.range;
   if (!options.stability)
     record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";
   record.width = options.width;
@@ -474,10 +467,10 @@ SceneMeasurement measure_scene(const TaskRig& rig, const options::StepListener& 
   return SceneBench(rig, listener).run();
 }
 
-void check_drawing(MeasuredCell& cell, gl::Context& context) {
+void check_drawing(MeasuredCell& cell) {
   check_values(cell);
   check_reads(cell);
-  check_loops(cell, context);
+  check_loops(cell);
 }
 
 void check_against_truth(MeasuredCell& cell, const SceneTruth& truth) {

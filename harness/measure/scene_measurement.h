@@ -95,9 +95,6 @@ SceneMeasurement measure_scene(
 /// Writes a light's place as the command line reads it.
 std::string describe_light(const scene::SkyAngles& light);
 
-/// A filter's parameters as records hold them.
-records::ParamMap record_params(const filters::ParamValues& values);
-
 /// The record of a cell with its settings and key, nothing measured yet.
 records::CellRecord make_record(const options::RunOptions& options, const SceneTask& task,
                                 const filters::FilterRequest& request);
@@ -107,7 +104,7 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
 
 /// Checks what needs no truth: that visibility is finite and in [0,1], that the filter reads the map, no farther than
 /// it declares, and nothing that nobody wrote. Requires the cell's `nan`.
-void check_drawing(MeasuredCell& cell, gl::Context& context);
+void check_drawing(MeasuredCell& cell);
 
 /// Checks that visibility is not the same at all receivers where some are wholly lit in truth, and some wholly blocked.
 void check_against_truth(MeasuredCell& cell, const SceneTruth& truth);

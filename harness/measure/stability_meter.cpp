@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/files.h"
 #include "filters/percentage_closer.h"
 #include "filters/store_format.h"
 #include "harness/measure/scene_assets.h"
@@ -14,7 +15,6 @@
 #include "harness/render/gbuffer.h"
 #include "reference/metrics/error_stats.h"
 #include "report/analysis/findings.h"
-#include "report/files/file_name.h"
 #include "report/records/format.h"
 
 namespace shadowbench::measure {
@@ -422,7 +422,7 @@ void write_stability(const options::RunOptions& options, const std::string& stem
                              {analysis::caption_texels(cell.record), analysis::caption_variance(cell.record),
                               analysis::caption_difference(cell.record), analysis::caption_bound(cell.record)}),
       2};
-  cell.record.images.stability = fmt::format("images/{}.{}.stability.png", stem, files::make_file_stem(cell.label));
+  cell.record.images.stability = fmt::format("images/{}.{}.stability.png", stem, make_file_stem(cell.label));
   images::write_figure(options.out / *cell.record.images.stability, figure);
 }
 

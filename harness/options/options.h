@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -76,6 +77,7 @@ enum class TruthWeight {
   kArea,    ///< the share of the light's area, of a sphere's solid angle, that is seen: what filters define
   kCosine,  ///< the share of the light that would arrive unshadowed: what a renderer multiplies its shading by
 };
+constexpr auto names_of(TruthWeight) { return std::array{"area", "cosine"}; }
 
 /// What a run leaves of the cells that it does.
 enum class Product {

@@ -17,11 +17,9 @@ namespace shadowbench::options {
 namespace {
 
 double parse_angle(const std::string& text, const char* name, double limit_deg) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= limit_deg))
-    fail(fmt::format("--light: the {} '{}' must be a number of degrees, {} .. {}", name, text, -limit_deg, limit_deg));
-  return value;
+  const std::optional<double> value = parse_number(text);
+  if (value && std::abs(*value) <= limit_deg) return *value;
+  fail(fmt::format("--light: the {} '{}' must be a number of degrees, {} .. {}", name, text, -limit_deg, limit_deg));
 }
 
 using Texts = std::vector<std::string>;
@@ -42,6 +40,12 @@ template <class T>
 void take(const char*, const T& told, T& value) {
   value = told;
 }
+
+template <class T>
+requires std::is_enum_v<T> std::string tell(const T& value) { return name_of(value); }
+template <class T>
+requires std::is_enum_v<T>
+void take(const char* name, const std::string& told, T& value) { value = parse_name<T>(told, name); }
 
 std::uint32_t tell(int count) { return static_cast<std::uint32_t>(count); }
 void take(const char* name, std::uint32_t told, int& count) {
@@ -110,20 +114,6 @@ std::string tell(const std::optional<scene::SkyAngles>& light) {
 }
 void take(const char*, const std::string& text, std::optional<scene::SkyAngles>& light) {
   if (!text.empty()) light = parse_light(text);
-}
-
-std::string tell(filters::Border border) { return filters::to_string(border); }
-void take(const char*, const std::string& text, filters::Border& border) { border = filters::parse_border(text); }
-
-std::string tell(render::BlendCasters casters) { return render::to_string(casters); }
-void take(const char*, const std::string& text, render::BlendCasters& casters) {
-  casters = render::parse_blend_casters(text);
-}
-
-std::string tell(TruthWeight weight) { return weight == TruthWeight::kArea ? "area" : "cosine"; }
-void take(const char* name, const std::string& text, TruthWeight& weight) {
-  if (text != "area" && text != "cosine") fail(fmt::format("{}: '{}' must be area or cosine", name, text));
-  weight = text == "area" ? TruthWeight::kArea : TruthWeight::kCosine;
 }
 
 std::string tell(const RoundLimits& rounds) { return rounds.is_fixed() ? fmt::format("{}", rounds.most) : kAuto; }
@@ -305,7 +295,7 @@ std::vector<RunOption> list_run_options() {
        "8 "
        "matrix; rays are always dimmed by 1 - alpha",
        [](auto& o) -> auto& { return o.map.blend_casters; })
-      .one_of(render::blend_caster_names())
+      .one_of(list_names<render::BlendCasters>())
       .in(scene)
       .rarely();
   t.add("--fit",
@@ -323,7 +313,7 @@ std::vector<RunOption> list_run_options() {
   t.add(
        "--border", "what lookups outside the map read: depth 1 (border, correct), the edge's depth, or the map again",
        [](auto& o) -> auto& { return o.range.border; })
-      .one_of(filters::border_names())
+      .one_of(list_names<filters::Border>())
       .in(map)
       .rarely();
   t.add_switch(

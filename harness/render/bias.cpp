@@ -166,20 +166,6 @@ std::string explain_unusable(const BiasRule& rule, const filters::FilterSpec& sp
   return spec.has_encode ? "reads a prefiltered map, not one depth per tap" : "reads the map's samplers itself";
 }
 
-const std::vector<std::string>& blend_caster_names() {
-  static const std::vector<std::string> names = {"opaque", "hashed", "dither"};
-  return names;
-}
-
-const std::string& to_string(BlendCasters casters) { return blend_caster_names()[static_cast<std::size_t>(casters)]; }
-
-BlendCasters parse_blend_casters(const std::string& name) {
-  const auto found = std::ranges::find(blend_caster_names(), name);
-  if (found != blend_caster_names().end()) return static_cast<BlendCasters>(found - blend_caster_names().begin());
-  throw Error(ErrorKind::kUsage,
-              fmt::format("--blend-casters: '{}' must be {}", name, fmt::join(blend_caster_names(), ", ")));
-}
-
 void require_usable(const BiasRule& rule, const filters::FilterSpec& spec) {
   const std::string why = explain_unusable(rule, spec);
   if (why.empty()) return;

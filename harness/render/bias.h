@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -20,12 +21,7 @@ enum class BlendCasters {
   kDither,  ///< in texels by a matrix of 8 x 8
 };
 
-/// The names of these, in the order of the enumerators.
-const std::vector<std::string>& blend_caster_names();
-const std::string& to_string(BlendCasters casters);
-
-/// The way of that name. Throws Error(kUsage) for any other, with the names that there are.
-BlendCasters parse_blend_casters(const std::string& name);
+constexpr auto names_of(BlendCasters) { return std::array{"opaque", "hashed", "dither"}; }
 
 /// How a depth map stores depth.
 struct MapSettings {

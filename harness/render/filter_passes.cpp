@@ -47,7 +47,7 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
                            const LightLayers& light)
     : shaders_(&shaders),
       request_(request),
-      layers_{{light.front(), glm::vec4(0.0f), nullptr, nullptr}},
+      layers_{{light.front(), nullptr, nullptr}},
       map_size_(map.size()),
       map_defines_(map_defines(request, map.settings())),
       lookup_(compile_lookup(shaders, {})) {
@@ -95,10 +95,7 @@ void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& va
   if (prefilter_) prefilter_->retune(shaders, request_, light.front());
   if (own_) own_->retune(request_, light.front());
   if (screen_) screen_->retune(request_, light.front());
-  for (std::size_t i = 0; i < light.size(); ++i) {
-    layers_[i].light = light[i];
-    if (layers() > 1 && prefilter_) layers_[i].border = prefilter_->find_border(light[i]);
-  }
+  for (std::size_t i = 0; i < light.size(); ++i) layers_[i].light = light[i];
 }
 
 EncodedTargets FilterPasses::make_encoded_targets() const {
@@ -111,10 +108,8 @@ EncodedTargets FilterPasses::make_encoded_targets() const {
 
 PreparedLight FilterPasses::prepare(const LightLayers& light, const EncodedTargets& encoded) {
   PreparedLight prepared;
-  for (std::size_t i = 0; i < light.size(); ++i) {
-    prepared.push_back({light[i], prefilter_ ? prefilter_->find_border(light[i]) : glm::vec4(0.0f),
-                        prefilter_ ? encoded[i] : nullptr, own_ ? own_->make_maps() : nullptr});
-  }
+  for (std::size_t i = 0; i < light.size(); ++i)
+    prepared.push_back({light[i], prefilter_ ? encoded[i] : nullptr, own_ ? own_->make_maps() : nullptr});
   return prepared;
 }
 
@@ -126,7 +121,7 @@ void FilterPasses::turn_to(const PreparedLight& light) {
 
 void FilterPasses::turn(const PreparedLayer& layer) {
   set_light(lookup_, layer.light);
-  if (prefilter_) prefilter_->turn_to(layer.light, layer.border, layer.encoded);
+  if (prefilter_) prefilter_->turn_to(layer.light, layer.encoded);
   if (own_) own_->turn_to(layer.light, layer.maps);
 }
 
@@ -159,10 +154,7 @@ const ReceiverBuffer& FilterPasses::bind_lookup(gl::Program& program, const GBuf
   map.bind(program, layer);
   if (prefilter_) prefilter_->bind();
   if (own_) own_->bind();
-  if (blue_noise_) {
-    gl::Sampler::unbind(kBlueNoiseUnit);
-    blue_noise_->bind(kBlueNoiseUnit);
-  }
+  if (blue_noise_) blue_noise_->bind(kBlueNoiseUnit);
   program.use();
   return receivers;
 }

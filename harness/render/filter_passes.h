@@ -46,7 +46,6 @@ struct ReceiverReads {
 /// A prepared layer of a light's map: passes can change to it by setting uniforms alone.
 struct PreparedLayer {
   LightSetup light;
-  glm::vec4 border{0.0f};                ///< of the encoded map
   std::shared_ptr<ImageTarget> encoded;  ///< the encoded map; null for filters that read depth
   std::shared_ptr<PassMaps> maps;        ///< of the filter's own passes; null where it has none
 };

@@ -59,6 +59,17 @@ gl::Texture upload(const scene::Texture& texture) {
   return result;
 }
 
+/// Turns rows that run bottom to top, as GL's do, into rows that run top to bottom, and back.
+std::vector<float> flip_rows(const std::vector<float>& rows, std::ptrdiff_t stride) {
+  std::vector<float> flipped(rows.size());
+  const std::ptrdiff_t height = static_cast<std::ptrdiff_t>(rows.size()) / stride;
+  for (std::ptrdiff_t y = 0; y < height; ++y) {
+    const auto row = rows.begin() + stride * (height - 1 - y);
+    std::copy(row, row + stride, flipped.begin() + stride * y);
+  }
+  return flipped;
+}
+
 }  // namespace
 
 Geometry::Geometry(const scene::Scene& scene) {
@@ -95,7 +106,6 @@ void Geometry::set_material(gl::Program& program, const scene::Material& materia
   program.set("base_color", material.base_color);
   if (material.alpha_mode == scene::AlphaMode::kMask) program.set("alpha_cutoff", material.alpha_cutoff);
   if (material.base_color_texture < 0) return;
-  gl::Sampler::unbind(kBaseColorUnit);
   parts_->textures[static_cast<std::size_t>(material.base_color_texture)].bind(kBaseColorUnit);
 }
 
@@ -113,21 +123,6 @@ ImageTarget::ImageTarget(std::string_view label, GLenum internal_format, int wid
     : texture_(label, internal_format, width, height), framebuffer_(label) {
   framebuffer_.attach_color(0, texture_);
 }
-
-namespace {
-
-/// Turns rows that run bottom to top, as GL's do, into rows that run top to bottom, and back.
-std::vector<float> flip_rows(const std::vector<float>& rows, std::ptrdiff_t stride) {
-  std::vector<float> flipped(rows.size());
-  const std::ptrdiff_t height = static_cast<std::ptrdiff_t>(rows.size()) / stride;
-  for (std::ptrdiff_t y = 0; y < height; ++y) {
-    const auto row = rows.begin() + stride * (height - 1 - y);
-    std::copy(row, row + stride, flipped.begin() + stride * y);
-  }
-  return flipped;
-}
-
-}  // namespace
 
 images::Image read_image(const gl::Texture& texture, int channels) {
   images::Image image(texture.width(), texture.height(), channels);

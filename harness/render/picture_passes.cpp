@@ -18,6 +18,25 @@ Defines shade_defines(const scene::Light& light, const filters::RangeRule& range
   return defines;
 }
 
+constexpr int kSteps = 256;
+
+gl::Texture upload_scale(const char* label, const images::Image& colors) {
+  gl::Texture scale(label, GL_RGBA32F, colors.width, 1);
+  scale.upload_floats(colors.texels, 3);
+  return scale;
+}
+
+images::Image color_ramp(Colors colors) {
+  return images::color_values(images::make_ramp(kSteps, 1), color_function(colors));
+}
+
+constexpr GLuint kAddedUnit = 4, kHistoryUnit = 12;  // of resolve.frag
+
+/// Gives the distance of a point from a camera along its axis, as gbuffer.frag has it.
+glm::vec4 make_depth_plane(const scene::Camera& camera) {
+  return glm::vec4(camera.forward_ws, -glm::dot(camera.forward_ws, camera.position_ws));
+}
+
 }  // namespace
 
 void shade_into(ImageTarget& target, ShaderLibrary& shaders, const ShadedView& view, const glm::ivec2& columns) {
@@ -37,7 +56,6 @@ void shade_into(ImageTarget& target, ShaderLibrary& shaders, const ShadedView& v
   target.bind();
   glViewport(columns.x, 0, columns.y - columns.x, gbuffer.height());
   gbuffer.bind();
-  gl::Sampler::unbind(kVisibilityUnit);
   visibility.bind(kVisibilityUnit);
   program.use();
   gl::FullscreenTriangle().draw();
@@ -49,22 +67,6 @@ images::Image shade(ShaderLibrary& shaders, const GBuffer& gbuffer, const gl::Te
   shade_into(target, shaders, {gbuffer, visibility, scene, camera, range}, {0, gbuffer.width()});
   return read_image(target.texture(), 3);
 }
-
-namespace {
-
-constexpr int kSteps = 256;
-
-gl::Texture upload_scale(const char* label, const images::Image& colors) {
-  gl::Texture scale(label, GL_RGBA32F, colors.width, 1);
-  scale.upload_floats(colors.texels, 3);
-  return scale;
-}
-
-images::Image color_ramp(Colors colors) {
-  return images::color_values(images::make_ramp(kSteps, 1), color_function(colors));
-}
-
-}  // namespace
 
 images::Colors color_function(Colors colors) {
   if (colors == Colors::kGrey) return images::map_grey;
@@ -113,10 +115,8 @@ void DisplayPass::draw_side(ShaderLibrary& shaders, const DisplayedValues& shown
   const bool is_picture = shown.colors == Colors::kPicture;
   gl::Program& program = shaders.fullscreen("display.frag", is_picture ? Defines{{"PICTURE", "1"}} : Defines{});
   glViewport(place.corner.x + from, place.corner.y, to - from, place.size.y);
-  gl::Sampler::unbind(0);
   shown.values->bind(0);
   if (!is_picture) {
-    for (const GLuint unit : {1U, 2U}) gl::Sampler::unbind(unit);
     (shown.less ? shown.less : shown.values)->bind(1);
     scale_of(shown.colors).bind(2);
     program.set("range", glm::vec2(shown.low, shown.high));
@@ -134,17 +134,6 @@ const gl::Texture& DisplayPass::scale_of(Colors colors) const {
   if (colors == Colors::kDiverging) return diverging_;
   return colors == Colors::kSequential ? sequential_ : grey_;
 }
-
-namespace {
-
-constexpr GLuint kAddedUnit = 4, kHistoryUnit = 12;  // of resolve.frag
-
-/// Gives the distance of a point from a camera along its axis, as gbuffer.frag has it.
-glm::vec4 make_depth_plane(const scene::Camera& camera) {
-  return glm::vec4(camera.forward_ws, -glm::dot(camera.forward_ws, camera.position_ws));
-}
-
-}  // namespace
 
 ResolvePass::ResolvePass(ResolveRule rule, int width, int height)
     : rule_(rule),
@@ -164,7 +153,6 @@ void ResolvePass::add(ShaderLibrary& shaders, const scene::Scene& scene, const R
   program.set("clamps", rule_.clamps ? 1 : 0);
   targets_[1 - newest_].bind();
   frame.gbuffer.bind();
-  for (const GLuint unit : {kAddedUnit, kHistoryUnit}) gl::Sampler::unbind(unit);
   frame.visibility.bind(kAddedUnit);
   texture().bind(kHistoryUnit);
   program.use();

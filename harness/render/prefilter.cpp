@@ -140,6 +140,43 @@ std::string declare_pass_maps(const filters::FilterSpec& spec) {
   return glsl;
 }
 
+constexpr GLuint kStoredUnit = 3;   // of lib/map_access.glsl
+constexpr GLuint kSamplesUnit = 4;  // of encode.frag
+
+GLenum store_format(const filters::ParamValues& values) {
+  return gl::parse_pixel_format(filters::text_or(values, "store", "")).internal_format;
+}
+
+/// The kernel, one call of the macro `tap` per texel: "tap(-1.0, 0.25) tap(0.0, 0.5) tap(1.0, 0.25)".
+Defines blur_defines(const filters::FilterRequest& request, int radius) {
+  const std::vector<float> weights = filters::gaussian_weights(radius);
+  std::string taps;
+  for (int i = -radius; i <= radius; ++i)
+    taps += fmt::format("tap({}.0, {:#.9g}) ", i, weights[static_cast<std::size_t>(i + radius)]);
+  Defines defines = {{"TAPS(tap)", taps}};
+  if (filters::combines_logs(request.values)) defines.emplace_back("COMBINE_LOGS", "1");
+  return defines;
+}
+
+/// Throws Error(kFilter) with the line of `samples` where the GL gives fewer.
+Defines add_samples(Defines defines, const filters::FilterRequest& request) {
+  const int samples = filters::depth_samples(request.values);
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &most);
+  if (samples > most) {
+    throw Error(ErrorKind::kFilter,
+                fmt::format("samples = {}: this GL gives at most {} samples of depth a texel", samples, most),
+                fmt::format("{}:{}", request.spec.path, request.spec.samples_line));
+  }
+  if (samples > 1) defines.emplace_back("SAMPLES", std::to_string(samples));
+  if (filters::combines_logs(request.values)) defines.emplace_back("COMBINE_LOGS", "1");
+  return defines;
+}
+
+constexpr int kRadix = 4;  // a step of a prefix sum adds so many terms
+
+std::string map_name(const PassSpec& spec) { return "map_" + spec.name; }
+
 }  // namespace
 
 std::vector<gl::Piece> filter_pieces(const FilterRequest& request) {
@@ -174,43 +211,6 @@ void set_uniforms(gl::Program& program, const FilterRequest& request, const Ligh
   }
 }
 
-namespace {
-
-constexpr GLuint kStoredUnit = 3;   // of lib/map_access.glsl
-constexpr GLuint kSamplesUnit = 4;  // of encode.frag
-
-GLenum store_format(const filters::ParamValues& values) {
-  return gl::parse_pixel_format(filters::text_or(values, "store", "")).internal_format;
-}
-
-/// The kernel, one call of the macro `tap` per texel: "tap(-1.0, 0.25) tap(0.0, 0.5) tap(1.0, 0.25)".
-Defines blur_defines(const filters::FilterRequest& request, int radius) {
-  const std::vector<float> weights = filters::gaussian_weights(radius);
-  std::string taps;
-  for (int i = -radius; i <= radius; ++i)
-    taps += fmt::format("tap({}.0, {:#.9g}) ", i, weights[static_cast<std::size_t>(i + radius)]);
-  Defines defines = {{"TAPS(tap)", taps}};
-  if (filters::combines_logs(request.values)) defines.emplace_back("COMBINE_LOGS", "1");
-  return defines;
-}
-
-/// Throws Error(kFilter) with the line of `samples` where the GL gives fewer.
-Defines add_samples(Defines defines, const filters::FilterRequest& request) {
-  const int samples = filters::depth_samples(request.values);
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &most);
-  if (samples > most) {
-    throw Error(ErrorKind::kFilter,
-                fmt::format("samples = {}: this GL gives at most {} samples of depth a texel", samples, most),
-                fmt::format("{}:{}", request.spec.path, request.spec.samples_line));
-  }
-  if (samples > 1) defines.emplace_back("SAMPLES", std::to_string(samples));
-  if (filters::combines_logs(request.values)) defines.emplace_back("COMBINE_LOGS", "1");
-  return defines;
-}
-
-}  // namespace
-
 Prefilter::Samples::Samples(const ShadowMap& map, int samples)
     : count(samples), depth("depth samples", map.settings().format, map.size(), map.size(), 1, samples) {
   framebuffer.attach_depth(depth);
@@ -235,7 +235,9 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
 
 void Prefilter::retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light) {
   set_uniforms(encode_, request, light);
-  set_border(encode_border(store_format(request.values)));
+  border_ = encode_border();
+  sampler_.set_border(border_);
+  blur_sampler_.set_border(border_);
   radius_ = filters::prefilter_radius_texels(request.spec, request.values);
   if (radius_ == 0) return;
   blur_ = &shaders.fullscreen("blur.frag", blur_defines(request, radius_));
@@ -244,27 +246,14 @@ void Prefilter::retune(ShaderLibrary& shaders, const filters::FilterRequest& req
                    stored_->texture().width());
 }
 
-glm::vec4 Prefilter::find_border(const LightSetup& light) {
+void Prefilter::turn_to(const LightSetup& light, std::shared_ptr<ImageTarget> stored) {
   set_light(encode_, light);
-  return encode_border(format());
-}
-
-void Prefilter::turn_to(const LightSetup& light, const glm::vec4& border, std::shared_ptr<ImageTarget> stored) {
-  set_light(encode_, light);
-  set_border(border);
   stored_ = std::move(stored);
 }
 
-/// The blur reads outside the map as the lookup does.
-void Prefilter::set_border(const glm::vec4& border) {
-  border_ = border;
-  sampler_.set_border(border);
-  blur_sampler_.set_border(border);
-}
-
 /// Outside the map lies the encoding of depth 1, stored in the map's own format.
-glm::vec4 Prefilter::encode_border(GLenum format) {
-  ImageTarget texel("encoded border", format, 1, 1);
+glm::vec4 Prefilter::encode_border() {
+  ImageTarget texel("encoded border", format(), 1, 1);
   encode_.set("encode_border", 1);
   texel.bind();
   encode_.use();
@@ -278,7 +267,6 @@ glm::vec4 Prefilter::encode_border(GLenum format) {
 void Prefilter::encode(const ShadowMap& map, int layer, ImageTarget& to) {
   if (samples_) {
     map.draw_samples(*shaders_, samples_->framebuffer, layer);
-    gl::Sampler::unbind(kSamplesUnit);
     samples_->depth.bind(kSamplesUnit);
   }
   map.bind(encode_, layer);
@@ -298,8 +286,8 @@ void Prefilter::blur(const gl::Texture& from, ImageTarget& to, glm::vec2 directi
   to.bind();
   blur_->set("direction", direction);
   blur_->set("map_texel_uv", 1.0f / static_cast<float>(from.width()));
-  blur_sampler_.bind(kStoredUnit);
   from.bind(kStoredUnit);
+  blur_sampler_.bind(kStoredUnit);
   blur_->use();
   triangle_.draw();
 }
@@ -344,17 +332,6 @@ std::vector<DrawnPass> Prefilter::list_passes(int depth_bytes) const {
                       .read_bytes = format.bytes_per_texel});
   return passes;
 }
-
-namespace {
-
-using filters::PassSpec;
-using filters::PassSteps;
-
-constexpr int kRadix = 4;  // a step of a prefix sum adds so many terms
-
-std::string map_name(const PassSpec& spec) { return "map_" + spec.name; }
-
-}  // namespace
 
 OwnPasses::OwnPasses(ShaderLibrary& shaders, const filters::FilterRequest& request, int map_size,
                      const LightSetup& light, const Defines& map_defines)

@@ -56,12 +56,9 @@ class Prefilter {
   /// Changes the light, and parameters that are neither `const` nor texts. The light must have the same range rule.
   void retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light);
 
-  /// What the encoded map of a light holds outside the map. Reads one texel back.
-  glm::vec4 find_border(const LightSetup& light);
-
-  /// Changes to another light with the same range rule, whose border find_border() gave. From now on run() writes to
-  /// `stored` and bind() binds it; it has format() and the map's size. Reads nothing back.
-  void turn_to(const LightSetup& light, const glm::vec4& border, std::shared_ptr<ImageTarget> stored);
+  /// Changes to another light with the same range rule. From now on run() writes to `stored` and bind() binds it; it
+  /// has format() and the map's size.
+  void turn_to(const LightSetup& light, std::shared_ptr<ImageTarget> stored);
 
   /// Encodes and blurs a layer of the depth map.
   void run(const ShadowMap& map, int layer = 0);
@@ -116,9 +113,8 @@ class Prefilter {
 
   static EncodedTexels read(const ImageTarget& target);
   void encode(const ShadowMap& map, int layer, ImageTarget& to);
-  glm::vec4 encode_border(GLenum format);
+  glm::vec4 encode_border();
   void blur(const gl::Texture& from, ImageTarget& to, glm::vec2 direction);
-  void set_border(const glm::vec4& border);
 };
 
 /// The map of one pass of a filter's own, with what draws into it.

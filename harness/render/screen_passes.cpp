@@ -63,7 +63,6 @@ ImageTarget& ScreenPasses::input(const GBuffer& gbuffer) {
 }
 
 void ScreenPasses::draw(Pass& pass, int step, const gl::Texture& from) {
-  gl::Sampler::unbind(kScreenUnit);
   from.bind(kScreenUnit);
   pass.program.set("pass_step", step);
   pass.program.use();

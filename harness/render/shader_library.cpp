@@ -185,6 +185,13 @@ Error blame_end(const Error& error, const gl::Piece& filter) {
       fmt::format("{}:{}", filter.display_name, filter.first_line + static_cast<int>(lines) - 1));
 }
 
+/// Names a variant for people and drivers, who do not need the values.
+std::string variant_name(const std::string& file, const Defines& defines) {
+  std::string name = file;
+  for (const auto& [key, value] : defines) name += " " + key;
+  return name;
+}
+
 }  // namespace
 
 Error explain_mistakes(const gl::CompileError& error, const std::vector<gl::Piece>& pieces,
@@ -209,17 +216,6 @@ Error explain_mistakes(const gl::CompileError& error, const std::vector<gl::Piec
   }
   return {ErrorKind::kFilter, text, where};
 }
-
-namespace {
-
-/// Names a variant for people and drivers, who do not need the values.
-std::string variant_name(const std::string& file, const Defines& defines) {
-  std::string name = file;
-  for (const auto& [key, value] : defines) name += " " + key;
-  return name;
-}
-
-}  // namespace
 
 gl::ShaderSource ShaderLibrary::source(const std::string& file, const Defines& defines,
                                        const std::vector<gl::Piece>& pieces) const {

@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "harness/gl/objects.h"
 #include "harness/gl/program.h"
 #include "harness/render/gbuffer.h"
@@ -48,7 +49,7 @@ std::string describe_map(const MapSettings& settings) {
   if (!settings.curve.is_linear()) text += fmt::format(" perspective {:.6g}", settings.curve.far_over_near);
   if (settings.curve.reversed) text += " reversed";
   if (settings.blend_casters == BlendCasters::kOpaque) return text;
-  return text + " " + to_string(settings.blend_casters);
+  return text + " " + name_of(settings.blend_casters);
 }
 
 double find_coarsest_step(const MapSettings& settings, double farthest) {
@@ -174,10 +175,8 @@ void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, 
     surfaces_.emplace_back("second surface", settings_.format, size());
   }
   draw_casters(shaders, geometry, frustum, bias, surfaces_[0].framebuffer, {});
-  gl::Sampler::unbind(0);
   surfaces_[0].depth.bind(0);
   draw_casters(shaders, geometry, frustum, bias, surfaces_[1].framebuffer, {{"BEHIND_FIRST", "1"}});
-  gl::Sampler::unbind(1);
   surfaces_[1].depth.bind(1);
   draw_mean(shaders, layers_[static_cast<std::size_t>(frustum.layer)].framebuffer);
 }
@@ -199,10 +198,7 @@ void ShadowMap::draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffe
     glDisable(GL_SAMPLE_SHADING);
     return;
   }
-  for (const GLuint unit : {0u, 1u}) {
-    gl::Sampler::unbind(unit);
-    layers_[static_cast<std::size_t>(layer)].depth.bind(unit);
-  }
+  for (const GLuint unit : {0u, 1u}) layers_[static_cast<std::size_t>(layer)].depth.bind(unit);
   draw_mean(shaders, framebuffer);
 }
 

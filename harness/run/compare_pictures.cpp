@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "harness/measure/scene_truth.h"
 #include "report/images/picture_io.h"
-#include "report/images/stored_picture.h"
 
 namespace shadowbench::run {
 namespace {

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "base/text.h"
 #include "harness/live/frame_file.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/stability_meter.h"
@@ -171,7 +172,7 @@ images::Metadata describe_task(const options::RunOptions& options, const measure
   metadata["shadowbench:scene"] = task.scene->name;
   metadata["shadowbench:view"] = camera.name;
   metadata["shadowbench:map_size"] = static_cast<double>(task.map_size);
-  metadata["shadowbench:border"] = filters::to_string(options.range.border);
+  metadata["shadowbench:border"] = std::string(name_of(options.range.border));
   metadata["shadowbench:far_test"] = options.range.far_test ? "on" : "off";
   metadata["shadowbench:behind_test"] = options.range.behind_test ? "on" : "off";
   metadata["shadowbench:seed"] = static_cast<double>(options.seed);

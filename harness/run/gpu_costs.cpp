@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "harness/gpu/estimate.h"
+#include "harness/gpu/gpu.h"
 #include "harness/run/worker_process.h"
 
 namespace shadowbench::run {

@@ -9,9 +9,9 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/folder_lock.h"
 #include "harness/live/frame_file.h"
 #include "report/analysis/findings.h"
-#include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 
@@ -128,8 +128,8 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
   const std::vector<ShardRun> shards = read_shards(folders);
   for (const ShardRun& shard : shards) require_same(shards.front(), shard);
   require_complete(shards);
-  for (const ShardRun& shard : shards) files::require_no_links(shard.folder, ErrorKind::kInput);
-  const files::FolderLock lock(out, force);
+  for (const ShardRun& shard : shards) require_no_links(shard.folder, ErrorKind::kInput);
+  const FolderLock lock(out, force);
   require_free(out, shards);
   std::vector<std::string> keys;
   std::set<std::string> copied;  // cells of one view share its truth's pictures
@@ -152,7 +152,7 @@ void merge_runs(const std::vector<std::filesystem::path>& folders, const std::fi
 
 void rewrite_report(const std::filesystem::path& report) {
   const records::Results results = records::read_results(report / "results.json");
-  const files::FolderLock lock(report);
+  const FolderLock lock(report);
   std::vector<std::string> keys;
   for (const records::CellRecord& cell : results.cells) keys.push_back(cell.key);
   pages::write_report(report, results.run, keys);

@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "base/bytes.h"
+#include "base/files.h"
 #include "harness/measure/view_receivers.h"
 #include "harness/render/picture_passes.h"
 #include "harness/run/float_images.h"
@@ -20,7 +21,6 @@
 #include "report/analysis/advice_words.h"
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
-#include "report/files/file_name.h"
 #include "report/images/canvas.h"
 #include "report/images/grid.h"
 #include "report/images/picture_io.h"
@@ -272,9 +272,8 @@ void draw_all_lights(const options::RunOptions& options, const RunPlan& plan, co
     if (grid.tiles.empty()) continue;
     const Lit& first = lights.front();
     const std::string stem = task_stem(first.scene->options, first.task->task);
-    const std::string file = files::make_file_stem(scene::name_without_light(first.scene->scene)) +
-                             stem.substr(files::make_file_stem(first.scene->scene.name).size()) +
-                             ".all_lights.grid.png";
+    const std::string file = make_file_stem(scene::name_without_light(first.scene->scene)) +
+                             stem.substr(make_file_stem(first.scene->scene.name).size()) + ".all_lights.grid.png";
     images::write_grid(options.out / file, grid);
     for (Lit& lit : lights) {
       for (records::CellRecord& cell : lit.cells) {
@@ -307,7 +306,7 @@ void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan
       images::write_picture_png(out / truth, view->draw_truth());
       before = task;
     }
-    const std::string picture = stem + "." + files::make_file_stem(request->label()) + ".supersampled.png";
+    const std::string picture = stem + "." + make_file_stem(request->label()) + ".supersampled.png";
     images::write_picture_png(out / picture, view->draw(*request));
     cell->images.supersampled = picture;
     cell->images.truth_supersampled = truth;

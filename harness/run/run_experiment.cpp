@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/folder_lock.h"
 #include "harness/gl/objects.h"
 #include "harness/measure/accumulation.h"
 #include "harness/measure/cell_analysis.h"
@@ -31,10 +32,9 @@
 #include "harness/run/run_plan.h"
 #include "harness/run/task_images.h"
 #include "harness/run/worker_process.h"
-#include "harness/spirv/webgl.h"
+#include "harness/spirv/spirv.h"
 #include "reference/truth/cached_tracer.h"
 #include "report/analysis/findings.h"
-#include "report/files/folder_lock.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
@@ -400,7 +400,7 @@ class Experiment {
   measure::Renderer renderer_;
   truth::TruthCache cache_;
   records::RunRecord run_;
-  std::optional<files::FolderLock> lock_;
+  std::optional<FolderLock> lock_;
   std::set<std::string> told_;  ///< warnings that the user has seen
   int done_ = 0;                ///< cells
   std::function<void(const std::string&)> note_ = [this](const std::string& message) { progress_.note(message); };

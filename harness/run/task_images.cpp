@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/files.h"
 #include "harness/render/picture_passes.h"
-#include "report/files/file_name.h"
 #include "report/images/color_values.h"
 #include "report/images/grid.h"
 #include "report/images/heat_figures.h"
@@ -54,7 +54,7 @@ images::ValuePlanes list_planes(const measure::MeasuredCell& cell) {
 /// No two labels share a file.
 void note_cell_pictures(const std::string& stem, measure::MeasuredCell& cell) {
   if (cell.picture.empty()) return;
-  const std::string base = "images/" + stem + "." + files::make_file_stem(cell.label);
+  const std::string base = "images/" + stem + "." + make_file_stem(cell.label);
   cell.record.images.picture = base + ".picture.png";
   cell.record.images.visibility = base + ".visibility.png";
   cell.record.images.values = base + ".values.js";
@@ -214,7 +214,7 @@ std::string task_stem(const options::RunOptions& options, const measure::SceneTa
   if (options.fits.size() > 1)
     name += "." + records::make_fit_stem(scene::describe_fit(options.fit), scene::describe_fits(options.fits));
   if (options.sizes.size() > 1) name += fmt::format(".{}x{}", options.width, options.height);
-  return files::make_file_stem(name);
+  return make_file_stem(name);
 }
 
 void write_cell_pictures(const options::RunOptions& options, const measure::SceneTask& task,

@@ -1,5 +1,6 @@
-#include "harness/spirv/webgl.h"
+#include "harness/spirv/spirv.h"
 
+#ifdef SHADOWBENCH_HAS_LIVE_PAGE
 #include <fmt/format.h>
 #include <spirv_cross_c.h>
 
@@ -78,3 +79,8 @@ std::string translate_to_webgl(const gl::ShaderSource& source, Stage stage) {
 }
 
 }  // namespace shadowbench::spirv
+#else
+
+bool shadowbench::spirv::can_translate_to_webgl() { return false; }
+std::string shadowbench::spirv::translate_to_webgl(const gl::ShaderSource&, Stage) { return {}; }
+#endif

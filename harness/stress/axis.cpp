@@ -4,19 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <map>
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/folder_lock.h"
 #include "base/text.h"
 #include "filters/model.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/provenance.h"
 #include "report/document/markdown.h"
-#include "report/files/folder_lock.h"
 #include "report/pages/stress_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/stress_record.h"
@@ -36,11 +35,8 @@ const Axis& find_axis(const std::string& id, const char* option) {
 }
 
 double parse_end(const std::string& text, const std::string& range) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    fail(fmt::format("--range: '{}' of '{}' must be a finite number, as in --range esm-exponent=10,200", text, range));
-  return value;
+  if (const std::optional<double> value = parse_number(text)) return *value;
+  fail(fmt::format("--range: '{}' of '{}' must be a finite number, as in --range esm-exponent=10,200", text, range));
 }
 
 records::StressRange parse_ends(const std::string& ends, const std::string& range) {
@@ -274,7 +270,7 @@ records::StressCase find_onsets(const Case& item, const Axis& axis) {
   record.filter = item.filter;
   record.variant = item.variant;
   record.level = name_of(item.level);
-  record.params = measure::record_params(item.params);
+  record.params = item.params;
   record.not_available = item.not_available;
   if (!item.observe) return record;
   const std::vector<double> coarse = place_samples(axis, item);
@@ -344,7 +340,7 @@ class StressRun {
   }
 
   StressOutcome run() {
-    const files::FolderLock lock(options_.out, options_.force);  // a folder that cannot be written is better found now
+    const FolderLock lock(options_.out, options_.force);  // a folder that cannot be written is better found now
     const auto start = Clock::now();
     describe_run();
     make_all_cases();

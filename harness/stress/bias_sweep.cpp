@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/folder_lock.h"
 #include "filters/kernel.h"
 #include "harness/measure/cell_analysis.h"
 #include "harness/measure/scene_assets.h"
@@ -20,8 +21,6 @@
 #include "harness/run/merge.h"
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
-#include "report/files/file_name.h"
-#include "report/files/folder_lock.h"
 #include "report/images/grid.h"
 #include "report/pages/bias_page.h"
 #include "report/pages/write_page.h"
@@ -184,7 +183,7 @@ class BiasSweep {
                            .fit = scene::describe_fit(options_.fit),
                            .filter = request.label(),
                            .id = request.spec.id,
-                           .params = measure::record_params(request.values),
+                           .params = request.values,
                            .mode = mode.name,
                            .key = mode.key,
                            .bias = mode.name};
@@ -252,7 +251,7 @@ class BiasSweep {
     grid.crop =
         images::find_disputed_edge(images, images.size() - 1, images::choose_crop_size({truth.width, truth.height}));
     grid.columns = static_cast<int>(grid.tiles.size());
-    const std::string light = scene_.light.name.empty() ? "" : files::make_file_stem(scene_.light.name) + ".";
+    const std::string light = scene_.light.name.empty() ? "" : make_file_stem(scene_.light.name) + ".";
     mode.picture = fmt::format("bias.{}{}.png", light, mode.mode);
     mode.picture_caption = fmt::format(
         "{} under {}: picture, visibility, and the crop where it differs most; full "
@@ -283,7 +282,7 @@ void run_bias_sweep(const options::RunOptions& options, options::Progress& progr
   measure::Renderer renderer = measure::make_renderer(options.backend, options.resources);
   truth::TruthCache cache(options.cache,
                           [&progress](const std::string& message) { progress.note("warning: " + message); });
-  const files::FolderLock lock(options.out, options.force);  // a folder that cannot be written is better found now
+  const FolderLock lock(options.out, options.force);  // a folder that cannot be written is better found now
   const auto steps_of_light = static_cast<int>(1 + render::swept_modes().size() * options.filters.size());
   progress.begin(static_cast<int>(lit.size()) * steps_of_light, 0);
   std::vector<records::BiasSweepRecord> sweeps;

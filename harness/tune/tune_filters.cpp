@@ -9,11 +9,11 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/folder_lock.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
 #include "harness/tune/tune_scene.h"
-#include "report/files/folder_lock.h"
 #include "report/pages/tune_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/csv_tables.h"
@@ -75,8 +75,8 @@ class Tuner {
   }
 
   std::string run() {
-    const files::FolderLock lock(options_.run.out,
-                                 options_.run.force);  // a folder that cannot be written is better found now
+    const FolderLock lock(options_.run.out,
+                          options_.run.force);  // a folder that cannot be written is better found now
     progress_.begin(static_cast<int>(filters_.size()) * (options_.budget + fit_budget_), 0);
     search_all();
     score_unseen();
@@ -265,7 +265,7 @@ class Tuner {
   static void note_filter(TunedFilter& filter) {
     filter.record.id = filter.request.spec.id;
     filter.record.label = filter.request.label();
-    filter.record.defaults = measure::record_params(filter.request.values);
+    filter.record.defaults = filter.request.values;
   }
 
   static void note_search(TunedFilter& filter, const std::vector<ParamScale>& scales, const SearchResult& result) {
@@ -313,8 +313,7 @@ class Tuner {
 
   std::string write() {
     for (TunedFilter& filter : filters_) {
-      records::judge_tuning(filter.record, measure::record_params(filter.found.values),
-                            metric_.kind == TuneMetricKind::kStatistic);
+      records::judge_tuning(filter.record, filter.found.values, metric_.kind == TuneMetricKind::kStatistic);
       scene::FitRule fit = options_.run.fit;
       if (filter.record.verdict == records::TuneVerdict::kBetter) fit.cascades = filter.found.cascades;
       filter.record.fit = scene::describe_fit(fit);

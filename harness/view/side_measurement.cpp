@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/text.h"
 #include "harness/run/float_images.h"
 #include "harness/view/view_state.h"
 #include "report/images/image_library.h"
@@ -49,7 +50,7 @@ std::vector<std::string> list_arguments(const options::RunOptions& options, cons
                                     "--out",
                                     (folder / kReportName).string(),
                                     "--gl",
-                                    std::string(gl::backend_name(options.backend)),
+                                    name_of(options.backend),
                                     run::cache_word(options.cache),
                                     "--fresh",
                                     "--every-step",

@@ -338,7 +338,8 @@ void Workbench::reload_filters() {
   for (std::size_t side = 0; side < kSides; ++side) {
     const filters::FilterRequest& shown = state_.sides[side].filter;
     const filters::FilterSpec& spec = catalogue_.find(shown.spec.id);
-    if (spec == shown.spec && stage_->fault(side).empty()) continue;
+    const bool is_same = spec.front_matter == shown.spec.front_matter && spec.body == shown.spec.body;
+    if (is_same && stage_->fault(side).empty()) continue;
     Changes changes;
     changes.filter[side] = true;
     change(changes, [&](ViewSettings& settings) { settings.sides[side].filter = renew(shown, spec); });

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "base/bytes.h"
@@ -50,28 +49,21 @@ std::string make_header(const std::string& name, const std::vector<float>& value
   return fmt::format("{}1 {} {}x{} {}\n", kMark, name, layers, values.size(), checksum.name());
 }
 
-/// Gives nothing for what is no file, or one of more bytes than that.
-std::optional<std::string> read_whole_file(const std::filesystem::path& path, std::uintmax_t most_bytes) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > most_bytes)
-    return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
 /// Returns all layers one after the other; nothing if the file is damaged or holds something else.
 std::optional<std::vector<float>> read_values(const std::filesystem::path& path, const std::string& name,
                                               std::size_t layers, std::size_t values) {
   const std::uintmax_t packed_bytes = bound_compressed(layers * values * sizeof(float));
-  const std::optional<std::string> file = read_whole_file(path, packed_bytes + kMostHeaderBytes);
-  if (!file) return std::nullopt;
-  const std::size_t begin = std::min(file->find('\n'), file->size() - 1) + 1;
-  std::vector<float> all(layers * values);
-  const auto packed = std::as_bytes(std::span(*file)).subspan(begin);
-  const bool is_whole = decompress_bytes(packed, std::as_writable_bytes(std::span(all))) &&
-                        file->starts_with(make_header(name, all, layers));
-  return is_whole ? std::optional(std::move(all)) : std::nullopt;
+  try {
+    const std::vector<unsigned char> bytes = read_file_bytes(path, packed_bytes + kMostHeaderBytes);
+    const std::string_view file(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    std::vector<float> all(layers * values);
+    const auto packed = std::as_bytes(std::span(file.substr(std::min(file.find('\n'), file.size() - 1) + 1)));
+    const bool is_whole = decompress_bytes(packed, std::as_writable_bytes(std::span(all))) &&
+                          file.starts_with(make_header(name, all, layers));
+    return is_whole ? std::optional(std::move(all)) : std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 void write_layers(const std::filesystem::path& path, const std::string& name, const Layers& layers) {
@@ -81,6 +73,59 @@ void write_layers(const std::filesystem::path& path, const std::string& name, co
   file.write(make_header(name, all, layers.size()));
   file.write(compress_bytes(std::as_bytes(std::span(all)), kCompression));
   file.commit();
+}
+
+/// Names the code that traces: it changes with the sources of this folder and of the kernels, and with Embree's
+/// version.
+constexpr const char* kVersion = SHADOWBENCH_TRUTH_SOURCES " Embree " RTC_VERSION_STRING;
+constexpr std::size_t kTracedLayers = 5;
+constexpr std::size_t kViewLayers = kTracedLayers + 4;
+
+std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
+  ContentHash hash;
+  hash.add(kVersion);
+  for (const OccluderMesh& mesh : meshes) {
+    hash.add_values(std::span<const glm::vec3>(mesh.positions));
+    hash.add_values(std::span<const std::uint32_t>(mesh.indices));
+    if (!mesh.cut_out) continue;
+    const CutOut& holes = *mesh.cut_out;
+    hash.add_values(std::span<const glm::vec2>(holes.uvs));
+    hash.add(fmt::format("{} {} {} {} {}", holes.width, holes.height, holes.base_alpha, holes.cutoff, holes.dims));
+    hash.add_values(std::span<const std::uint8_t>(holes.alpha));
+  }
+  return hash.name();
+}
+
+std::string name_vector(const glm::dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+
+std::string name_grid(const MapGrid& grid) {
+  std::string name = fmt::format("texel {} light {} right {} up {}", grid.texel_size_ws, name_vector(grid.to_light),
+                                 name_vector(grid.right), name_vector(grid.up));
+  if (grid.lamp) name += fmt::format(" lamp {} {}", name_vector(grid.lamp->position_ws), grid.lamp->reference_m);
+  if (grid.curved) name += " " + grid.curved->name;
+  return name;
+}
+
+std::string name_light(const AreaLight& light) {
+  return fmt::format("light {} at {} u {} v {}", static_cast<int>(light.shape()),
+                     name_vector(light.centre_direction(glm::dvec3(0.0))), name_vector(light.half_u()),
+                     name_vector(light.half_v()));
+}
+
+Layers to_layers(const TracedVisibility& traced) {
+  return {traced.visibility,
+          traced.standard_error,
+          {traced.unanimous.begin(), traced.unanimous.end()},
+          {traced.rays.begin(), traced.rays.end()},
+          traced.variance};
+}
+
+TracedVisibility from_layers(Layers layers) {
+  return {.visibility = std::move(layers[0]),
+          .standard_error = std::move(layers[1]),
+          .unanimous = {layers[2].begin(), layers[2].end()},
+          .rays = {layers[3].begin(), layers[3].end()},
+          .variance = std::move(layers[4])};
 }
 
 }  // namespace
@@ -145,63 +190,6 @@ void TruthCache::prune(std::uintmax_t max_bytes) const {
     if (std::filesystem::remove(entry.path, error)) total -= entry.bytes;
   }
 }
-
-namespace {
-
-/// Names the code that traces: it changes with the sources of this folder and of the kernels, and with Embree's
-/// version.
-constexpr const char* kVersion = SHADOWBENCH_TRUTH_SOURCES " Embree " RTC_VERSION_STRING;
-constexpr std::size_t kTracedLayers = 5;
-constexpr std::size_t kViewLayers = kTracedLayers + 4;
-
-std::string name_geometry(const std::vector<OccluderMesh>& meshes) {
-  ContentHash hash;
-  hash.add(kVersion);
-  for (const OccluderMesh& mesh : meshes) {
-    hash.add_values(std::span<const glm::vec3>(mesh.positions));
-    hash.add_values(std::span<const std::uint32_t>(mesh.indices));
-    if (!mesh.cut_out) continue;
-    const CutOut& holes = *mesh.cut_out;
-    hash.add_values(std::span<const glm::vec2>(holes.uvs));
-    hash.add(fmt::format("{} {} {} {} {}", holes.width, holes.height, holes.base_alpha, holes.cutoff, holes.dims));
-    hash.add_values(std::span<const std::uint8_t>(holes.alpha));
-  }
-  return hash.name();
-}
-
-std::string name_vector(const glm::dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
-
-std::string name_grid(const MapGrid& grid) {
-  std::string name = fmt::format("texel {} light {} right {} up {}", grid.texel_size_ws, name_vector(grid.to_light),
-                                 name_vector(grid.right), name_vector(grid.up));
-  if (grid.lamp) name += fmt::format(" lamp {} {}", name_vector(grid.lamp->position_ws), grid.lamp->reference_m);
-  if (grid.curved) name += " " + grid.curved->name;
-  return name;
-}
-
-std::string name_light(const AreaLight& light) {
-  return fmt::format("light {} at {} u {} v {}", static_cast<int>(light.shape()),
-                     name_vector(light.centre_direction(glm::dvec3(0.0))), name_vector(light.half_u()),
-                     name_vector(light.half_v()));
-}
-
-Layers to_layers(const TracedVisibility& traced) {
-  return {traced.visibility,
-          traced.standard_error,
-          {traced.unanimous.begin(), traced.unanimous.end()},
-          {traced.rays.begin(), traced.rays.end()},
-          traced.variance};
-}
-
-TracedVisibility from_layers(Layers layers) {
-  return {.visibility = std::move(layers[0]),
-          .standard_error = std::move(layers[1]),
-          .unanimous = {layers[2].begin(), layers[2].end()},
-          .rays = {layers[3].begin(), layers[3].end()},
-          .variance = std::move(layers[4])};
-}
-
-}  // namespace
 
 CachedTracer::CachedTracer(MeshList list_meshes, TruthCache& cache, std::uint32_t seed)
     : list_meshes_(std::move(list_meshes)), cache_(cache) {

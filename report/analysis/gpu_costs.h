@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "report/analysis/cells.h"
+#include "report/records/csv_tables.h"
 #include "report/records/records.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::analysis {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <tuple>
 
-#include "report/files/file_name.h"
+#include "base/files.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 
@@ -20,7 +20,7 @@ constexpr std::size_t kFewestCells = 3;
 
 TradeScope make_place_scope(const CellList& cells) {
   const records::CellRecord& first = *cells.front();
-  return {files::make_file_stem(fmt::format("{}.{}.{}x{}", first.scene, first.view, first.width, first.height)),
+  return {make_file_stem(fmt::format("{}.{}.{}x{}", first.scene, first.view, first.width, first.height)),
           fmt::format("{} · view {} · {} × {}", first.scene, first.view, first.width, first.height), false,
           list_configurations(cells)};
 }

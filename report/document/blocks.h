@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "report/document/chart.h"
-#include "report/records/text_table.h"
+#include "report/records/csv_tables.h"
 
 namespace shadowbench::document {
 

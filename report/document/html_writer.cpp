@@ -7,10 +7,10 @@
 #include <map>
 #include <numeric>
 
+#include "base/files.h"
 #include "report/document/blocks.h"
 #include "report/document/embedded.h"
 #include "report/document/markdown.h"
-#include "report/files/file_name.h"
 #include "report/records/json_values.h"
 
 namespace shadowbench::document {
@@ -50,7 +50,7 @@ std::string html_head(const std::string& title) {
 }
 
 std::string html_link(const Link& link) {
-  return fmt::format("<a href=\"{}\">{}</a>", files::encode_url_path(link.path), escape_html(link.text));
+  return fmt::format("<a href=\"{}\">{}</a>", encode_url_path(link.path), escape_html(link.text));
 }
 
 /// The size of a PNG file, so that nothing moves once it is loaded; empty of any other file.
@@ -211,7 +211,7 @@ class HtmlWriter {
     return fmt::format(
         "<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\"{2} loading=\"lazy\"></a>"
         "<figcaption>{1}</figcaption></figure>\n",
-        files::encode_url_path(picture.path), escape_html(picture.caption), html_size(dir_ / picture.path));
+        encode_url_path(picture.path), escape_html(picture.caption), html_size(dir_ / picture.path));
   }
 
   std::string write(const Facts& facts) { return html_facts(facts.items); }

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "report/records/text_table.h"
+#include "report/records/csv_tables.h"
 
 namespace shadowbench::document {
 

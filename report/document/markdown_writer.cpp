@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cctype>
 
+#include "base/files.h"
 #include "base/text.h"
 #include "report/document/blocks.h"
 #include "report/document/markdown.h"
-#include "report/files/file_name.h"
 
 namespace shadowbench::document {
 namespace {
 
 std::string write_link(const std::string& path, const std::string& text) {
-  return fmt::format("[{}]({})", escape_markdown(text), files::encode_url_path(path));
+  return fmt::format("[{}]({})", escape_markdown(text), encode_url_path(path));
 }
 
 std::string write_list(const std::vector<std::string>& items) {

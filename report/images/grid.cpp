@@ -121,21 +121,6 @@ Stack make_legend(const Grid& grid, const std::optional<ColorScale>& errors) {
   return legend;
 }
 
-}  // namespace
-
-Figure make_figure(const Grid& grid) {
-  const std::optional<ColorScale> errors = choose_error_colors(grid);
-  Figure figure{grid.title, grid.subtitle, {}, grid.columns, make_legend(grid, errors)};
-  figure.stacks.resize(grid.tiles.size());
-  tbb::parallel_for(std::size_t{0}, grid.tiles.size(),
-                    [&](std::size_t i) { figure.stacks[i] = make_stack(grid.tiles[i], grid, errors); });
-  return figure;
-}
-
-void write_grid(const std::filesystem::path& path, const Grid& grid) { write_figure(path, make_figure(grid)); }
-
-namespace {
-
 // Small against any disagreement that can be seen, and enough to follow the edge where there is none.
 constexpr double kVarianceFloor = 1e-9;
 // Likewise small against any edge, and enough to follow the disagreement where there is none.
@@ -206,6 +191,17 @@ Rect find_best(const Image& image, Size size, const auto& score_of) {
 }
 
 }  // namespace
+
+Figure make_figure(const Grid& grid) {
+  const std::optional<ColorScale> errors = choose_error_colors(grid);
+  Figure figure{grid.title, grid.subtitle, {}, grid.columns, make_legend(grid, errors)};
+  figure.stacks.resize(grid.tiles.size());
+  tbb::parallel_for(std::size_t{0}, grid.tiles.size(),
+                    [&](std::size_t i) { figure.stacks[i] = make_stack(grid.tiles[i], grid, errors); });
+  return figure;
+}
+
+void write_grid(const std::filesystem::path& path, const Grid& grid) { write_figure(path, make_figure(grid)); }
 
 Size choose_crop_size(Size picture) {
   const int width = std::clamp(picture.width / 4, 1, 45);

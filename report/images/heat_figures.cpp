@@ -83,41 +83,6 @@ float rank_difference(float value) {
   return worst_if_nan(value, std::abs(value));
 }
 
-}  // namespace
-
-const std::array<StabilityImage, 5>& list_stability_images() {
-  static const std::array<StabilityImage, 5> images{{{"headroom", &StabilityImages::headroom},
-                                                     {"variance", &StabilityImages::variance},
-                                                     {"half_difference", &StabilityImages::half_difference},
-                                                     {"shortfall", &StabilityImages::shortfall},
-                                                     {"violation", &StabilityImages::violation}}};
-  return images;
-}
-
-std::vector<Stack> show_stability(const StabilityImages& images, const std::array<std::string, 4>& captions) {
-  std::vector<Stack> stacks;
-  if (!images.headroom.empty()) stacks.push_back(show_headroom(images.headroom, captions[0]));
-  if (!images.variance.empty()) stacks.push_back(show_variance(images.variance, captions[1]));
-  if (!images.half_difference.empty()) stacks.push_back(show_half_difference(images.half_difference, captions[2]));
-  if (!images.shortfall.empty()) stacks.push_back(show_bound(images.shortfall, images.violation, captions[3]));
-  return stacks;
-}
-
-std::vector<Stack> show_difference(const Image& difference, const Image& flip) {
-  ColorScale scale = make_signed_scale(choose_error_scale({&difference}));
-  scale.off_bar = [](float value) { return std::isnan(value) ? kMagenta : kNotCounted; };
-  std::vector<Stack> stacks = {show_heat("signed difference, mean over the channels",
-                                         "red: the first is larger; magenta: not finite; grey: left out by the mask",
-                                         difference, rank_difference, scale)};
-  if (flip.empty()) return stacks;
-  const double most = std::max(0.01, static_cast<double>(*std::ranges::max_element(flip.texels)));
-  stacks.push_back(show_heat("FLIP", "0: an observer who flips between the pictures sees no change", flip,
-                             rank_difference, make_linear_scale(0.0, most, 2, color_map("magma"))));
-  return stacks;
-}
-
-namespace {
-
 constexpr int kMapSide = 768;  // pixels, of the only map; of one of several, a column
 constexpr int kBarWidth = 640;
 constexpr int kPlotHeight = 220, kAxisWidth = 90, kBinWidth = 4;
@@ -218,6 +183,37 @@ bool is_dark_field(const float* texel, int field_texels) {
 }
 
 }  // namespace
+
+const std::array<StabilityImage, 5>& list_stability_images() {
+  static const std::array<StabilityImage, 5> images{{{"headroom", &StabilityImages::headroom},
+                                                     {"variance", &StabilityImages::variance},
+                                                     {"half_difference", &StabilityImages::half_difference},
+                                                     {"shortfall", &StabilityImages::shortfall},
+                                                     {"violation", &StabilityImages::violation}}};
+  return images;
+}
+
+std::vector<Stack> show_stability(const StabilityImages& images, const std::array<std::string, 4>& captions) {
+  std::vector<Stack> stacks;
+  if (!images.headroom.empty()) stacks.push_back(show_headroom(images.headroom, captions[0]));
+  if (!images.variance.empty()) stacks.push_back(show_variance(images.variance, captions[1]));
+  if (!images.half_difference.empty()) stacks.push_back(show_half_difference(images.half_difference, captions[2]));
+  if (!images.shortfall.empty()) stacks.push_back(show_bound(images.shortfall, images.violation, captions[3]));
+  return stacks;
+}
+
+std::vector<Stack> show_difference(const Image& difference, const Image& flip) {
+  ColorScale scale = make_signed_scale(choose_error_scale({&difference}));
+  scale.off_bar = [](float value) { return std::isnan(value) ? kMagenta : kNotCounted; };
+  std::vector<Stack> stacks = {show_heat("signed difference, mean over the channels",
+                                         "red: the first is larger; magenta: not finite; grey: left out by the mask",
+                                         difference, rank_difference, scale)};
+  if (flip.empty()) return stacks;
+  const double most = std::max(0.01, static_cast<double>(*std::ranges::max_element(flip.texels)));
+  stacks.push_back(show_heat("FLIP", "0: an observer who flips between the pictures sees no change", flip,
+                             rank_difference, make_linear_scale(0.0, most, 2, color_map("magma"))));
+  return stacks;
+}
 
 DepthHistogram count_depths(const Image& depth, int bins, float far_plane) {
   assert(depth.channels == 1 && bins > 0);

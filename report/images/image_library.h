@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "report/images/picture_io.h"
-#include "report/images/stored_picture.h"
 
 namespace shadowbench::images {
 

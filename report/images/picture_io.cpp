@@ -1,5 +1,8 @@
 #include "report/images/picture_io.h"
 
+#include <dlfcn.h>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -74,6 +77,18 @@ std::string encode_image(const Image& image, int channels, Encode encode) {
   return encode_png({image.width, image.height}, channels, rows);
 }
 
+const ImageLibrary& load_library(ErrorKind kind, const std::string& where) {
+  void* file = dlopen("shadowbench_openimageio.so", RTLD_NOW);
+  if (const void* library = file != nullptr ? dlsym(file, "shadowbench_image_library") : nullptr)
+    return *static_cast<const ImageLibrary*>(library);
+  throw Error(
+      kind,
+      fmt::format("images are read and written by OpenImageIO, which cannot be loaded ({}); install the package "
+                  "libopenimageio-dev, or Shadowbench again",
+                  dlerror()),
+      where);
+}
+
 }  // namespace
 
 float encode_srgb(float linear) {
@@ -114,5 +129,30 @@ void write_grey_png(const std::filesystem::path& path, const Image& image) {
 }
 
 float decode_srgb(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
+
+const ImageLibrary& open_image_library(ErrorKind kind, const std::string& where) {
+  static const ImageLibrary& library = load_library(kind, where);
+  return library;
+}
+
+StoredPicture read_stored_picture(const std::string& name) {
+  return open_image_library(ErrorKind::kInput, name).read_stored_picture(name);
+}
+
+std::map<std::string, StoredPicture> read_layers(const std::string& file) {
+  return open_image_library(ErrorKind::kInput, file).read_layers(file);
+}
+
+void write_exr(const std::filesystem::path& path, const std::vector<Part>& parts, const Metadata& metadata) {
+  open_image_library(ErrorKind::kOutput, path.string()).write_exr(path, parts, metadata);
+}
+
+ExrFile read_exr(const std::filesystem::path& path, const PartChoice& is_wanted) {
+  return open_image_library(ErrorKind::kInput, path.string()).read_exr(path, is_wanted);
+}
+
+Image round_to_half(const Image& image) { return open_image_library(ErrorKind::kOutput).round_to_half(image); }
+
+Image read_picture(const std::filesystem::path& path) { return read_stored_picture(path.string()).image; }
 
 }  // namespace shadowbench::images

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "report/analysis/findings.h"
-#include "report/files/file_name.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {
@@ -128,7 +128,7 @@ document::Chart make_chart(const analysis::CellGroup& group, const std::string& 
                            const std::function<const std::vector<double>*(const AccumulationRecord&)>& values) {
   document::Chart chart;
   chart.title = fmt::format("{} on {}", y_name, group.scene);
-  chart.id = "frames." + files::make_file_stem(chart.title);
+  chart.id = "frames." + make_file_stem(chart.title);
   chart.x_name = "frames in a plain mean";
   chart.y_name = y_name;
   std::vector<double> xs, ys;
@@ -229,7 +229,7 @@ document::Table make_ghost_table(const analysis::CellGroup& group) {
 
 document::Section make_group_section(const analysis::CellGroup& group, const records::RunRecord& run) {
   const CellRecord& any = *std::ranges::find_if(group.cells, [](const auto& cell) { return !!cell.accumulation; });
-  document::Section section{files::make_file_stem(group.scene + "-" + any.key), group.scene, {}};
+  document::Section section{make_file_stem(group.scene + "-" + any.key), group.scene, {}};
   section.blocks.emplace_back(document::Paragraph{records::describe_settings(any), true});
   section.blocks.emplace_back(make_resolve_table(group));
   if (any.accumulation->no_ghosts.empty())

@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/files.h"
 #include "filters/kernel.h"
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
@@ -19,7 +20,6 @@
 #include "report/analysis/measures.h"
 #include "report/analysis/trade.h"
 #include "report/document/chart.h"
-#include "report/files/file_name.h"
 #include "report/pages/bias_page.h"
 #include "report/pages/tables.h"
 #include "report/pages/trade_section.h"
@@ -293,7 +293,7 @@ namespace {
 
 json value_of(const std::optional<double>& value) { return value && std::isfinite(*value) ? json(*value) : json(); }
 
-json path_of(const std::optional<std::string>& path) { return path ? json(files::encode_url_path(*path)) : json(); }
+json path_of(const std::optional<std::string>& path) { return path ? json(encode_url_path(*path)) : json(); }
 
 json make_measure(const Quantity& quantity) {
   static constexpr const char* kBetter[] = {"less", "more", "zero", "neither"};

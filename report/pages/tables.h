@@ -7,7 +7,6 @@
 #include "report/analysis/cells.h"
 #include "report/document/blocks.h"
 #include "report/records/csv_tables.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::pages {
 

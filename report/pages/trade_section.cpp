@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "base/files.h"
 #include "filters/kernel.h"
 #include "report/analysis/cells.h"
 #include "report/analysis/trade.h"
 #include "report/document/chart.h"
-#include "report/files/file_name.h"
 #include "report/pages/tables.h"
 #include "report/records/format.h"
 
@@ -225,7 +225,7 @@ document::Chart make_map_chart(const analysis::MapFamily& family, const analysis
                                const records::GlRecord& gl) {
   document::Chart made;
   made.title = family.title;
-  made.id = "maps." + files::make_file_stem(made.title);
+  made.id = "maps." + make_file_stem(made.title);
   made.x_name = "bytes of the map, all layers";
   made.y_name = analysis::list_error_measures()[0].title;
   std::vector<double> bytes;

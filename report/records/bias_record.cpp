@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
+#include "base/files.h"
 #include "report/records/csv_tables.h"
 #include "report/records/json_values.h"
 
@@ -49,11 +48,9 @@ std::string make_bias_json(const std::vector<BiasCell>& recommended) {
 
 std::vector<BiasCell> read_recommended_biases(const std::filesystem::path& report, std::vector<std::string>& warnings) {
   const std::filesystem::path file = report / "bias" / "bias.json";
-  std::ifstream stream;
-  if (std::error_code ignored; std::filesystem::is_regular_file(file, ignored)) stream.open(file, std::ios::binary);
-  if (!stream.is_open()) return {};
+  if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored)) return {};
   try {
-    const nlohmann::json written = parse_json(stream);
+    const nlohmann::json written = read_json_file(file, 64 * kMebibyte, "");
     require(written.at("schema") == kBiasSchema, fmt::format("the schema \"{}\"", kBiasSchema));
     return read_value<std::vector<BiasCell>>(written.at("bias_to_ship"));
   } catch (const std::exception&) {

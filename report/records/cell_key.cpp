@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/files.h"
 #include "base/text.h"
 #include "filters/kernel.h"
-#include "report/files/file_name.h"
 #include "report/records/format.h"
 #include "report/records/json_values.h"
 
@@ -24,45 +24,6 @@ json canonical(const json& value) {
     for (json& child : result) child = canonical(child);
   return result;
 }
-
-}  // namespace
-
-ParamMap named_params(const CellRecord& cell) {
-  ParamMap params = cell.params;
-  if (cell.kernel.by_light) params[*cell.kernel.by_light] = std::string(filters::kLightWidth);
-  return params;
-}
-
-json cell_settings(const CellRecord& cell) {
-  return canonical({{"scene", cell.scene},
-                    {"view", cell.view},
-                    {"filter", cell.filter},
-                    {"params", value_json(named_params(cell))},
-                    {"map_size", cell.map_size},
-                    {"map_format", cell.map_format},
-                    {"bias", value_json(cell.bias)},
-                    {"size", {cell.width, cell.height}},
-                    {"fit", cell.fit},
-                    {"light", cell.light},
-                    {"range", {cell.range.border, cell.range.far_test, cell.range.behind_test}}});
-}
-
-std::string cell_key(const json& settings) {
-  return fmt::format("{:016x}", files::hash_text(dump_line(canonical(settings))));
-}
-
-std::string cell_key(const CellRecord& cell) {
-  json settings = cell_settings(cell);
-  if (cell.external) settings["external"] = true;
-  return cell_key(settings);
-}
-
-bool is_cell_key(std::string_view text) {
-  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-  return text.size() == 16 && std::all_of(text.begin(), text.end(), is_digit);
-}
-
-namespace {
 
 constexpr std::string_view kSnapped = " snapped";
 
@@ -86,6 +47,39 @@ Fit parse_fit(std::string text) {
 std::string param_key(const CellRecord& cell, const std::string& name) { return cell.filter + " " + name; }
 
 }  // namespace
+
+ParamMap named_params(const CellRecord& cell) {
+  ParamMap params = cell.params;
+  if (cell.kernel.by_light) params[*cell.kernel.by_light] = std::string(filters::kLightWidth);
+  return params;
+}
+
+json cell_settings(const CellRecord& cell) {
+  return canonical({{"scene", cell.scene},
+                    {"view", cell.view},
+                    {"filter", cell.filter},
+                    {"params", value_json(named_params(cell))},
+                    {"map_size", cell.map_size},
+                    {"map_format", cell.map_format},
+                    {"bias", value_json(cell.bias)},
+                    {"size", {cell.width, cell.height}},
+                    {"fit", cell.fit},
+                    {"light", cell.light},
+                    {"range", {name_of(cell.range.border), cell.range.far_test, cell.range.behind_test}}});
+}
+
+std::string cell_key(const json& settings) { return fmt::format("{:016x}", hash_text(dump_line(canonical(settings)))); }
+
+std::string cell_key(const CellRecord& cell) {
+  json settings = cell_settings(cell);
+  if (cell.external) settings["external"] = true;
+  return cell_key(settings);
+}
+
+bool is_cell_key(std::string_view text) {
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  return text.size() == 16 && std::all_of(text.begin(), text.end(), is_digit);
+}
 
 std::string name_fit(const std::string& fit, const std::set<std::string>& fits) {
   const Fit own = parse_fit(fit);

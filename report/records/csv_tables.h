@@ -5,9 +5,14 @@
 #include <vector>
 
 #include "report/records/records.h"
-#include "report/records/text_table.h"
 
 namespace shadowbench::records {
+
+/// A table's texts.
+struct TextTable {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;  ///< each as long as the header
+};
 
 /// Quotes a text as one CSV field, where it needs quoting. A text that a spreadsheet would run as a formula gets an
 /// apostrophe in front; numbers stay as they are.

@@ -46,6 +46,8 @@ std::string describe_fit_and_light(const records::CellRecord& cell) {
   return text;
 }
 
+constexpr auto kNumeric = static_cast<std::size_t>(metrics::ErrorPart::kNumeric);
+
 }  // namespace
 
 std::string format_number(double value) {
@@ -141,9 +143,9 @@ std::string describe_bias(const records::BiasRecord& bias, const records::MapSca
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
 }
 
-std::string describe_range(const records::RangeRecord& range) {
+std::string describe_range(const RangeRule& range) {
   std::vector<std::string> parts;
-  if (range.border != records::RangeRecord().border) parts.push_back("outside the map: " + range.border);
+  if (range.border != RangeRule().border) parts.push_back(fmt::format("outside the map: {}", name_of(range.border)));
   if (!range.far_test) parts.emplace_back("far-plane test off");
   if (!range.behind_test) parts.emplace_back("behind-the-light test off");
   return fmt::format("{}", fmt::join(parts, " · "));
@@ -160,12 +162,6 @@ std::string describe_status(const records::CellRecord& cell) {
   return cell.message.empty() ? records::name_of(cell.status)
                               : fmt::format("{}: {}", records::name_of(cell.status), cell.message);
 }
-
-namespace {
-
-constexpr auto kNumeric = static_cast<std::size_t>(metrics::ErrorPart::kNumeric);
-
-}  // namespace
 
 const std::array<ErrorPart, metrics::kErrorParts>& list_error_parts() {
   static const std::array<ErrorPart, metrics::kErrorParts> kParts = {

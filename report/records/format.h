@@ -65,7 +65,7 @@ std::string describe_coverage(const records::CoverageRecord& coverage);
 std::string describe_bias(const records::BiasRecord& bias, const records::MapScaleRecord& scale = {});
 
 /// Lists the settings outside the map that are not the right ones; empty where all are.
-std::string describe_range(const records::RangeRecord& range);
+std::string describe_range(const RangeRule& range);
 
 /// Lists what all cells of one table share: view, map, picture size, bias.
 std::string describe_settings(const records::CellRecord& cell);

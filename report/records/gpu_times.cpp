@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -17,10 +16,11 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::uintmax_t kMostBytes = 16 * kMebibyte;
+constexpr const char* kAdvice = "choose a gpu-times.json that a report's page saved";
 constexpr const char* kSchema = "shadowbench gpu-times 1";  // report/document/live/machine_times.js writes it
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& what) {
-  throw Error(ErrorKind::kInput, what + "; choose a gpu-times.json that a report's page saved", file.string());
+  fail_input(fmt::format("{}; {}", what, kAdvice), file.string());
 }
 
 /// What the file has of a part, ms.
@@ -36,17 +36,6 @@ void visit_fields(FilePart& part, auto&& visit) {
   visit("rounds", part.rounds);
 }
 
-struct FileParts {
-  std::optional<FilePart> map, prefilter;
-  FilePart filter;
-};
-
-void visit_fields(FileParts& parts, auto&& visit) {
-  visit("map", parts.map);
-  visit("prefilter", parts.prefilter);
-  visit("filter", parts.filter);
-}
-
 OwnTime to_time(const FilePart& part) {
   const Interval ci95 = part.interval.value_or(Interval{part.median, part.median});
   for (const double each : {part.median, ci95.low, ci95.high}) require(std::abs(each) < 1e9, "a number in range");
@@ -54,9 +43,13 @@ OwnTime to_time(const FilePart& part) {
   return {{part.median, ci95.low, ci95.high, part.rounds}, ci95};
 }
 
-TimedParts to_times(const FileParts& parts) {
-  const auto to_optional = [](const auto& part) { return part ? std::optional(to_time(*part)) : std::nullopt; };
-  return {to_optional(parts.map), to_optional(parts.prefilter), to_time(parts.filter)};
+/// What a file has of a cell.
+TimedParts read_times(const json& cell) {
+  const auto read = [&](const char* part) { return to_time(read_value<FilePart>(cell.at(part))); };
+  const auto read_if = [&](const char* part) {
+    return cell.at(part).is_null() ? std::nullopt : std::optional(read(part));
+  };
+  return {read_if("map"), read_if("prefilter"), read("filter")};
 }
 
 void add(OwnTime& sum, const OwnTime& part) {
@@ -84,14 +77,7 @@ void set_times(CellRecord& cell, const TimedParts& parts) {
 }  // namespace
 
 GpuTimes read_gpu_times(const fs::path& file) {
-  const std::vector<unsigned char> bytes = read_file_bytes(file, kMostBytes);
-  std::istringstream stream(std::string(bytes.begin(), bytes.end()));
-  json written;
-  try {
-    written = parse_json(stream);
-  } catch (const std::exception&) {
-    refuse(file, "this is no JSON");
-  }
+  const json written = read_json_file(file, kMostBytes, kAdvice);
   if (!written.is_object() || written.value("schema", json()) != kSchema)
     refuse(file, fmt::format("its schema is not \"{}\"", kSchema));
   GpuTimes times;
@@ -102,7 +88,7 @@ GpuTimes read_gpu_times(const fs::path& file) {
     times.software = written.value("isSoftware", false);
     for (const auto& [name, cell] : written.at("cells").items()) {
       key = name;
-      times.cells[name] = to_times(read_value<FileParts>(cell));
+      times.cells[name] = read_times(cell);
     }
   } catch (const std::exception&) {
     refuse(file, key.empty() ? "it has no renderer or no cells"

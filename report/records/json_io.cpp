@@ -24,6 +24,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kDeepest = 100;
+constexpr std::uintmax_t kMostOfResults = 4096 * kMebibyte;
 constexpr const char* kRunAgain = "delete this file and run again";
 constexpr const char* kMistakesFile = "filter_mistakes.json";
 
@@ -36,50 +37,6 @@ void check_depth(const json& value, int depth = 0) {
   require_shallow(depth);
   for (const json& each : value) check_depth(each, depth + 1);
 }
-
-}  // namespace
-
-json parse_json(std::istream& stream, const json::parser_callback_t& keep) {
-  if (keep) {
-    return json::parse(
-        stream,
-        [&](int depth, json::parse_event_t event, json& value) {
-          require_shallow(depth);
-          return keep(depth, event, value);
-        });
-  }
-  // With a callback, the parser goes through all that an object holds whenever one of its members ends.
-  json value = json::parse(stream);
-  check_depth(value);
-  return value;
-}
-
-json number_json(double value) {
-  constexpr double kLargestExactInteger = 9007199254740992.0;  // 2^53
-  if (std::nearbyint(value) == value && std::abs(value) <= kLargestExactInteger)
-    return static_cast<std::int64_t>(value);
-  return value;
-}
-
-std::string dump_line(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
-
-std::string dump_file(const json& value) { return value.dump(1, ' ', false, json::error_handler_t::replace) + "\n"; }
-
-bool FieldReader::stays_inside(const std::string& path) {
-  const std::filesystem::path relative = std::filesystem::path(path).lexically_normal();
-  return !path.empty() && relative.is_relative() && *relative.begin() != ".." && path.find('\0') == std::string::npos;
-}
-
-void FieldReader::fail(const std::string& fault) const {
-  throw Error(ErrorKind::kInput, fmt::format("{}; {}", fault, advice), where);
-}
-
-json::json_pointer make_pointer(std::string path) {
-  std::replace(path.begin(), path.end(), '.', '/');
-  return json::json_pointer("/" + path);
-}
-
-namespace {
 
 bool is_finite(const json& value) {
   if (value.is_structured()) return std::ranges::all_of(value, is_finite);
@@ -167,19 +124,19 @@ json write_record(const auto& record, std::map<std::string, std::string> absent)
   return root;
 }
 
-json parse_file(const std::filesystem::path& file, const json::parser_callback_t& keep = {}) {
-  require_plain_file(file, 4096 * kMebibyte);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(ErrorKind::kInput, "the file cannot be opened; was the run finished?", file.string());
-  try {
-    return parse_json(stream, keep);
-  } catch (const std::exception& problem) {
-    throw Error(
-        ErrorKind::kInput,
-        fmt::format("this is not complete JSON, so the file was cut off or edited ({}); delete it and run again",
-                    problem.what()),
-        file.string());
+json parse_json(std::istream& stream, const json::parser_callback_t& keep) {
+  if (keep) {
+    return json::parse(
+        stream,
+        [&](int depth, json::parse_event_t event, json& value) {
+          require_shallow(depth);
+          return keep(depth, event, value);
+        });
   }
+  // With a callback, the parser goes through all that an object holds whenever one of its members ends.
+  json value = json::parse(stream);
+  check_depth(value);
+  return value;
 }
 
 void check_version(const json& root, const std::string& where) {
@@ -220,112 +177,6 @@ class CellTaker {
   bool among_cells_ = false;
   std::exception_ptr problem_;
 };
-
-}  // namespace
-
-json to_json(const CellRecord& cell) { return write_record(cell, cell.absent); }
-
-json to_json(const RunRecord& run) {
-  json root = write_record(run, {});
-  root["schema_version"] = kSchemaVersion;
-  return root;
-}
-
-json to_json(const Provenance& provenance, int schema_version) {
-  RunRecord run;
-  run.gl = provenance.gl;
-  run.machine = provenance.machine;
-  const json head = to_json(run);
-  return {{"schema_version", schema_version}, {"commit", provenance.commit}, {"gl", head.at("gl")},
-          {"machine", head.at("machine")},    {"seed", provenance.seed},     {"command", provenance.command},
-          {"seconds", provenance.seconds}};
-}
-
-CellRecord cell_from_json(const json& json, const std::string& where) {
-  CellRecord cell;
-  const FieldReader reader{json, where, kRunAgain};
-  visit_fields(cell, reader);
-  if (!is_cell_key(cell.key))
-    reader.fail(fmt::format("the field 'key' holds {}, which is no key of 16 hexadecimal digits",
-                            dump_line(cell.key).substr(0, 60)));
-  return cell;
-}
-
-RunRecord run_from_json(const json& json, const std::string& where) {
-  check_version(json, where);
-  RunRecord run;
-  const FieldReader reader{json, where, kRunAgain};
-  visit_fields(run, reader);
-  const ExperimentRecord& all = run.experiment;
-  if (all.cells < 0 || all.shard < 1 || all.shard > all.shards)
-    reader.fail(fmt::format("the field 'experiment' says shard {} of {}, with {} cells, which cannot be", all.shard,
-                            all.shards, all.cells));
-  return run;
-}
-
-std::filesystem::path cell_path(const std::filesystem::path& dir, const std::string& key) {
-  assert(is_cell_key(key));
-  return dir / "cells" / (key + ".json");
-}
-
-void write_cell(const std::filesystem::path& dir, const CellRecord& cell) {
-  const json file{{"schema_version", kSchemaVersion}, {"cell", to_json(cell)}};
-  write_text_file(cell_path(dir, cell.key), dump_file(file));
-}
-
-CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
-  const std::filesystem::path file = cell_path(dir, key);
-  const json root = parse_file(file);
-  check_version(root, file.string());
-  return cell_from_json(root.value("cell", json()), file.string());
-}
-
-std::vector<std::string> list_files(const CellRecord& cell) {
-  std::vector<std::string> files;
-  visit_fields(cell, PathLister{files});
-  return files;
-}
-
-std::vector<CellRecord> read_cells(const std::filesystem::path& dir, const std::vector<std::string>& keys) {
-  std::vector<CellRecord> cells;
-  for (const std::string& key : keys) cells.push_back(read_cell(dir, key));
-  return cells;
-}
-
-void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<CellRecord>& cells) {
-  write_text_file(dir / "results.schema.json", results_schema());
-  AtomicFile file(dir / "results.json");
-  std::string head = dump_file(to_json(run));
-  head.resize(head.rfind("\n}"));  // the closing brace comes after the cells
-  file.write(head + ",\n \"cells\": [");
-  std::string_view separator = "\n";
-  for (const CellRecord& cell : cells) {
-    file.write(fmt::format("{}  {}", separator, dump_line(to_json(cell))));
-    separator = ",\n";
-  }
-  file.write("\n ]\n}\n");
-  file.commit();
-}
-
-Results read_results(const std::filesystem::path& file) {
-  Results results;
-  const std::string where = file.string();
-  CellTaker taker(results.cells, where);
-  const json root = parse_file(file, std::ref(taker));
-  results.run = run_from_json(root, where);
-  if (!root.contains("cells") || !root["cells"].is_array())
-    throw Error(ErrorKind::kInput, "the list 'cells' is missing; delete this file and run again", where);
-  taker.throw_problem();
-  for (const json& cell : root["cells"]) cell_from_json(cell, where);  // what is no object is no cell
-  std::set<std::string_view> keys;
-  for (const CellRecord& cell : results.cells)
-    if (!keys.insert(cell.key).second)
-      throw Error(ErrorKind::kInput, fmt::format("the cell {} stands in it twice; delete it and run again", cell.key),
-                  where);
-  return results;
-}
-
-namespace {
 
 using nlohmann::ordered_json;
 
@@ -381,7 +232,7 @@ class SchemaWriter {
     if constexpr (kIsA<T, std::optional>)
       return describe_optional<typename T::value_type>(about);
     else if constexpr (std::is_enum_v<T>)
-      return {{"enum", kNames<T>}};
+      return {{"enum", list_names<T>()}};
     else if constexpr (std::is_same_v<T, bool>)
       return {{"type", "boolean"}};
     else if constexpr (std::is_arithmetic_v<T>)
@@ -465,6 +316,147 @@ class SchemaWriter {
 
 }  // namespace
 
+json read_json_file(const std::filesystem::path& file, std::uintmax_t most_bytes, std::string_view advice,
+                    const json::parser_callback_t& keep) {
+  require_plain_file(file, most_bytes);
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail_input("the file cannot be opened; is its name right, and was the run finished?", file.string());
+  try {
+    return parse_json(stream, keep);
+  } catch (const std::exception& problem) {
+    fail_input(
+        fmt::format("this is not complete JSON, so the file was cut off or edited ({}); {}", problem.what(), advice),
+        file.string());
+  }
+}
+
+json number_json(double value) {
+  constexpr double kLargestExactInteger = 9007199254740992.0;  // 2^53
+  if (std::nearbyint(value) == value && std::abs(value) <= kLargestExactInteger)
+    return static_cast<std::int64_t>(value);
+  return value;
+}
+
+std::string dump_line(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+std::string dump_file(const json& value) { return value.dump(1, ' ', false, json::error_handler_t::replace) + "\n"; }
+
+bool FieldReader::stays_inside(const std::string& path) {
+  const std::filesystem::path relative = std::filesystem::path(path).lexically_normal();
+  return !path.empty() && relative.is_relative() && *relative.begin() != ".." && path.find('\0') == std::string::npos;
+}
+
+void FieldReader::fail(const std::string& fault) const {
+  throw Error(ErrorKind::kInput, fmt::format("{}; {}", fault, advice), where);
+}
+
+json::json_pointer make_pointer(std::string path) {
+  std::replace(path.begin(), path.end(), '.', '/');
+  return json::json_pointer("/" + path);
+}
+
+json to_json(const CellRecord& cell) { return write_record(cell, cell.absent); }
+
+json to_json(const RunRecord& run) {
+  json root = write_record(run, {});
+  root["schema_version"] = kSchemaVersion;
+  return root;
+}
+
+json to_json(const Provenance& provenance, int schema_version) {
+  RunRecord run;
+  run.gl = provenance.gl;
+  run.machine = provenance.machine;
+  const json head = to_json(run);
+  return {{"schema_version", schema_version}, {"commit", provenance.commit}, {"gl", head.at("gl")},
+          {"machine", head.at("machine")},    {"seed", provenance.seed},     {"command", provenance.command},
+          {"seconds", provenance.seconds}};
+}
+
+CellRecord cell_from_json(const json& json, const std::string& where) {
+  CellRecord cell;
+  const FieldReader reader{json, where, kRunAgain};
+  visit_fields(cell, reader);
+  if (!is_cell_key(cell.key))
+    reader.fail(fmt::format("the field 'key' holds {}, which is no key of 16 hexadecimal digits",
+                            dump_line(cell.key).substr(0, 60)));
+  return cell;
+}
+
+RunRecord run_from_json(const json& json, const std::string& where) {
+  check_version(json, where);
+  RunRecord run;
+  const FieldReader reader{json, where, kRunAgain};
+  visit_fields(run, reader);
+  const ExperimentRecord& all = run.experiment;
+  if (all.cells < 0 || all.shard < 1 || all.shard > all.shards)
+    reader.fail(fmt::format("the field 'experiment' says shard {} of {}, with {} cells, which cannot be", all.shard,
+                            all.shards, all.cells));
+  return run;
+}
+
+std::filesystem::path cell_path(const std::filesystem::path& dir, const std::string& key) {
+  assert(is_cell_key(key));
+  return dir / "cells" / (key + ".json");
+}
+
+void write_cell(const std::filesystem::path& dir, const CellRecord& cell) {
+  const json file{{"schema_version", kSchemaVersion}, {"cell", to_json(cell)}};
+  write_text_file(cell_path(dir, cell.key), dump_file(file));
+}
+
+CellRecord read_cell(const std::filesystem::path& dir, const std::string& key) {
+  const std::filesystem::path file = cell_path(dir, key);
+  const json root = read_json_file(file, kMostOfResults, kRunAgain);
+  check_version(root, file.string());
+  return cell_from_json(root.value("cell", json()), file.string());
+}
+
+std::vector<std::string> list_files(const CellRecord& cell) {
+  std::vector<std::string> files;
+  visit_fields(cell, PathLister{files});
+  return files;
+}
+
+std::vector<CellRecord> read_cells(const std::filesystem::path& dir, const std::vector<std::string>& keys) {
+  std::vector<CellRecord> cells;
+  for (const std::string& key : keys) cells.push_back(read_cell(dir, key));
+  return cells;
+}
+
+void write_results(const std::filesystem::path& dir, const RunRecord& run, const std::vector<CellRecord>& cells) {
+  write_text_file(dir / "results.schema.json", results_schema());
+  AtomicFile file(dir / "results.json");
+  std::string head = dump_file(to_json(run));
+  head.resize(head.rfind("\n}"));  // the closing brace comes after the cells
+  file.write(head + ",\n \"cells\": [");
+  std::string_view separator = "\n";
+  for (const CellRecord& cell : cells) {
+    file.write(fmt::format("{}  {}", separator, dump_line(to_json(cell))));
+    separator = ",\n";
+  }
+  file.write("\n ]\n}\n");
+  file.commit();
+}
+
+Results read_results(const std::filesystem::path& file) {
+  Results results;
+  const std::string where = file.string();
+  CellTaker taker(results.cells, where);
+  const json root = read_json_file(file, kMostOfResults, kRunAgain, std::ref(taker));
+  results.run = run_from_json(root, where);
+  if (!root.contains("cells") || !root["cells"].is_array())
+    throw Error(ErrorKind::kInput, "the list 'cells' is missing; delete this file and run again", where);
+  taker.throw_problem();
+  for (const json& cell : root["cells"]) cell_from_json(cell, where);  // what is no object is no cell
+  std::set<std::string_view> keys;
+  for (const CellRecord& cell : results.cells)
+    if (!keys.insert(cell.key).second)
+      throw Error(ErrorKind::kInput, fmt::format("the cell {} stands in it twice; delete it and run again", cell.key),
+                  where);
+  return results;
+}
+
 std::string results_schema() {
   SchemaWriter writer;
   const ordered_json version = {{"const", kSchemaVersion}}, cell = writer.describe<CellRecord>({});
@@ -526,11 +518,9 @@ void write_filter_mistakes(const std::filesystem::path& folder, const std::vecto
 std::vector<filters::FilterMistake> read_filter_mistakes(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::exists(folder / kMistakesFile, ignored)) return {};
-  require_plain_file(folder / kMistakesFile, kMebibyte);
+  const json list = read_json_file(folder / kMistakesFile, kMebibyte, kRunAgain);
   std::vector<filters::FilterMistake> mistakes;
   try {
-    std::ifstream stream(folder / kMistakesFile, std::ios::binary);
-    const json list = parse_json(stream);
     for (const json& each : list)
       mistakes.push_back({each.at("filter").get<std::string>(), each.at("file").get<std::string>(),
                           each.at("message").get<std::string>()});

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -13,10 +14,11 @@
 
 namespace shadowbench::records {
 
-/// Parses JSON. Throws nlohmann::json::exception, or std::invalid_argument where it is nested more than 100 deep:
-/// copying or writing such a value recurses, and would end the program.
-/// `keep` is told of every value once it is read, and says whether it stays; see nlohmann::json::parser_callback_t.
-nlohmann::json parse_json(std::istream& stream, const nlohmann::json::parser_callback_t& keep = {});
+/// Reads a file of JSON. Throws Error(kInput), which ends in `advice`, where it is missing, cut off, or nested more
+/// than 100 deep: copying or writing such a value recurses, and would end the program. `keep` is told of every value
+/// once it is read, and says whether it stays; see nlohmann::json::parser_callback_t.
+nlohmann::json read_json_file(const std::filesystem::path& file, std::uintmax_t most_bytes, std::string_view advice,
+                              const nlohmann::json::parser_callback_t& keep = {});
 
 /// Writes a number: integral values as integers, so that 4 and 4.0 are one text.
 nlohmann::json number_json(double value);
@@ -118,11 +120,10 @@ struct MemberReader {
 /// Reads the name of an enumeration's value; likewise.
 template <class Enum>
 Enum read_enum(const nlohmann::json& json) {
-  const auto found = std::find(std::begin(kNames<Enum>), std::end(kNames<Enum>), json);
-  const std::vector<std::string> names(std::begin(kNames<Enum>), std::end(kNames<Enum>));
-  require(found != std::end(kNames<Enum>),
-          fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back()));
-  return static_cast<Enum>(found - std::begin(kNames<Enum>));
+  const std::vector<std::string> names = list_names<Enum>();
+  const auto found = std::ranges::find_if(names, [&](const std::string& name) { return json == name; });
+  require(found != names.end(), fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back()));
+  return static_cast<Enum>(found - names.begin());
 }
 
 template <class T>

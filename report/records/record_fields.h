@@ -177,11 +177,9 @@ void visit_fields(Is<BiasRecord> auto& bias, auto&& visit) {
         {.column = "1: the depth map lies half-way between first and second surface", .as_number = true});
 }
 
-void visit_fields(Is<RangeRecord> auto& range, auto&& visit) {
+void visit_fields(Is<RangeRule> auto& range, auto&& visit) {
   visit("border", range.border,
-        {.text = "what is read outside the map",
-         .one_of = "border,edge,repeat",
-         .column = "what lookups read outside the map"});
+        {.text = "what is read outside the map", .column = "what lookups read outside the map"});
   visit("far_test", range.far_test,
         {.text = "beyond the far plane is lit", .column = "on: what is beyond the map's far plane is lit"});
   visit("behind_test", range.behind_test,

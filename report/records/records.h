@@ -1,20 +1,25 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "base/text.h"
+#include "filters/depth_map.h"
+#include "filters/filter_spec.h"
 #include "reference/metrics/metric_table.h"
 
 namespace shadowbench::records {
 
+using filters::ParamValue, filters::RangeRule, shadowbench::name_of;
 using metrics::ArtefactRecord, metrics::AttributionPart, metrics::AttributionRecord, metrics::CostRecord,
     metrics::CoverageRecord, metrics::ErrorRecord, metrics::MapScaleRecord, metrics::StabilityRecord,
     metrics::TruthRecord;
+using ParamMap = filters::ParamValues;
 
 /// Version of results.json and of the cell files; a reader refuses any other.
 inline constexpr int kSchemaVersion = 4;
@@ -44,23 +49,9 @@ struct Ratio {
   Interval ci95;
 };
 
-/// The names that records have for the values of an enumeration, in its order.
-template <class Enum>
-inline constexpr const char* kNames[1] = {};
-
-template <class Enum>
-const char* name_of(Enum value) {
-  return kNames<Enum>[static_cast<std::size_t>(value)];
-}
-
 /// How a cell ended. Suspect: its filter was drawn, and what it drew or read shows that it is wrong.
 enum class CellStatus { kOk, kSuspect, kTimeout, kCrashed, kError };
-template <>
-inline constexpr const char* kNames<CellStatus>[] = {"ok", "suspect", "timeout", "crashed", "error"};
-
-/// One parameter's value.
-using ParamValue = std::variant<double, std::string, bool>;
-using ParamMap = std::map<std::string, ParamValue>;
+constexpr auto names_of(CellStatus) { return std::array{"ok", "suspect", "timeout", "crashed", "error"}; }
 
 /// A length along the light in three units, whose parts add up.
 struct BiasAmountRecord {
@@ -81,13 +72,6 @@ struct BiasRecord {
   double polygon_units = 0.0;
   bool front_cull = false;  ///< faces towards the light are not drawn into the map
   bool midpoint = false;    ///< the map lies half-way between the first and the second surface
-};
-
-/// What lookups did outside the map; the defaults are right, everything else shows an artefact.
-struct RangeRecord {
-  std::string border = "border";  ///< outside the map: border (lit), edge or repeat
-  bool far_test = true;           ///< beyond the far plane is lit
-  bool behind_test = true;        ///< behind the light of a projective map is lit
 };
 
 /// What a cell's passes cost in time, in milliseconds of the clock that the run names.
@@ -215,8 +199,7 @@ using GpuRecords = std::map<std::string, GpuRecord>;
 
 /// Which clock the times come from.
 enum class TimerKind { kWallClock, kTimerQuery };
-template <>
-inline constexpr const char* kNames<TimerKind>[] = {"wall_clock", "timer_query"};
+constexpr auto names_of(TimerKind) { return std::array{"wall_clock", "timer_query"}; }
 
 /// The kind of machine that a cell was measured on. Times of two kinds are never compared.
 struct MachineKind {
@@ -307,7 +290,7 @@ struct CellRecord : metrics::MetricValues {
   std::string fit = "tight";    ///< how the light's frustum is fitted: "sphere", "tight" or "view", perhaps " snapped"
   std::string light = "scene";  ///< where the light stands: as the scene says, or "AZIMUTH,ELEVATION" in degrees
   BiasRecord bias;
-  RangeRecord range;
+  RangeRule range;
   int width = 0;  ///< pixels
   int height = 0;
   std::optional<double> screen_reads;   ///< pixels that screen passes read for a receiver, mean

@@ -17,8 +17,7 @@ enum class StressVerdict {
   kDegraded,  ///< the error is larger than the axis' bound
   kBroken     ///< NaN, infinity, all lit, all dark, or falling where the filter must rise
 };
-template <>
-inline constexpr const char* kNames<StressVerdict>[] = {"ok", "degraded", "broken"};
+constexpr auto names_of(StressVerdict) { return std::array{"ok", "degraded", "broken"}; }
 
 /// What kind of law a theoretical limit follows, and so how near a measurement has to come.
 enum class StressTheoryKind {
@@ -27,8 +26,7 @@ enum class StressTheoryKind {
   kSlope,     ///< geometry: within 10 %
   kRounding   ///< a bound on accumulated rounding: within a factor of 8
 };
-template <>
-inline constexpr const char* kNames<StressTheoryKind>[] = {"overflow", "quantum", "slope", "rounding"};
+constexpr auto names_of(StressTheoryKind) { return std::array{"overflow", "quantum", "slope", "rounding"}; }
 
 /// How a measured limit compares with its theory.
 enum class StressAgreement {
@@ -36,8 +34,7 @@ enum class StressAgreement {
   kExplained,  ///< it does not agree, and the axis says why
   kDisagrees
 };
-template <>
-inline constexpr const char* kNames<StressAgreement>[] = {"agrees", "explained", "disagrees"};
+constexpr auto names_of(StressAgreement) { return std::array{"agrees", "explained", "disagrees"}; }
 
 /// The range of an axis, with both ends.
 using StressRange = Interval;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <fstream>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -42,19 +41,6 @@ Means average(const std::vector<TunedViewRecord>& views, bool training) {
 }
 
 constexpr const char* kTuneAgain = "make the file anew with 'shadowbench tune'";
-
-json parse(const std::filesystem::path& file) {
-  require_plain_file(file, 64 * kMebibyte);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
-    throw Error(ErrorKind::kInput, "this file of tuned parameters cannot be read: check --tuned", file.string());
-  try {
-    return parse_json(stream);
-  } catch (const std::exception& error) {
-    throw Error(ErrorKind::kInput, fmt::format("not JSON, or cut off: {}; {}", error.what(), kTuneAgain),
-                file.string());
-  }
-}
 
 /// Writes parameters as they are, 4.0 for 4.
 json params_json(const ParamMap& params) {
@@ -145,7 +131,7 @@ std::string make_tuned_json(const TunedRecord& record) {
 }
 
 TunedSettings read_tuned_settings(const std::filesystem::path& file) {
-  const json parsed = parse(file);
+  const json parsed = read_json_file(file, 64 * kMebibyte, kTuneAgain);
   const std::string where = file.string();
   const FieldReader root{parsed, where, kTuneAgain};
   int version = 0;

@@ -46,8 +46,7 @@ enum class TuneVerdict {
   kNoGain,      ///< not better by more than that, in training or on unseen views
   kOverfitted,  ///< better in training, but not on unseen views
 };
-template <>
-inline constexpr const char* kNames<TuneVerdict>[] = {"better", "no gain", "overfitted"};
+constexpr auto names_of(TuneVerdict) { return std::array{"better", "no gain", "overfitted"}; }
 
 /// What was found for one filter.
 struct TunedFilterRecord {

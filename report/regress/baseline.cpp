@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/files.h"
-#include "report/files/file_name.h"
 #include "report/images/picture_io.h"
 #include "report/records/json_values.h"
 
@@ -63,23 +61,16 @@ BaselineCell from_json(const json& read) {
 }
 
 std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
-  require_plain_file(file, 1024 * kMebibyte);
+  constexpr const char* kAdvice = "restore the file, or accept a run again";
+  const json root = records::read_json_file(file, 1024 * kMebibyte, kAdvice);
   try {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream)
-      throw Error(ErrorKind::kInput, "the file cannot be read; restore it, or accept a run again", file.string());
-    const json root = records::parse_json(stream);
     if (root.at("baseline_version") != kBaselineVersion)
       throw std::invalid_argument(fmt::format("it is of another version than {}", kBaselineVersion));
     std::vector<BaselineCell> cells;
     for (const json& cell : root.at("cells")) cells.push_back(from_json(cell));
     return cells;
-  } catch (const Error&) {
-    throw;
   } catch (const std::exception& error) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("this is no baseline of cells: {}; restore the file, or accept a run again", error.what()),
-                file.string());
+    fail_input(fmt::format("this is no baseline of cells: {}; {}", error.what(), kAdvice), file.string());
   }
 }
 
@@ -144,7 +135,7 @@ CellName name_cell(const records::CellRecord& cell) {
 }
 
 std::string truth_key(const records::CellRecord& cell) {
-  return fmt::format("{} {}x{} {}", files::make_file_stem(cell.view), cell.width, cell.height, cell.light);
+  return fmt::format("{} {}x{} {}", make_file_stem(cell.view), cell.width, cell.height, cell.light);
 }
 
 bool Baseline::exists() const {
@@ -156,7 +147,7 @@ bool Baseline::exists() const {
 }
 
 std::filesystem::path Baseline::stem(const std::string& scene, const std::string& filter) const {
-  return folder_ / files::make_file_stem(scene) / files::make_file_stem(filter);
+  return folder_ / make_file_stem(scene) / make_file_stem(filter);
 }
 
 Baseline::Index Baseline::read_index() const {

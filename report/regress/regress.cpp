@@ -12,9 +12,8 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/folder_lock.h"
 #include "base/text.h"
-#include "report/files/file_name.h"
-#include "report/files/folder_lock.h"
 #include "report/images/color_values.h"
 #include "report/images/grid.h"
 #include "report/images/picture_io.h"
@@ -204,7 +203,7 @@ class Regression {
   std::map<std::string, ExpectedTruths> truths_;  ///< by scene
   std::map<std::pair<std::string, std::string>, CellFile> accepted_files_;  ///< by scene and filter
   std::set<std::string> accepted_truths_;                                   ///< scenes
-  std::optional<files::FolderLock> lock_;                                   ///< held on a baseline that may change
+  std::optional<FolderLock> lock_;                                          ///< held on a baseline that may change
   RegressReport report_;
   CellFile file_;  ///< the file of the last cell's scene and filter
   std::pair<std::string, std::string> file_name_;
@@ -288,8 +287,7 @@ class Regression {
 
   void add_unknown(Comparison& comparison, const ActualCell& cell) {
     const std::string file =
-        (std::filesystem::path(files::make_file_stem(cell.record.scene)) / files::make_file_stem(cell.record.filter))
-            .string();
+        (std::filesystem::path(make_file_stem(cell.record.scene)) / make_file_stem(cell.record.filter)).string();
     const auto unreadable = index_.unreadable.find(file);
     const bool is_known = unreadable != index_.unreadable.end();
     if (is_known) named_unreadable_.insert(file);
@@ -323,7 +321,7 @@ class Regression {
     if (moved && pictures_ < kMostPictures) {
       ++pictures_;
       comparison.picture =
-          files::make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
+          make_file_stem(fmt::format("{}.{}.{}", comparison.scene, comparison.label, comparison.key)) + ".png";
       write_regress_picture(options_.out / *comparison.picture, comparison, expected, drawn);
     }
     report_.comparisons.push_back(std::move(comparison));
@@ -489,7 +487,7 @@ int RegressReport::count(Outcome outcome) const {
 int RegressReport::failed() const { return static_cast<int>(std::ranges::count_if(comparisons, &Comparison::failed)); }
 
 RegressOutcome run_regress(const RegressOptions& options) {
-  const files::FolderLock lock(options.out, options.force);
+  const FolderLock lock(options.out, options.force);
   remove_old_pictures(options.out);
   const std::vector<filters::FilterMistake> mistakes = records::read_filter_mistakes(options.run);
   const RegressReport found = mistakes.empty() ? Regression(options).compare() : report_mistakes(options, mistakes);

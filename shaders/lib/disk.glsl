@@ -1,5 +1,5 @@
 // A disk of points, turned at each pixel. A filter that includes this declares a parameter `rotation` with the choices
-// of filters/poisson.glsl; filters/penumbra/penumbra_disk.h does the same.
+// of filters/poisson.glsl; filters/penumbra.h does the same.
 
 // Cosine and sine of the disk's turn.
 vec2 find_turn(ivec2 pixel) {

@@ -1,5 +1,5 @@
 // The end of a lookup whose first taps agree: some save the rest. A filter that includes this declares a parameter
-// `bail` with the choices of filters/poisson.glsl; filters/penumbra/early_bail.h does the same.
+// `bail` with the choices of filters/poisson.glsl; filters/penumbra.h does the same.
 
 const int first_taps = 4;
 

@@ -1,5 +1,5 @@
 // Four moments of depth, x = 2 depth - 1 in [-1,1], and how little of it can lie before a receiver;
-// filters/four_moments.h does the same.
+// filters/moments.h does the same.
 
 const float root3 = 1.7320508075688772;
 

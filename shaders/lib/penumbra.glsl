@@ -1,4 +1,4 @@
-// What filters share whose kernel is as wide as the penumbra; filters/penumbra/penumbra_disk.h does the same.
+// What filters share whose kernel is as wide as the penumbra; filters/penumbra.h does the same.
 #include "lib/disk.glsl"
 #include "lib/penumbra_radius.glsl"
 

@@ -1,5 +1,5 @@
 // What filters share that read means over boxes as wide as the penumbra from a summed-area table; they have a parameter
-// `max_radius`. filters/penumbra/penumbra_box.h does the same.
+// `max_radius`. filters/penumbra.h does the same.
 #include "lib/penumbra_radius.glsl"
 #include "lib/summed_area.glsl"
 

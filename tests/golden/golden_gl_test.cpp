@@ -84,7 +84,8 @@ std::string make_environment(const Platform& platform) {
 
 TEST_P(Portable, TheSameBaselineHolds) {
   const std::string& backend = std::get<0>(GetParam());
-  if (!gl::has_backend(gl::parse_backend(backend))) GTEST_SKIP() << "this build has no --gl " << backend;
+  if (!gl::has_backend(parse_name<gl::Backend>(backend, "GL back end")))
+    GTEST_SKIP() << "this build has no --gl " << backend;
   const std::string environment = make_environment(GetParam());
   const std::string some = "--scene fence --filters none,pcf2x2,poisson,esm,vsm";
   const Outcome drawn = run("run golden --grids --gl " + backend + " " + some + " --out out", environment);

@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "harness/gl/objects.h"
 
 namespace shadowbench::gl {
@@ -79,12 +79,6 @@ std::string disable_shader_cache_on_full_disk() {
   setenv(kSwitch, "true", 1);
   return fmt::format("the driver's cache of shaders in {}, where {} KB are free", folder.string(), *free >> 10);
 }
-
-constexpr std::array<std::pair<Backend, std::string_view>, 5> kNames = {{{Backend::kAuto, "auto"},
-                                                                         {Backend::kSoftware, "software"},
-                                                                         {Backend::kOsmesa, "osmesa"},
-                                                                         {Backend::kEgl, "egl"},
-                                                                         {Backend::kGlfw, "glfw"}}};
 
 /// The context that is current; one is at a time in the whole process.
 Context* current = nullptr;
@@ -152,26 +146,13 @@ void require_driver(const Attempt& attempt) {
 
 }  // namespace
 
-Backend parse_backend(std::string_view text) {
-  for (const auto& [backend, name] : kNames)
-    if (name == text) return backend;
-  throw Error(ErrorKind::kUsage,
-              fmt::format("unknown GL back end '{}'; there are auto, software, osmesa, egl and glfw", text));
-}
-
-std::string_view backend_name(Backend backend) {
-  for (const auto& [value, name] : kNames)
-    if (value == backend) return name;
-  throw std::logic_error("a GL back end without a name");
-}
-
 bool has_backend(Backend backend) { return !list_attempts(backend).empty(); }
 
 ContextChoice create_context(Backend backend) {
   if (!has_backend(backend)) {
     throw Error(ErrorKind::kContext,
                 fmt::format("this build has no --gl {}; take another, or build with the library that it needs",
-                            backend_name(backend)));
+                            name_of(backend)));
   }
   ContextChoice choice;
   if (std::string full = disable_shader_cache_on_full_disk(); !full.empty()) choice.refused.push_back(std::move(full));

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "harness/gl/gl_api.h"
@@ -12,13 +12,7 @@ namespace shadowbench::gl {
 
 /// Names a way to get an OpenGL context; `kAuto` tries them in turn, `kSoftware` those that need no GPU and no display.
 enum class Backend { kAuto, kSoftware, kOsmesa, kEgl, kGlfw };
-
-/// Reads `auto`, `software`, `osmesa`, `egl` or `glfw`.
-/// Throws Error(kUsage) for any other word, naming the ones that exist.
-Backend parse_backend(std::string_view text);
-
-/// Returns the word that `parse_backend` reads.
-std::string_view backend_name(Backend backend);
+constexpr auto names_of(Backend) { return std::array{"auto", "software", "osmesa", "egl", "glfw"}; }
 
 /// Whether this build has a way to make such a context; the machine may still refuse it.
 bool has_backend(Backend backend);

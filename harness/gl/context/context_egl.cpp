@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "filters/glsl_words.h"
 #include "harness/gl/context/context.h"
 
 // Without this EGL's headers bring in Xlib's macros.
@@ -29,15 +30,6 @@ struct Display {
   std::string extensions;
 };
 
-bool has_word(std::string_view list, std::string_view word) {
-  for (std::size_t at = list.find(word); at != std::string_view::npos; at = list.find(word, at + 1)) {
-    const bool starts = at == 0 || list[at - 1] == ' ';
-    const std::size_t end = at + word.size();
-    if (starts && (end == list.size() || list[end] == ' ')) return true;
-  }
-  return false;
-}
-
 std::string own_text(const char* text) { return text == nullptr ? std::string() : std::string(text); }
 
 template <typename Function>
@@ -53,9 +45,9 @@ Candidate describe_device(EGLDeviceEXT device, int index) {
   const auto query = load<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
   const std::string extensions = query == nullptr ? "" : own_text(query(device, EGL_EXTENSIONS));
   std::string node;
-  if (has_word(extensions, "EGL_EXT_device_drm")) node = own_text(query(device, EGL_DRM_DEVICE_FILE_EXT));
+  if (filters::has_word(extensions, "EGL_EXT_device_drm")) node = own_text(query(device, EGL_DRM_DEVICE_FILE_EXT));
   Candidate candidate;
-  candidate.software = has_word(extensions, "EGL_MESA_device_software");
+  candidate.software = filters::has_word(extensions, "EGL_MESA_device_software");
   candidate.name = fmt::format("device {}{}{}", index, node.empty() ? "" : " ", node);
   if (candidate.software) candidate.name += " (software)";
   candidate.platform = EGL_PLATFORM_DEVICE_EXT;
@@ -78,9 +70,9 @@ std::vector<Candidate> list_devices() {
 std::vector<Candidate> list_candidates() {
   const std::string client = own_text(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS));
   std::vector<Candidate> candidates;
-  if (has_word(client, "EGL_EXT_platform_device")) candidates = list_devices();
+  if (filters::has_word(client, "EGL_EXT_platform_device")) candidates = list_devices();
   std::ranges::stable_partition(candidates, [](const Candidate& candidate) { return !candidate.software; });
-  if (has_word(client, "EGL_MESA_platform_surfaceless"))
+  if (filters::has_word(client, "EGL_MESA_platform_surfaceless"))
     candidates.push_back({"surfaceless", EGL_PLATFORM_SURFACELESS_MESA, nullptr, false});
   return candidates;
 }
@@ -94,12 +86,13 @@ Display open_display(const Candidate& candidate) {
   if (opened.display == EGL_NO_DISPLAY) refuse_egl("no display");
   if (eglInitialize(opened.display, nullptr, nullptr) == EGL_FALSE) refuse_egl("the display does not initialise");
   opened.extensions = own_text(eglQueryString(opened.display, EGL_EXTENSIONS));
-  if (!has_word(opened.extensions, "EGL_KHR_surfaceless_context")) refuse_egl("no EGL_KHR_surfaceless_context");
+  if (!filters::has_word(opened.extensions, "EGL_KHR_surfaceless_context"))
+    refuse_egl("no EGL_KHR_surfaceless_context");
   return opened;
 }
 
 EGLConfig choose_config(const Display& opened) {
-  if (has_word(opened.extensions, "EGL_KHR_no_config_context")) return EGL_NO_CONFIG_KHR;
+  if (filters::has_word(opened.extensions, "EGL_KHR_no_config_context")) return EGL_NO_CONFIG_KHR;
   const EGLint attributes[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
+#include <cmath>
 #include <functional>
 #include <glm/gtx/component_wise.hpp>
 #include <iterator>
@@ -28,9 +28,8 @@ constexpr double kLeastMetres = 1e-3, kMostMetres = 1e6;
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorKind::kUsage, "--fit: " + message); }
 
 double read_number(std::string_view key, std::string_view text, double least, double most, const char* words = "") {
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size() && number >= least && number <= most) return number;
+  const std::optional<double> number = parse_number(text);
+  if (number && *number >= least && *number <= most) return *number;
   refuse(fmt::format("{} is '{}' and must be {} .. {}{}", key, text, least, most, words));
 }
 

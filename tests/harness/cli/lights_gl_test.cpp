@@ -1,6 +1,6 @@
 #include <numeric>
 
-#include "report/images/stored_picture.h"
+#include "report/images/picture_io.h"
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
@@ -248,7 +248,7 @@ TEST_F(Phases, TruthWeight_ChoosesWhatVisibilityIsHeldAgainst) {
   EXPECT_EQ(area["error"]["flip"], cosine["error"]["flip"]);
   const Outcome wrong = run(small(start + "--truth-weight cosin"));
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.err, HasSubstr("--truth-weight: 'cosin' must be area or cosine"));
+  EXPECT_THAT(wrong.err, HasSubstr("--truth-weight 'cosin'; known: area, cosine"));
 }
 
 TEST_F(Phases, ByDefault_KernelsAreAsWideAsTheLightAsks_AndNoneIsWorseThanNoFilter) {

@@ -2,7 +2,7 @@
 
 #include <sys/stat.h>
 
-#include "report/files/folder_lock.h"
+#include "base/folder_lock.h"
 #include "report/regress/regress.h"
 #include "tests/harness/cli/program.h"
 
@@ -221,7 +221,7 @@ TEST_F(Regress, UnreadableFile_KeepsTheCellsThatWereNotCompared_Unreadable) {
 
 TEST_F(Regress, AcceptBesideAnother_IsRefused) {
   make_baseline();
-  const files::FolderLock other(folder() / "base", true);
+  const FolderLock other(folder() / "base", true);
   const Outcome refused = run("regress a --baseline base --accept");
   EXPECT_EQ(refused.exit_code, 6);
   EXPECT_THAT(refused.err, HasSubstr("base"));

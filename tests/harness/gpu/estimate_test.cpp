@@ -1,5 +1,3 @@
-#include "harness/gpu/estimate.h"
-
 #include "harness/gpu/gpu.h"
 #include "report/records/records.h"
 #include "tests/test_files.h"

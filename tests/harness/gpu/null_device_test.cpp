@@ -8,7 +8,6 @@
 
 #include "harness/gpu/facts_request.h"
 #include "harness/gpu/gpu.h"
-#include "harness/gpu/machine_code.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::gpu {

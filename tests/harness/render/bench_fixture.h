@@ -202,15 +202,13 @@ inline std::string make_test_name(std::string text) {
 
 /// How precisely this GL computes.
 inline filters::GlAccuracy measured_accuracy() {
-  static const gl::GlSurvey measured = gl::survey_gl(shared_context());
-  return {measured.exp_ulp, static_cast<double>(std::min(measured.rg32f.bits, measured.r32f.bits))};
+  shared_context();
+  static const filters::GlAccuracy measured = gl::survey_gl();
+  return measured;
 }
 
 /// Gives what a hardware 2x2 comparison may be off by: the step of its weights, as measured on this GL.
-inline double measured_weight_step() {
-  static const int bits = gl::measure_pcf_weights(shared_context(), GL_DEPTH_COMPONENT32F).bits;
-  return bits >= 22 ? 1e-4 : 1.0 / 128.0;
-}
+inline double measured_weight_step() { return measured_accuracy().weight_bits >= 22.0 ? 1e-4 : 1.0 / 128.0; }
 
 /// Whether a filter rounds what it averaged to whole numbers. Rounding in single precision may decide about a step of
 /// them, and a step of few is seen.

@@ -3,6 +3,7 @@
 
 #include <tuple>
 
+#include "base/text.h"
 #include "filters/screen.h"
 #include "harness/measure/view_receivers.h"
 #include "tests/harness/render/bench_fixture.h"
@@ -348,7 +349,7 @@ INSTANTIATE_TEST_SUITE_P(AllFilters, BorderAgreement,
                                             ::testing::ValuesIn(filters_of_borders())),
                          [](const auto& each) {
                            std::string name =
-                               filters::to_string(std::get<0>(each.param)) + "_" + std::get<1>(each.param);
+                               std::string(name_of(std::get<0>(each.param))) + "_" + std::get<1>(each.param);
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
                            return name;
                          });

@@ -183,8 +183,6 @@ TEST(BlendCasters, AreNamedWithTheMap) {
   EXPECT_EQ(render::describe_map({}), "d32f");
   EXPECT_EQ(render::describe_map({GL_DEPTH_COMPONENT16, {true, 30.5}, BlendCasters::kDither}),
             "d16 perspective 30.5 reversed dither");
-  for (const std::string& name : render::blend_caster_names())
-    EXPECT_EQ(render::to_string(render::parse_blend_casters(name)), name);
 }
 
 constexpr int kSize = 16;

@@ -1,7 +1,6 @@
 // GLSL of the program, translated for browsers.
 
-#include "harness/spirv/webgl.h"
-
+#include "harness/spirv/spirv.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::spirv {

@@ -415,8 +415,8 @@ TEST_F(TunedParameters, OfAnotherFit_AreTakenWithANote) {
 }
 
 TEST_F(TunedParameters, BadFiles_AreRefusedWithTheField) {
-  expect_refusal(folder_.path() / "no" / "tuned.json", "cannot be read");
-  expect_refusal(write(""), "not JSON");
+  expect_refusal(folder_.path() / "no" / "tuned.json", "cannot be opened");
+  expect_refusal(write(""), "not complete JSON");
   expect_refusal(write(R"({"schema_version": 2, "met)"), "cut off");
   expect_refusal(write("[]"), "'schema_version' is missing");
   expect_refusal(write("{}"), "'schema_version' is missing");

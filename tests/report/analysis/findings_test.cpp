@@ -46,7 +46,7 @@ TEST(Summary, Groups_HoldOnlyWhatMayBeCompared) {
 TEST(Summary, OnlyAWrongRange_IsNamedInTheSettings) {
   CellRecord cell = make_cell("cubes", "none", 4.0);
   EXPECT_THAT(describe_settings(cell), Not(AnyOf(HasSubstr("outside"), HasSubstr("test off"))));
-  cell.range = {"repeat", false, false};
+  cell.range = {filters::Border::kRepeat, false, false};
   EXPECT_THAT(describe_settings(cell), AllOf(HasSubstr("outside the map: repeat"), HasSubstr("far-plane test off"),
                                              HasSubstr("behind-the-light test off")));
 }

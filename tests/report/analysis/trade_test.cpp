@@ -76,7 +76,7 @@ TEST(TradeScopes, ScopesThatDifferOtherwise_HaveTheirOwnNames) {
   EXPECT_THAT(scopes[0].title, EndsWith(" · tight fit"));
   EXPECT_THAT(scopes[1].title, EndsWith(" · sphere fit"));
   cells[1].fit = cells[0].fit;
-  cells[1].range.border = "repeat";
+  cells[1].range.border = filters::Border::kRepeat;
   EXPECT_THAT(make_trade_scopes(cells)[1].title, EndsWith(" · other settings (2)"));
 }
 

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/bytes.h"
-#include "report/images/stored_picture.h"
 #include "report/images/value_file.h"
 #include "tests/report/records/synthetic.h"
 

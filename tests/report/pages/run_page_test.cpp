@@ -12,7 +12,6 @@
 #include "report/pages/trade_section.h"
 #include "report/pages/write_page.h"
 #include "report/records/json_io.h"
-#include "report/records/text_table.h"
 #include "tests/report/analysis/trade_cells.h"
 
 namespace shadowbench::pages {

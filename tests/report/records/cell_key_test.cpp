@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/files.h"
 #include "reference/metrics/metric_table.h"
-#include "report/files/file_name.h"
 #include "report/records/csv_tables.h"
 #include "tests/report/records/synthetic.h"
 
@@ -13,9 +13,9 @@ namespace {
 // Short names say what differs, and no more.
 
 TEST(CellKey, Hash_EqualsPublishedValuesOfFnv1a) {
-  EXPECT_EQ(files::hash_text(""), 0xcbf29ce484222325U);
-  EXPECT_EQ(files::hash_text("a"), 0xaf63dc4c8601ec8cU);
-  EXPECT_EQ(files::hash_text("foobar"), 0x85944171f73967e8U);
+  EXPECT_EQ(hash_text(""), 0xcbf29ce484222325U);
+  EXPECT_EQ(hash_text("a"), 0xaf63dc4c8601ec8cU);
+  EXPECT_EQ(hash_text("foobar"), 0x85944171f73967e8U);
 }
 
 TEST(CellKey, OrderOfKeysAndWayOfWritingNumbers_DoNotMatter) {
@@ -53,7 +53,7 @@ TEST(CellKey, EverySetting_ChangesTheKey) {
       [](CellRecord& c) { c.bias.normal_offset.texels = 1.0; },
       [](CellRecord& c) { c.bias.receiver_plane = true; },
       [](CellRecord& c) { c.bias.front_cull = true; },
-      [](CellRecord& c) { c.range.border = "repeat"; },
+      [](CellRecord& c) { c.range.border = filters::Border::kRepeat; },
       [](CellRecord& c) { c.range.far_test = false; },
       [](CellRecord& c) { c.range.behind_test = false; },
       [](CellRecord& c) { c.width = 540; },
@@ -125,7 +125,7 @@ TEST(CellNames, NameTheBiasTheLightAndTheBorder) {
   EXPECT_THAT(list_names({biased, make_named("none")}), ElementsAre("none, bias: midpoint map", "none, bias: none"));
   lit.light = "96,30";
   EXPECT_THAT(list_names({lit, make_named("none")}), ElementsAre("none, light at 96,30", "none, light of the scene"));
-  edged.range.border = "edge";
+  edged.range.border = filters::Border::kEdge;
   EXPECT_THAT(list_names({edged, make_named("none")}), ElementsAre("none, outside the map: edge", "none"));
 }
 
@@ -189,7 +189,7 @@ TEST(TimingsCsv, OnlyFieldsThatNeedIt_AreQuoted) {
 TEST(TimingsCsv, Fields_HoldTheirColumnsValues) {
   CellRecord cell = make_cell("cubes", "vsm", 4.5);
   cell.time_ms.prefilter = Quartiles{12.5, 12.25, 12.75, 8};
-  cell.range = {"repeat", true, false};
+  cell.range = {filters::Border::kRepeat, true, false};
   cell.ratio_to_none.static_light = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
   const auto rows = parse_csv(make_csv(CsvTable::kTimings, make_run(), {cell}));

@@ -53,7 +53,7 @@ TEST_F(GpuTimesTest, AFrameIsTheSumOfItsParts_AndACellThatWasNotTimedHasNoTime) 
 }
 
 TEST_F(GpuTimesTest, WhatIsNoFileOfTimesIsRefused) {
-  EXPECT_THAT(refusal_of("{"), HasSubstr("no JSON"));
+  EXPECT_THAT(refusal_of("{"), HasSubstr("not complete JSON"));
   EXPECT_THAT(refusal_of("[]"), HasSubstr("schema"));
   EXPECT_THAT(refusal_of(R"({"schema": "another"})"), HasSubstr("schema is not \"shadowbench gpu-times 1\""));
   EXPECT_THAT(refusal_of(R"({"schema": "shadowbench gpu-times 1"})"), HasSubstr("no renderer"));

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 
-namespace shadowbench::files {
+namespace shadowbench {
 
 /// Refuses a folder that has a link at any level: what is read or written through one lies elsewhere.
 void require_no_links(const std::filesystem::path& folder, ErrorKind kind);
@@ -34,4 +34,4 @@ class FolderLock {
   bool is_in_place() const;
 };
 
-}  // namespace shadowbench::files
+}  // namespace shadowbench

@@ -1,11 +1,10 @@
 #include <sys/stat.h>
 
-#include "report/files/file_name.h"
-#include "report/files/folder_lock.h"
+#include "base/folder_lock.h"
 #include "report/images/picture_io.h"
 #include "tests/report/records/synthetic.h"
 
-namespace shadowbench::files {
+namespace shadowbench {
 namespace {
 
 using namespace records;
@@ -227,9 +226,9 @@ TEST(FolderLock, FolderOfSomebodyElse_IsLeftAsItIs_UnlessItIsTold) {
   }
 }
 
-/// Versions of before left no mark.
+/// A copy may have lost its mark.
 TEST(FolderLock, FolderOfThisProgram_IsTakenAgain) {
-  for (const char* name : {"results.json", "stress.json", "cells/0123456789abcdef.json", ".shadowbench-folder"}) {
+  for (const char* name : {"results.json", "stress.json", ".shadowbench-folder"}) {
     const TestFolder folder;
     write_text_file(folder.path() / name, R"({"command": ["shadowbench"], "schema_version": 1})");
     write_text_file(folder.path() / "notes.txt", "of the user");
@@ -282,4 +281,4 @@ TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
 }
 
 }  // namespace
-}  // namespace shadowbench::files
+}  // namespace shadowbench

@@ -1,4 +1,4 @@
-#include "report/files/folder_lock.h"
+#include "base/folder_lock.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 #include "base/error.h"
 #include "base/files.h"
 
-namespace shadowbench::files {
+namespace shadowbench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr const char* kLock = ".shadowbench-lock";
 constexpr const char* kMark = ".shadowbench-folder";
 
-[[noreturn]] void fail(const std::filesystem::path& folder, int code) {
+[[noreturn]] void refuse_folder(const std::filesystem::path& folder, int code) {
   throw Error(
       ErrorKind::kOutput,
       fmt::format(
@@ -51,12 +51,6 @@ bool is_plain(const fs::path& file) {
   return fs::symlink_status(file, ignored).type() == fs::file_type::regular;
 }
 
-bool is_cell(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  return file.extension() == ".json" && stem.size() == 16 &&
-         stem.find_first_not_of("0123456789abcdef") == std::string::npos && is_plain(file);
-}
-
 /// Whether it is a record of ours: each names a schema, and the program.
 bool is_record(const fs::path& file) {
   if (file.extension() != ".json" || !is_plain(file)) return false;
@@ -75,16 +69,15 @@ bool has_entry(const fs::path& folder, const Condition& holds) {
   return false;
 }
 
-/// Whether this program made the folder. Versions of before left no mark, but a lock, cells or records.
+/// Whether this program made the folder. A copy may have lost its mark.
 bool is_ours(const fs::path& folder) {
-  return is_plain(folder / kMark) || is_plain(folder / kLock) || has_entry(folder / "cells", is_cell) ||
-         has_entry(folder, is_record);
+  return is_plain(folder / kMark) || is_plain(folder / kLock) || has_entry(folder, is_record);
 }
 
 /// It has its name at once, so that another process which is given the folder at the same time finds no other content.
 void put_mark(const fs::path& folder) {
   const int descriptor = open((folder / kMark).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0 && errno != EEXIST) fail(folder, errno);
+  if (descriptor < 0 && errno != EEXIST) refuse_folder(folder, errno);
   if (descriptor >= 0) close(descriptor);
 }
 
@@ -116,7 +109,7 @@ void require_no_links(const fs::path& folder, ErrorKind kind) {
 FolderLock::FolderLock(fs::path folder, bool takes_any) : folder_(std::move(folder)), file_(folder_ / kLock) {
   std::error_code error;
   fs::create_directories(folder_, error);
-  if (error) fail(folder_, error.value());
+  if (error) refuse_folder(folder_, error.value());
   const bool is_own = is_ours(folder_);
   if (!takes_any && !is_own && has_other_content(folder_))
     throw Error(ErrorKind::kOutput,
@@ -133,7 +126,7 @@ FolderLock::FolderLock(fs::path folder, bool takes_any) : folder_(std::move(fold
     const int code = errno;
     unlink(file_.c_str());
     close(descriptor_);
-    fail(folder_, code);
+    refuse_folder(folder_, code);
   }
   remove_temporary_files(folder_, [](const Writer&) { return true; });
 }
@@ -154,7 +147,7 @@ void FolderLock::require_in_place() const {
 /// Gives false where the file that was locked is no longer the one of that name: its owner has just removed it.
 bool FolderLock::try_to_take() {
   descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (descriptor_ < 0) fail(folder_, errno);
+  if (descriptor_ < 0) refuse_folder(folder_, errno);
   struct stat opened {};
   if (fstat(descriptor_, &opened) != 0 || !S_ISREG(opened.st_mode) || opened.st_nlink > 1) {
     close(descriptor_);
@@ -166,7 +159,7 @@ bool FolderLock::try_to_take() {
     const int code = errno;
     const std::string owner = code == EWOULDBLOCK ? read_owner(descriptor_) : "";
     close(descriptor_);
-    if (owner.empty()) fail(folder_, code);
+    if (owner.empty()) refuse_folder(folder_, code);
     throw Error(ErrorKind::kOutput,
                 fmt::format("{} writes into this folder; wait until it ends, or choose another with --out", owner),
                 folder_.string());
@@ -183,4 +176,4 @@ bool FolderLock::is_in_place() const {
          taken.st_dev == named.st_dev;
 }
 
-}  // namespace shadowbench::files
+}  // namespace shadowbench
