@@ -348,8 +348,8 @@ INSTANTIATE_TEST_SUITE_P(AllFilters, BorderAgreement,
                                                               filters::Border::kRepeat),
                                             ::testing::ValuesIn(filters_of_borders())),
                          [](const auto& each) {
-                           std::string name =
-                               std::string(name_of(std::get<0>(each.param))) + "_" + std::get<1>(each.param);
+                           std::string name = std::string(shadowbench::name_of(std::get<0>(each.param))) + "_" +
+                                              std::get<1>(each.param);
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
                            return name;
                          });
