@@ -320,7 +320,8 @@ json read_json_file(const std::filesystem::path& file, std::uintmax_t most_bytes
                     const json::parser_callback_t& keep) {
   require_plain_file(file, most_bytes);
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail_input("the file cannot be opened; is its name right, and was the run finished?", file.string());
+  if (!stream)
+    fail_input("the file cannot be opened: is its name right, and did the command that writes it end?", file.string());
   try {
     return parse_json(stream, keep);
   } catch (const std::exception& problem) {

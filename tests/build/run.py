@@ -11,6 +11,7 @@ from pathlib import Path
 
 PARTS = {"WINDOW": "gui.cpp", "OSMESA": "context_osmesa.cpp", "EGL": "context_egl.cpp", "GPU_ESTIMATES": "null_device.cpp",
          "LIVE_PAGE": "webgl.cpp", "MESHOPT": "gltf_meshopt.cpp"}
+DEFINED = {"GPU_ESTIMATES", "LIVE_PAGE"}  # a source without its part says so
 EVERYTHING_LEFT_OUT_BUT_EGL = [f"-DSHADOWBENCH_WITH_{part}=OFF" for part in PARTS if part != "EGL"]
 AVAILABLE = set(PARTS)  # on this machine: Debian 14 will have no OSMesa
 
@@ -40,10 +41,11 @@ class Configuration:
         return [word for word in command.split() if word.startswith("-O")]
 
     def parts(self):
-        """The parts whose own sources are compiled."""
+        """The parts whose own sources are compiled, or whose contents are."""
         commands = json.loads((Path(self.folder.name) / "compile_commands.json").read_text(encoding="utf-8"))
-        compiled = {Path(each["file"]).name for each in commands}
-        return {part for part, source in PARTS.items() if source in compiled}
+        compiled = {Path(each["file"]).name: each["command"] for each in commands}
+        return {part for part, source in PARTS.items() if source in compiled and
+                (part not in DEFINED or f"-DSHADOWBENCH_HAS_{part}" in compiled[source])}
 
 
 def check_flags(source):

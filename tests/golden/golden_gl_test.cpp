@@ -48,7 +48,7 @@ class Golden : public ProgramTest, public ::testing::WithParamInterface<std::str
     const auto& suite = *::testing::UnitTest::GetInstance()->current_test_suite();
     for (int i = 0; i < suite.total_test_count(); ++i) {
       const ::testing::TestInfo& test = *suite.GetTestInfo(i);
-      const std::string& id = filter_ids()[static_cast<std::size_t>(i)];
+      const std::string id = filter_ids()[static_cast<std::size_t>(i)];
       if (!test.should_run()) continue;
       chosen += (chosen.empty() ? "" : ",") + id;
       for (const std::string variant : kVariants)

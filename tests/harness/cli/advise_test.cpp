@@ -121,7 +121,7 @@ TEST_F(Advise, UnknownNames_AreUsageErrors) {
 TEST_F(Advise, BadRuns_AreInputErrors) {
   expect_refusal("advise nowhere", 3, {"nowhere", "no such folder or file"});
   std::filesystem::create_directory(folder() / "empty");
-  expect_refusal("advise empty", 3, {"empty/results.json", "cannot be opened", "was the run finished?"});
+  expect_refusal("advise empty", 3, {"empty/results.json", "cannot be opened", "did the command that writes it end?"});
   const std::string results = read("run/results.json");
   write("cut.json", results.substr(0, results.size() / 2));
   expect_refusal("advise cut.json", 3, {"cut.json", "cut off"});

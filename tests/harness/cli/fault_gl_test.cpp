@@ -67,6 +67,7 @@ TEST_F(FaultFolder, OfAMergeThatWasStopped_IsGoneOnWith_AndThatOfAnotherIsNot) {
   expect_same("whole", "out");
   std::filesystem::create_directories(folder() / "other" / "cells");
   write("other/cells/0123456789abcdef.json", "{}");
+  write("other/.shadowbench-folder", "");
   const Outcome refused = run("merge whole --out other");
   EXPECT_EQ(refused.exit_code, 2) << refused.err;
   expect_one_message(refused.err, {"other", "there is a report in this folder already"});

@@ -305,7 +305,7 @@ TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {
   const std::string message = message_of([&] { read_cell(folder.path(), cell.key); });
   EXPECT_THAT(message, HasSubstr(cell_path(folder.path(), cell.key).string()));
   EXPECT_THAT(message, HasSubstr("cut off"));
-  EXPECT_THAT(message, HasSubstr("delete it and run again"));
+  EXPECT_THAT(message, HasSubstr("delete this file and run again"));
 }
 
 TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
