@@ -11,6 +11,7 @@
 
 #include "base/bytes.h"
 #include "base/files.h"
+#include "report/images/image_library.h"
 
 namespace shadowbench::images {
 namespace {
