@@ -58,6 +58,8 @@ TEST(PictureSize, PassThatIsNarrowerThanAPixel_ChangesNothing_AndAWiderOneTakesN
   const Case item = axis.make_cases(inputs).at(0);
   EXPECT_NEAR(item.observe(7.0).measured.value(), 1.0, 1e-4);
   EXPECT_LT(item.observe(256.0).measured.value(), 0.3);
+  expect_theories_met(axis, make_gl_inputs("pcss:max_radius=3"), Level::kGl, false);
+  EXPECT_THAT(axis.make_cases(make_gl_inputs("pcss:rotation=none")).at(0).not_available, HasSubstr("no noise"));
 }
 
 /// Every case of this axis that runs on this GL keeps to its theory.
