@@ -120,6 +120,17 @@ double find_sigma(const std::string& id) {
 
 constexpr double kRounding = 1e-5;  // of visibility
 
+/// A filter's cell at its defaults, and its images.
+struct DefaultCell {
+  DefaultCell(const regress::Baseline& baseline, const std::string& scene, const std::string& id) {
+    const regress::CellFile file = baseline.read_cells(scene, id);
+    cell = *std::ranges::find(file.cells, id, &regress::BaselineCell::label);
+    images = file.images.at(cell.key);
+  }
+  regress::BaselineCell cell;
+  regress::CellImages images;
+};
+
 class GoldenOfScene : public ::testing::TestWithParam<std::string> {};
 
 /// No tolerance is so wide that another filter's image passes. Two filters that compute the same in two ways are one
@@ -129,11 +140,7 @@ TEST_P(GoldenOfScene, NoFilterPassesAsAnother) {
   const regress::Baseline baseline(kBaseline);
   const regress::Tolerances tolerances = regress::read_tolerances(baseline.tolerance_file());
   std::map<std::string, regress::CellImages> all;
-  for (const std::string& id : filter_ids()) {
-    const regress::CellFile file = baseline.read_cells(GetParam(), id);
-    const auto plain = std::ranges::find(file.cells, id, &regress::BaselineCell::label);
-    all[id] = file.images.at(plain->key);
-  }
+  for (const std::string& id : filter_ids()) all[id] = DefaultCell(baseline, GetParam(), id).images;
   for (const std::string& expected : filter_ids()) {
     for (const std::string& actual : filter_ids()) {
       if (actual == expected) continue;
@@ -152,14 +159,14 @@ TEST_P(GoldenOfScene, NoFilterPassesAsAnother) {
 TEST_P(GoldenOfScene, NoHardShadowPassesAsNoise) {
   const regress::Baseline baseline(kBaseline);
   const double level = regress::read_tolerances(baseline.tolerance_file()).find("", regress::kLevel).limit;
-  const images::Image hard = baseline.read_cells(GetParam(), "none").images.begin()->second.visibility;
+  const images::Image hard = DefaultCell(baseline, GetParam(), "none").images.visibility;
   int stochastic = 0;
   for (const std::string& id : filter_ids()) {
-    const regress::CellFile file = baseline.read_cells(GetParam(), id);
-    const images::UncertaintyImages& spread = file.images.begin()->second.uncertainty;
+    const auto [cell, images] = DefaultCell(baseline, GetParam(), id);
+    const images::UncertaintyImages& spread = images.uncertainty;
     if (spread.seed_mean.empty()) continue;
     ++stochastic;
-    const auto test = regress::test_spread(hard, spread, file.cells.front().values.numbers.at("cost.fetches"), level);
+    const auto test = regress::test_spread(hard, spread, cell.values.numbers.at("cost.fetches"), level);
     EXPECT_GT(test.pixels.beyond + test.blocks.beyond, 0) << id;
   }
   EXPECT_GT(stochastic, 0);
