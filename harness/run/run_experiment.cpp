@@ -496,7 +496,8 @@ class Experiment {
     progress_.note(text);
     const double timing_s = options_.rounds.is_fixed() ? 0.0 : 1e-3 * options_.rounds.budget_ms * left;
     if ((left <= kManyCells && timing_s <= kMostTiming_s) || options_.large_is_fine) return;
-    throw Error(ErrorKind::kUsage, text + ": add --yes to run them all, or name fewer values, or a smaller --budget");
+    throw Error(ErrorKind::kUsage, text + ": add --yes to run them all, or name fewer values" +
+                                       (options_.rounds.is_fixed() ? "" : ", or a smaller --budget"));
   }
 
   bool is_same(const records::ExperimentRecord& known) const {
