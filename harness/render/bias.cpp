@@ -4,10 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "base/error.h"
@@ -80,15 +79,12 @@ template <class Table>
 }
 
 double parse_amount(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || value < 0.0) {
-    throw Error(ErrorKind::kUsage,
-                fmt::format("--bias: '{}' must be a finite number, 0 or more, without a unit: the unit is "
-                            "in the key (depth, texels, world)",
-                            text));
-  }
-  return value;
+  const std::optional<double> value = parse_number(text);
+  if (value && *value >= 0.0) return *value;
+  throw Error(ErrorKind::kUsage,
+              fmt::format("--bias: '{}' must be a finite number, 0 or more, without a unit: the unit "
+                          "is in the key (depth, texels, world)",
+                          text));
 }
 
 void add(BiasRule& rule, const std::string& text) {

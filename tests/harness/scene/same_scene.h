@@ -4,9 +4,14 @@
 
 #include <cstring>
 
-#include "harness/scene/scene.h"
+#include "harness/scene/load.h"
 
 namespace shadowbench::test {
+
+/// A built-in scene as its file has it.
+inline scene::Scene load_own_scene(const std::string& name) {
+  return scene::load(name, {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
+}
 
 /// Expects the same triangles in the same order, and the same materials on them, float for float.
 inline void expect_same_geometry(const scene::Scene& a, const scene::Scene& b) {

@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "report/document/blocks.h"
+#include "report/pages/write_page.h"
+#include "report/records/json_io.h"
+#include "tests/test_files.h"
 
 namespace shadowbench::document {
 
@@ -43,3 +46,19 @@ inline std::vector<std::string> list_shown(const Chart& chart) {
 }
 
 }  // namespace shadowbench::document
+
+namespace shadowbench::pages {
+
+/// Writes the report of some cells, and reads one of its files.
+inline std::string write_and_read(const TestFolder& folder, const records::RunRecord& run,
+                                  const std::vector<records::CellRecord>& cells, const std::string& file) {
+  std::vector<std::string> keys;
+  for (const records::CellRecord& cell : cells) {
+    records::write_cell(folder.path(), cell);
+    keys.push_back(cell.key);
+  }
+  write_report(folder.path(), run, keys);
+  return folder.read(file);
+}
+
+}  // namespace shadowbench::pages

@@ -13,6 +13,7 @@
 #include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 #include "tests/report/analysis/trade_cells.h"
+#include "tests/report/pages/answer.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -388,30 +389,19 @@ TEST_F(WritePage, LinksNothingOutsideTheReport) {
 
 // The report of cells that several kinds of machine measured.
 
-std::string write_and_read(const std::vector<CellRecord>& cells, const RunRecord& run, const std::string& file) {
-  const TestFolder folder;
-  std::vector<std::string> keys;
-  for (const CellRecord& cell : cells) {
-    write_cell(folder.path(), cell);
-    keys.push_back(cell.key);
-  }
-  write_report(folder.path(), run, keys);
-  return read_text(folder.path() / file);
-}
-
 /// Whether a text says a number of milliseconds.
 bool says_milliseconds(const std::string& text) { return std::regex_search(text, std::regex("[0-9] ms")); }
 
 TEST(MixedMachines, NoTimeIsSaid_ButInTheTablesOfMeasurements) {
-  const std::string summary = write_and_read(make_mixed_cells(), make_run(), "details.md");
+  const std::string summary = write_and_read(TestFolder(), make_run(), make_mixed_cells(), "details.md");
   EXPECT_FALSE(says_milliseconds(summary)) << summary;
   EXPECT_THAT(summary, HasSubstr("Nothing fits: none of 3 configurations can be judged"));
   EXPECT_THAT(summary, HasSubstr("A fast CPU, 64 cores, A GPU, GPU time (timer query) (1 cell)"));
-  EXPECT_THAT(write_and_read(make_mixed_cells(), make_run(), "timings.csv"),
+  EXPECT_THAT(write_and_read(TestFolder(), make_run(), make_mixed_cells(), "timings.csv"),
               HasSubstr("\"A fast CPU, 64 cores, A GPU, GPU time (timer query)\""));
   std::vector<CellRecord> alike = make_mixed_cells();
   for (CellRecord& cell : alike) cell.machine = make_kind("A CPU");
-  const std::string usual = write_and_read(alike, make_run(), "details.md");
+  const std::string usual = write_and_read(TestFolder(), make_run(), alike, "details.md");
   EXPECT_TRUE(says_milliseconds(usual));
   EXPECT_THAT(usual, Not(HasSubstr("Several kinds")));
 }
@@ -419,7 +409,7 @@ TEST(MixedMachines, NoTimeIsSaid_ButInTheTablesOfMeasurements) {
 TEST(MixedMachines, OneWarningSaysSo_AlsoWhereTheReportIsWrittenAgain) {
   RunRecord run = make_run();
   run.warnings = {"another", warn_of_mixed_machines(make_mixed_cells())};
-  const auto results = nlohmann::json::parse(write_and_read(make_mixed_cells(), run, "results.json"));
+  const auto results = nlohmann::json::parse(write_and_read(TestFolder(), run, make_mixed_cells(), "results.json"));
   EXPECT_THAT(results["warnings"], ElementsAre(warn_of_mixed_machines(make_mixed_cells()), "another"));
   EXPECT_FALSE(results["cells"][2]["time_ms"]["moving"].is_null()) << "records keep what was measured";
 }

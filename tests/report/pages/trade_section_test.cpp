@@ -10,6 +10,7 @@
 #include "report/pages/write_page.h"
 #include "report/records/json_io.h"
 #include "tests/report/analysis/trade_cells.h"
+#include "tests/report/pages/answer.h"
 
 namespace shadowbench::pages {
 namespace {
@@ -27,16 +28,6 @@ nlohmann::json read_charts(const std::string& page) {
   const std::string start = "<script type=\"application/json\" id=\"charts\">";
   const auto begin = page.find(start) + start.size();
   return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
-}
-
-std::string write_and_read(const TestFolder& folder, const std::vector<CellRecord>& cells, const std::string& file) {
-  std::vector<std::string> keys;
-  for (const CellRecord& cell : cells) {
-    write_cell(folder.path(), cell);
-    keys.push_back(cell.key);
-  }
-  write_report(folder.path(), make_run(), keys);
-  return read_text(folder.path() / file);
 }
 
 const document::ChartChoice* find_in(const std::vector<document::Block>& blocks, const std::string& id) {
@@ -159,7 +150,7 @@ TEST(TradeSection, HostileTexts_EndNoElement) {
 
 TEST(TradeSection, Report_HasItBeforeTheEvidence) {
   const TestFolder folder;
-  const std::string page = write_and_read(folder, make_crossing_cells("cubes"), "index.html");
+  const std::string page = write_and_read(folder, make_run(), make_crossing_cells("cubes"), "index.html");
   EXPECT_THAT(page, HasSubstr("<h2>The trade</h2>"));
   EXPECT_LT(page.find("id=\"trade\""), page.find("id=\"evidence\""));
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
@@ -169,7 +160,7 @@ TEST(TradeSection, Report_HasItBeforeTheEvidence) {
 TEST(TradeSection, OfAFewCells_IsNotThere) {
   const TestFolder folder;
   const std::string page =
-      write_and_read(folder, {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");
+      write_and_read(folder, make_run(), {make_sweep_cell({}), make_sweep_cell({"cubes", "vsm"})}, "index.html");
   EXPECT_THAT(page, Not(HasSubstr("id=\"charts\"")));
   EXPECT_THAT(page, Not(HasSubstr("id=\"trade\"")));
 }

@@ -5,6 +5,7 @@
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
 #include "tests/harness/scene/gltf_parts.h"
+#include "tests/harness/scene/same_scene.h"
 
 namespace shadowbench::scene {
 namespace {
@@ -133,10 +134,6 @@ TEST(Spot, GoesRoundItsTarget) {
   EXPECT_NEAR(glm::distance(high.position_ws, glm::vec3(0.0f, 5.0f, 0.0f)), 0.0f, 1e-5f);
 }
 
-Scene load_lantern() {
-  return load("lantern", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
-}
-
 /// The face that a direction belongs to: its longest axis, x before y before z.
 int face_of(const glm::dvec3& way) {
   int axis = 0;
@@ -146,7 +143,7 @@ int face_of(const glm::dvec3& way) {
 }
 
 TEST(PointLight, ItsSixFacesHoldEverythingAround_WithTheirPadding) {
-  const Scene scene = load_lantern();
+  const Scene scene = test::load_own_scene("lantern");
   const auto faces = fit_layers(scene, {.map_size = 256, .pad_texels = 5.0});
   ASSERT_EQ(faces.size(), 6u);
   const glm::dvec3 light(std::get<PointLight>(scene.light.kind).position_ws);
@@ -173,7 +170,7 @@ TEST(PointLight, ItsSixFacesHoldEverythingAround_WithTheirPadding) {
 }
 
 TEST(PointLight, ShinesAllAround_AndFallsOffWithTheSquareOfItsDistance) {
-  const Scene scene = load_lantern();
+  const Scene scene = test::load_own_scene("lantern");
   for (const glm::vec3 p : {glm::vec3(0.1f, 3.0f, 0.05f), glm::vec3(-2.0f, 0.0f, 1.0f), glm::vec3(2.0f, 1.3f, -4.0f)})
     EXPECT_TRUE(shines_on(scene.light, p));
   EXPECT_EQ(light_size(scene.light), 2.0 * static_cast<double>(std::get<PointLight>(scene.light.kind).radius_m));
@@ -214,10 +211,6 @@ constexpr int kWarpMap = 1024;
 constexpr double kWarpPad = 6.0, kWarpAspect = 16.0 / 9.0;
 constexpr FitMode kWarps[] = {FitMode::kFocused, FitMode::kLispsm, FitMode::kPsm, FitMode::kTsm, FitMode::kLogpsm};
 
-Scene load_deep_scene() {
-  return load("avenue", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
-}
-
 LightFrustum fit_warp(const Scene& scene, FitMode mode, const glm::dvec2& shift_texels = {}) {
   return fit_light(scene, {.mode = mode,
                            .map_size = kWarpMap,
@@ -247,7 +240,7 @@ Scene make_runway() {
 glm::dvec3 ahead(double depth) { return {0.0, 0.0, 101.0 - depth}; }
 
 TEST(WarpedMap, HoldsAllThatIsSeen_WithItsPadding_AndItsCasters) {
-  const Scene scene = load_deep_scene();
+  const Scene scene = test::load_own_scene("avenue");
   const auto seen = list_visible_corners(scene, scene.cameras.front(), kWarpAspect);
   for (const FitMode mode : kWarps) {
     const LightFrustum fit = fit_warp(scene, mode);
@@ -276,7 +269,7 @@ TEST(WarpedMap, HoldsAllThatIsSeen_WithItsPadding_AndItsCasters) {
 
 /// Central differences of place().
 TEST(WarpedMap, GradientsAreThoseOfItsPlaces_AndTheSunsWayChangesNone) {
-  const Scene scene = load_deep_scene();
+  const Scene scene = test::load_own_scene("avenue");
   for (const FitMode mode : kWarps) {
     const LightFrustum fit = fit_warp(scene, mode);
     for (const glm::dvec3 p : {glm::dvec3(0.5, 0.0, -3.0), glm::dvec3(-2.0, 1.0, -40.0)}) {
@@ -340,7 +333,7 @@ TEST(WarpedMap, EachMethodSpendsItsTexelsAsItsPaperSays) {
 }
 
 TEST(WarpedMap, MovesByTexels_AsItIsAsked) {
-  const Scene scene = load_deep_scene();
+  const Scene scene = test::load_own_scene("avenue");
   for (const FitMode mode : kWarps) {
     const LightFrustum still = fit_warp(scene, mode), moved = fit_warp(scene, mode, {0.25, -0.5});
     const glm::dvec3 p(0.5, 0.0, -3.0);
@@ -382,7 +375,7 @@ TEST(WarpedMap, StaysFiniteWhereThereIsNothingToWarp) {
 }
 
 TEST(WarpedMap, CannotBeSnapped) {
-  const Scene scene = load_deep_scene();
+  const Scene scene = test::load_own_scene("avenue");
   for (const FitMode mode : kWarps) {
     const Error error =
         error_of([&] { fit_light(scene, {.mode = mode, .snap = true, .camera = &scene.cameras.front()}); });

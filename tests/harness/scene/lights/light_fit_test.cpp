@@ -4,6 +4,7 @@
 
 #include "harness/scene/load.h"
 #include "harness/scene/mesh_tools.h"
+#include "tests/harness/scene/same_scene.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::scene {
@@ -330,12 +331,8 @@ std::vector<LightFrustum> fit(const Scene& scene, const Camera& camera, const Ca
   return fit_layers(scene, ask_for_cascades(camera, rule, snap));
 }
 
-Scene load_avenue() {
-  return load("avenue", {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
-}
-
 TEST(Cascades, EachHoldsWhatItServes_WithItsPadding) {
-  const Scene scene = load_avenue();
+  const Scene scene = test::load_own_scene("avenue");
   const Camera& camera = scene.cameras.front();
   for (const bool snap : {false, true}) {
     int served = 0;
@@ -359,7 +356,7 @@ TEST(Cascades, EachHoldsWhatItServes_WithItsPadding) {
 }
 
 TEST(Cascades, NearOnesHaveSmallerTexels_AndTheirSlicesMeet) {
-  const Scene scene = load_avenue();
+  const Scene scene = test::load_own_scene("avenue");
   const auto layers = fit(scene, scene.cameras.front(), {.count = 4, .split = 1.0, .blend = 0.2});
   ASSERT_EQ(layers.size(), 4u);
   for (std::size_t i = 1; i < layers.size(); ++i) {
@@ -380,7 +377,7 @@ std::vector<double> list_ends(const Scene& scene, const CascadeRule& rule) {
 }
 
 TEST(Cascades, EndWhereSplitsInMetresSay) {
-  const Scene scene = load_avenue();
+  const Scene scene = test::load_own_scene("avenue");
   EXPECT_EQ(list_ends(scene, {.count = 3, .splits = {5.0, 20.0}, .near_m = 0.1, .far_m = 80.0}),
             (std::vector<double>{5.0, 20.0, 80.0}));
   const double in_view = list_ends(scene, {}).back();
@@ -390,7 +387,7 @@ TEST(Cascades, EndWhereSplitsInMetresSay) {
 }
 
 TEST(Cascades, BeyondWhatIsInView_AreRefused_UnlessAFarIsGiven) {
-  const Scene scene = load_avenue();
+  const Scene scene = test::load_own_scene("avenue");
   const CascadeRule beyond{.count = 2, .splits = {1e4}};
   EXPECT_THROW(list_ends(scene, beyond), Error);
   EXPECT_EQ(list_ends(scene, {.count = 2, .splits = {1e4}, .far_m = 2e4}), (std::vector<double>{1e4, 2e4}));
@@ -402,7 +399,7 @@ glm::dvec2 place_of_grid(const LightFrustum& layer) {
 }
 
 TEST(Cascades, SnappedOnes_KeepTheirTexelsInTheWorld_WhileTheCameraTurns) {
-  const Scene scene = load_avenue();
+  const Scene scene = test::load_own_scene("avenue");
   Camera camera = scene.cameras.front();
   for (int step = 1; step <= 40; ++step) {
     const double turn = 0.02 * step;
