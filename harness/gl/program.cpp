@@ -390,19 +390,19 @@ void FullscreenTriangle::set_state() const {
 
 void FullscreenTriangle::draw() const {
   set_state();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  draw_triangle();
 }
 
 void FullscreenTriangle::draw_added() const {
   set_masked();
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  draw_triangle();
 }
 
 void FullscreenTriangle::draw_masked() const {
   set_masked();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  draw_triangle();
 }
 
 /// The triangle lies at depth 0.
@@ -418,7 +418,13 @@ void FullscreenTriangle::draw_depth() const {
   glEnable(GL_DEPTH_TEST);  // without the test there is no writing either
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
+  draw_triangle();
+}
+
+/// No program stays in use: at a later clear NVIDIA's driver would check its samplers against textures that are gone.
+void FullscreenTriangle::draw_triangle() const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glUseProgram(0);
 }
 
 ShaderSource FullscreenTriangle::vertex_source() { return embedded_source("fullscreen.vert"); }

@@ -136,7 +136,7 @@ class FullscreenTriangle {
   FullscreenTriangle();
 
   /// Draws with the program and framebuffer in use, having turned off depth, stencil and scissor test, blending,
-  /// culling and polygon offset, opened the colour mask, and set polygon mode to fill.
+  /// culling and polygon offset, opened the colour mask, and set polygon mode to fill. No program is in use afterwards.
   void draw() const;
 
   /// The same where the framebuffer's depth is 0, adding what the program writes to what is there.
@@ -156,6 +156,7 @@ class FullscreenTriangle {
 
   void set_state() const;
   void set_masked() const;
+  void draw_triangle() const;
 };
 
 }  // namespace shadowbench::gl

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -207,7 +208,8 @@ void GLAPIENTRY Context::record_message(GLenum source, GLenum type, GLuint, GLen
   if (severity != GL_DEBUG_SEVERITY_HIGH && severity != GL_DEBUG_SEVERITY_MEDIUM) return;
   // The pointer is the `this` of initialise(); GL hands it back as const.
   auto* self = const_cast<Context*>(static_cast<const Context*>(context));
-  self->errors_.push_back(length < 0 ? std::string(message) : std::string(message, static_cast<std::size_t>(length)));
+  std::string text = length < 0 ? std::string(message) : std::string(message, static_cast<std::size_t>(length));
+  if (std::ranges::find(self->errors_, text) == self->errors_.end()) self->errors_.push_back(std::move(text));
 }
 
 std::vector<std::string> Context::take_gl_errors() {

@@ -105,6 +105,7 @@ scene::Scene make_squares(const std::vector<double>& depths) {
 struct DepthError {
   double relative = 0.0;  ///< of the distance
   double distance = 1.0;  ///< where, in units of the near plane's
+  double depth = 0.0;     ///< of the depth that is stored there
 };
 
 /// A depth map that known distances are drawn into, as squares that face the light, and read back from. Nothing is
@@ -122,15 +123,20 @@ class StoredDepths {
     DepthError largest;
     for (std::size_t i = 0; i < kept.size(); ++i) {
       const double distance = distance_of(depths[i]), relative = std::abs(distance_of(kept[i]) / distance - 1.0);
-      if (!(relative <= largest.relative)) largest = {relative, distance};
+      if (!(relative <= largest.relative)) largest = {relative, distance, std::abs(kept[i] - depths[i])};
     }
+    largest_ = std::max(largest_, largest.depth);
     return largest;
   }
+
+  /// The largest error of a stored depth that made a distance the worst of all.
+  double largest_error() const { return largest_; }
 
  private:
   render::ShaderLibrary& shaders_;
   GLenum format_;
   std::optional<render::ShadowMap> map_;
+  double largest_ = 0.0;
 
   /// Stores depths and reads them back.
   std::vector<double> keep(const std::vector<double>& depths) {
@@ -156,11 +162,24 @@ Observation judge_error(const DepthError& seen) {
   return judge_by_bounds(seen.relative, kBound, kBroken, why);
 }
 
+/// A GL whose own conversion does not round to the nearest: theory with its error in place of half a quantum.
+std::string explain_by_conversion(const Disagreement& missed, const Setting& setting, double largest_error) {
+  const double rounding = find_quantum(setting);
+  if (!missed.measured || !missed.theory.onset || largest_error <= rounding) return {};
+  const double onset = 1.0 + (*missed.theory.onset - 1.0) * rounding / largest_error;
+  if (std::abs(*missed.measured / onset - 1.0) > 2.0 * kOnsetPrecision) return {};
+  return fmt::format("this GL stores depths up to {:.3g} quanta off there, which is met at {:.4g}",
+                     0.5 * largest_error / rounding, onset);
+}
+
 Case make_case(const AxisInputs& inputs, const Setting& setting) {
   if (!inputs.renderer) return {.variant = name(setting), .not_available = "there is no GL"};
   Case item{.variant = name(setting)};
   item.theories = {make_theory(setting, kBound, Verdict::kDegraded), make_theory(setting, kBroken, Verdict::kBroken)};
   const auto depths = std::make_shared<StoredDepths>(inputs.renderer->shaders, setting.format);
+  item.explain = [setting, depths](const Disagreement& missed) {
+    return explain_by_conversion(missed, setting, depths->largest_error());
+  };
   item.observe = [setting, depths](double ratio) {
     return judge_error(depths->find_largest_error(ratio, {setting.reversed, setting.perspective ? ratio : 1.0}));
   };

@@ -80,6 +80,17 @@ std::vector<std::string> remark_ratio(const records::StressCase& record, const R
                       record.samples.back().value)};
 }
 
+/// Where hardware filters with weights of few bits: what weighs less is not read, and needs no bias.
+std::string explain_by_weights(const Disagreement& missed, const Reach& reach, bool diagonal, double weight_bits) {
+  if (weight_bits >= 23.0) return {};
+  for (const records::StressSample& sample : missed.record.samples) {
+    const double theory = find_gain_m({sample.value, diagonal}, reach.texels()) / kPlaneTexel_m;
+    if (!sample.measured || *sample.measured > (1.0 + kTolerance) * theory) return {};
+  }
+  return fmt::format("this GL filters with weights of {:g} bits, which round the kernel's outermost texels to nothing",
+                     weight_bits);
+}
+
 Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, bool diagonal, Level level) {
   const char* variant = diagonal ? "light along the diagonal" : "light along a row";
   Case item = start_case(inputs, request, variant, level);
@@ -88,6 +99,9 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
   item.theories = make_theories(reach, diagonal);
   const auto plane = std::make_shared<TiltedPlane>(inputs, request);
   item.observe = [plane, reach, diagonal](double angle) { return observe_plane(*plane, {angle, diagonal}, reach); };
+  item.explain = [reach, diagonal, renderer = inputs.renderer](const Disagreement& missed) {
+    return explain_by_weights(missed, reach, diagonal, measure::measure_accuracy(*renderer).weight_bits);
+  };
   item.remark = [reach, diagonal](const records::StressCase& record) { return remark_ratio(record, reach, diagonal); };
   return item;
 }

@@ -81,6 +81,15 @@ TEST_F(GlTest, Defines_ReachTheShader) {
   EXPECT_THAT(draw(program), ElementsAre(7, 7, 7, 7));
 }
 
+TEST_F(GlTest, AfterADraw_NoProgramIsInUse) {
+  Program program("white", FullscreenTriangle::vertex_source(),
+                  make_source("out vec4 o;\nvoid main() { o = vec4(1.0); }\n"));
+  draw(program);
+  GLint current = -1;
+  glGetIntegerv(GL_CURRENT_PROGRAM, &current);
+  EXPECT_EQ(current, 0);
+}
+
 TEST_F(GlTest, Uniforms_OfEveryType_ReachTheShader) {
   Program program("uniforms", FullscreenTriangle::vertex_source(), make_source(R"(
 uniform int i; uniform uint u; uniform float f; uniform ivec2 i2; uniform vec2 v2; uniform vec3 v3; uniform vec4 v4;

@@ -14,6 +14,33 @@ TEST(GeometryAxes, GlCases_MeetTheirTheories) {
     expect_theories_met(choose_axes(id)[0], inputs, Level::kGl, false);
 }
 
+/// What a case says of a theory that was met at `measured`, where the case saw `record`.
+std::string explain(const Case& item, double measured, const records::StressCase& record = {}) {
+  return item.explain({item.theories.front(), measured, record});
+}
+
+TEST(GrazingLight, WeightsOfFewBits_ExplainALowerBias_ButNoHigherOne) {
+  const AxisInputs inputs = make_gl_inputs("pcf2x2");
+  const Case item = choose_axes("grazing-light")[0].make_cases(inputs).at(0);
+  const double theory = find_gain_m({45.0, false}, 1.0) / kPlaneTexel_m;
+  records::StressCase lower, higher;
+  lower.samples = {{45.0, Verdict::kBroken, 0.8 * theory, {}}};
+  higher.samples = {{45.0, Verdict::kBroken, 1.2 * theory, {}}};
+  inputs.renderer->accuracy = {.exp_roundoffs = 1.0, .weight_bits = 23.0};
+  EXPECT_EQ(explain(item, 45.0, lower), "");
+  inputs.renderer->accuracy->weight_bits = 8.0;
+  EXPECT_THAT(explain(item, 45.0, lower), HasSubstr("weights of 8 bits"));
+  EXPECT_EQ(explain(item, 45.0, higher), "");
+  inputs.renderer->accuracy.reset();
+}
+
+TEST(DepthFormats, GlThatRoundsToTheNearest_ExplainsNoEarlierOnset) {
+  const AxisInputs inputs = make_gl_inputs("none");
+  const Case item = choose_axes("depth-formats")[0].make_cases(inputs).at(0);
+  item.observe(1000.0);
+  EXPECT_EQ(explain(item, 0.9 * item.theories.front().onset.value()), "");
+}
+
 TiltedPlane make_plane(const std::string& filter, const PlaneTilt& tilt) {
   const AxisInputs inputs = make_gl_inputs(filter);
   TiltedPlane plane(inputs, inputs.filters[0]);
