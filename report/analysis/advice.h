@@ -23,13 +23,13 @@ bool hardens(const std::vector<const records::CellRecord*>& cells);
 
 /// What is looked for.
 struct AdviceRequest {
-  std::vector<Demand> demands;
+  std::vector<Demand> demands = {};
   LightMotion light = LightMotion::kMoving;
   CostKind cheapest = CostKind::kTime;
-  std::vector<std::string> scenes;          ///< empty: all of the run
-  std::string width_class;                  ///< of the kernel; empty: any
-  std::optional<std::pair<int, int>> size;  ///< of the picture, pixels; empty: all of the run
-  bool whole = false;                       ///< keep those that are beaten or no gain, too
+  std::vector<std::string> scenes = {};          ///< empty: all of the run
+  std::string width_class = {};                  ///< of the kernel; empty: any
+  std::optional<std::pair<int, int>> size = {};  ///< of the picture, pixels; empty: all of the run
+  bool whole = false;                            ///< keep those that are beaten or no gain, too
 };
 
 /// How a configuration stands to one demand.

@@ -8,58 +8,40 @@ namespace shadowbench::analysis {
 using namespace records;
 namespace {
 
-const Quantity* find_limit(const std::string& option) {
-  for (const Quantity& spec : limit_table())
-    if (spec.option == option) return &spec;
-  return nullptr;
-}
+const Demand kHardening;
 
-Demand limit(const std::string& option, double most) { return {find_limit(option), most}; }
+Demand limit(const std::string& field, double most) { return {&limit_of(field), most}; }
 
 /// A cell whose lookup takes `ms` and its map 1 ms, within 1 % of both; its filter has no parameters.
 CellRecord measure(const std::string& scene, const std::string& filter, double ms, double rmse, int map_size = 1024) {
-  CellRecord cell = make_cell(scene, filter, ms);
+  CellRecord cell = make_scored_cell(scene, filter, ms, rmse);
   cell.params.clear();
   cell.map_size = map_size;
   cell.cost.map_bytes = 4LL * map_size * map_size;
-  cell.cost.prefilter_texels = 0;
   const auto within_a_percent = [](double median) {
     return OwnTime{{median, 0.99 * median, 1.01 * median, 9}, {0.99 * median, 1.01 * median}};
   };
   cell.time_ms.lookup = cell.time_ms.static_light = within_a_percent(ms);
   cell.time_ms.moving = within_a_percent(1.0 + ms);
-  cell.error.rmse = rmse;
-  cell.truth.se = 0.001;
   cell.artefact.acne = cell.artefact.leak = cell.artefact.contact_gap = cell.artefact.noise = 0.0;
-  cell.absent.erase("error");
   cell.key = cell_key(cell);
   return cell;
 }
 
 std::vector<std::string> labels(const std::vector<Candidate>& candidates) {
-  std::vector<std::string> filters;
-  for (const Candidate& candidate : candidates) filters.push_back(candidate.configuration.cells.front()->filter);
-  return filters;
+  return list_each(
+      candidates, [](const Candidate& each) { return each.configuration.cells.front()->filter; });
 }
 
-std::vector<std::string> reasons(const Advice& advice) {
-  std::vector<std::string> texts;
-  for (const Unjudged& unjudged : advice.unjudged) texts.push_back(unjudged.reason);
-  return texts;
-}
+std::vector<std::string> reasons(const Advice& advice) { return list_each(advice.unjudged, &Unjudged::reason); }
 
 Advice advise_on(const std::vector<CellRecord>& cells, std::vector<Demand> demands) {
-  AdviceRequest request;
-  request.demands = std::move(demands);
-  return advise(cells, request);
+  return advise(cells, {.demands = std::move(demands)});
 }
 
-/// All that keep the demands, in their order: those that are beaten or gain nothing, too.
-Advice rank_on(const std::vector<CellRecord>& cells, std::vector<Demand> demands) {
-  AdviceRequest request;
-  request.demands = std::move(demands);
-  request.whole = true;
-  return advise(cells, request);
+/// All in their order: those that are beaten or gain nothing, too.
+Advice rank(const std::vector<CellRecord>& cells, LightMotion light = LightMotion::kMoving) {
+  return advise(cells, {.light = light, .whole = true});
 }
 
 void expect_refusal(const std::vector<CellRecord>& cells, const AdviceRequest& request, ErrorKind kind,
@@ -72,7 +54,7 @@ void expect_refusal(const std::vector<CellRecord>& cells, const AdviceRequest& r
 TEST(Advice, WorstPlace_DecidesALimit) {
   const std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("stack", "none", 1.0, 0.09),
                                          measure("cubes", "wide", 3.0, 0.03), measure("stack", "wide", 3.0, 0.02)};
-  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03)});
+  const Advice advice = advise_on(cells, {limit("error.rmse", 0.03)});
   ASSERT_THAT(labels(advice.keeping), ElementsAre("wide"));
   ASSERT_THAT(labels(advice.failing), ElementsAre("none"));
   const Verdict& verdict = advice.keeping.at(0).verdicts[0];
@@ -84,7 +66,7 @@ TEST(Advice, WorstPlace_DecidesALimit) {
 TEST(Advice, FiltersForTeaching_AreLeftOut_AndNamed) {
   std::vector<CellRecord> cells = {measure("cubes", "none", 3.0, 0.01), measure("cubes", "wrong", 1.0, 0.01)};
   cells[1].teaching = true;
-  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03)});
+  const Advice advice = advise_on(cells, {limit("error.rmse", 0.03)});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
   EXPECT_THAT(list_advice_notes(advice, make_run().gl),
               Contains("Left out, for they show a mistake and are for teaching: wrong."));
@@ -108,7 +90,7 @@ TEST(Advice, EveryLimit_IsKeptUpToItsValueAndNotBeyond) {
 TEST(Advice, Cost_IsTheMeanOverAllPlaces) {
   const std::vector<CellRecord> cells = {measure("cubes", "even", 4.0, 0.0), measure("stack", "even", 4.0, 0.0),
                                          measure("cubes", "uneven", 1.0, 0.0), measure("stack", "uneven", 6.0, 0.0)};
-  const Advice advice = rank_on(cells, {});
+  const Advice advice = rank(cells);
   EXPECT_THAT(labels(advice.keeping), ElementsAre("uneven", "even"));
   EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.mean, 4.5);
   // Of 2 and 7 ms, each within 1 %, independently.
@@ -117,56 +99,45 @@ TEST(Advice, Cost_IsTheMeanOverAllPlaces) {
   EXPECT_DOUBLE_EQ(advice.keeping.at(0).cost.ci95->high, 4.5 + half_width);
 }
 
-TEST(Advice, CostsThatDifferOnTheWhole_AreNoTie_WhereEachPlaceIsUncertain) {
-  std::vector<CellRecord> cells;
-  for (const char* scene : {"a", "b", "c", "d"}) {
-    cells.push_back(measure(scene, "cheap", 4.0, 0.0));
-    cells.push_back(measure(scene, "dear", 6.0, 0.0));
-    for (std::size_t i = cells.size() - 2; i < cells.size(); ++i)
-      cells[i].time_ms.moving->ci95 = {0.8 * cells[i].time_ms.moving->median, 1.2 * cells[i].time_ms.moving->median};
-  }
-  const Advice advice = rank_on(cells, {});
-  EXPECT_FALSE(are_costs_tied(advice.keeping.at(0), advice.keeping.at(1), CostKind::kTime));
-}
-
 TEST(Advice, LightThatMovesOrStandsStill_HasItsOwnTime) {
   std::vector<CellRecord> cells = {measure("cubes", "wide", 4.0, 0.0), measure("cubes", "blurred", 2.0, 0.0)};
   cells[1].time_ms.moving->median = 11.0;
-  AdviceRequest request;
-  request.whole = true;
-  EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("wide", "blurred"));
-  EXPECT_DOUBLE_EQ(advise(cells, request).keeping[1].cost.mean, 11.0);
-  request.light = LightMotion::kStatic;
-  EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("blurred", "wide"));
-  EXPECT_DOUBLE_EQ(advise(cells, request).keeping.at(0).cost.mean, 2.0);
+  const Advice moving = rank(cells), still = rank(cells, LightMotion::kStatic);
+  EXPECT_THAT(labels(moving.keeping), ElementsAre("wide", "blurred"));
+  EXPECT_DOUBLE_EQ(moving.keeping[1].cost.mean, 11.0);
+  EXPECT_THAT(labels(still.keeping), ElementsAre("blurred", "wide"));
+  EXPECT_DOUBLE_EQ(still.keeping.at(0).cost.mean, 2.0);
 }
 
-TEST(Advice, FrameThatWasNotTimed_IsNotJudged) {
-  std::vector<CellRecord> cells = {measure("cubes", "blurred", 2.0, 0.0)};
-  cells[0].time_ms.moving.reset();
-  cells[0].absent = {{"time_ms.prefilter", "the clock stood still"}};
-  EXPECT_THAT(reasons(advise_on(cells, {})), ElementsAre("no time_ms on cubes: the clock stood still"));
+TEST(Advice, WhatLacksATimeOrACost_OrDidNotFinish_OrIsSuspect_IsNotJudged) {
+  const std::tuple<void (*)(CellRecord&), CostKind, const char*> spoilt[] = {
+      {[](CellRecord& cell) {
+         cell.time_ms.moving.reset();
+         cell.absent = {{"time_ms.prefilter", "the clock stood still"}};
+       },
+       CostKind::kTime, "no time_ms on cubes: the clock stood still"},
+      {[](CellRecord& cell) { cell.cost.fetches.reset(); }, CostKind::kFetches,
+       "no cost.fetches on cubes: not measured"},
+      {[](CellRecord& cell) { cell.status = CellStatus::kTimeout; }, CostKind::kTime,
+       "did not finish on cubes (timeout: its message)"},
+      {[](CellRecord& cell) { cell.status = CellStatus::kSuspect; }, CostKind::kTime,
+       "wrong on cubes (suspect: its message)"}};
+  for (const auto& [spoil, cheapest, reason] : spoilt) {
+    std::vector<CellRecord> cells = {measure("cubes", "none", 2.0, 0.1), measure("cubes", "mine", 1.0, 0.0)};
+    cells[1].message = "its message";
+    spoil(cells[1]);
+    const Advice advice = advise(cells, {.cheapest = cheapest});
+    EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
+    EXPECT_THAT(reasons(advice), ElementsAre(reason));
+  }
 }
 
 TEST(Advice, WhatWasNotMeasuredEverywhere_IsNotJudged) {
-  std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("stack", "none", 1.0, 0.0),
-                                   measure("cubes", "gone", 1.0, 0.0), measure("cubes", "hung", 1.0, 0.0),
-                                   measure("stack", "hung", 1.0, 0.0)};
-  cells[4].status = CellStatus::kTimeout;
-  cells[4].message = "no answer after 10 s";
-  const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0)});
+  const std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.0), measure("stack", "none", 1.0, 0.0),
+                                         measure("cubes", "gone", 1.0, 0.0)};
+  const Advice advice = advise(cells, {});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
-  EXPECT_THAT(reasons(advice),
-              ElementsAre("not measured on stack", "did not finish on stack (timeout: no answer after 10 s)"));
-}
-
-TEST(Advice, SuspectFilter_IsNotJudged) {
-  std::vector<CellRecord> cells = {measure("cubes", "none", 2.0, 0.1), measure("cubes", "mine", 1.0, 0.0)};
-  cells[1].status = CellStatus::kSuspect;
-  cells[1].message = "it reads nothing";
-  const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0)});
-  EXPECT_THAT(labels(advice.keeping), ElementsAre("none"));
-  EXPECT_THAT(reasons(advice), ElementsAre("wrong on cubes (suspect: it reads nothing)"));
+  EXPECT_THAT(reasons(advice), ElementsAre("not measured on stack"));
 }
 
 TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
@@ -176,7 +147,7 @@ TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
   cells[1].absent["error"] = "no truth in this run";
   cells[2].cost.fetches.reset();
   cells[2].absent["cost.fetches"] = "it reads the map itself";
-  const Advice advice = advise_on(cells, {limit("--max-rmse", 1.0), limit("--max-fetches", 9.0)});
+  const Advice advice = advise_on(cells, {limit("error.rmse", 1.0), limit("cost.fetches", 9.0)});
   EXPECT_THAT(reasons(advice), ElementsAre("no error.rmse on cubes: no truth in this run",
                                            "no cost.fetches on cubes: it reads the map itself"));
   EXPECT_THAT(count_unjudged(advice), ElementsAre("1: no error.rmse on cubes: no truth in this run",
@@ -185,37 +156,40 @@ TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
       << "nobody asked for fetches, and others have an RMSE";
 }
 
-TEST(Advice, CostThatIsNull_IsNotJudged) {
-  std::vector<CellRecord> cells = {measure("cubes", "free", 1.0, 0.0)};
-  cells[0].cost.fetches.reset();
-  AdviceRequest request;
-  request.cheapest = CostKind::kFetches;
-  EXPECT_THAT(reasons(advise(cells, request)), ElementsAre("no cost.fetches on cubes: not measured"));
+/// Whether the cheapest two cost the same.
+bool is_tied(const std::vector<CellRecord>& cells) {
+  const std::vector<Candidate> ranked = rank(cells).keeping;
+  return are_costs_tied(ranked.at(0), ranked.at(1), CostKind::kTime);
 }
 
 TEST(Advice, OfOneSurrounding_RatioIntervalsTellCostsApart) {
   std::vector<CellRecord> cells = {measure("cubes", "a", 4.0, 0.0), measure("cubes", "b", 4.2, 0.0)};
-  Advice advice = rank_on(cells, {});
-  EXPECT_FALSE(are_costs_tied(advice.keeping.at(0), advice.keeping[1], CostKind::kTime));
+  EXPECT_FALSE(is_tied(cells));
   cells[1].time_ms.moving->ci95.low *= 0.9;
-  advice = rank_on(cells, {});
-  EXPECT_TRUE(are_costs_tied(advice.keeping.at(0), advice.keeping[1], CostKind::kTime));
+  EXPECT_TRUE(is_tied(cells));
 }
 
 TEST(Advice, OfTwoMaps_QuartilesTellCostsApart) {
   std::vector<CellRecord> cells = {measure("cubes", "a", 4.0, 0.0, 256), measure("cubes", "a", 4.2, 0.0, 1024)};
   cells[1].time_ms.moving->ci95.low *= 0.5;
-  Advice advice = rank_on(cells, {});
-  EXPECT_FALSE(are_costs_tied(advice.keeping.at(0), advice.keeping[1], CostKind::kTime));
+  EXPECT_FALSE(is_tied(cells));
   cells[1].time_ms.moving->q1 = 4.9;
-  advice = rank_on(cells, {});
-  EXPECT_TRUE(are_costs_tied(advice.keeping.at(0), advice.keeping[1], CostKind::kTime));
+  EXPECT_TRUE(is_tied(cells));
+}
+
+TEST(Advice, CostsThatDifferOnTheWhole_AreNoTie_WhereEachPlaceIsUncertain) {
+  std::vector<CellRecord> cells;
+  for (const char* scene : {"a", "b", "c", "d"})
+    for (const auto& [filter, ms] : {std::pair{"cheap", 4.0}, {"dear", 6.0}}) {
+      OwnTime& time = *cells.emplace_back(measure(scene, filter, ms, 0.0)).time_ms.moving;
+      time.ci95 = {0.8 * time.median, 1.2 * time.median};
+    }
+  EXPECT_FALSE(is_tied(cells));
 }
 
 TEST(Advice, EqualBytes_AreOrderedByRmse_AndWithoutByTime) {
   std::vector<CellRecord> cells = {measure("cubes", "slow", 9.0, 0.01), measure("cubes", "fast", 4.0, 0.03)};
-  AdviceRequest request;
-  request.cheapest = CostKind::kBytes;
+  const AdviceRequest request{.cheapest = CostKind::kBytes};
   EXPECT_THAT(labels(advise(cells, request).keeping), ElementsAre("slow"));
   EXPECT_THAT(labels(advise(cells, request).beaten), ElementsAre("fast"));
   for (CellRecord& cell : cells) cell.error.rmse.reset();
@@ -241,7 +215,7 @@ TEST(Advice, WhatFails_IsOrderedByHowManyLimitsItBreaks_ThenByHowMuch_ThenByCost
                                    measure("cubes", "near", 6.0, 0.02), measure("cubes", "as near", 5.0, 0.02),
                                    measure("cubes", "leaky", 1.0, 0.015)};
   cells.back().artefact.leak = 0.5;
-  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.012), limit("--max-leak", 0.1)});
+  const Advice advice = advise_on(cells, {limit("error.rmse", 0.012), limit("artefact.leak", 0.1)});
   EXPECT_THAT(labels(advice.failing), ElementsAre("as near", "near", "far", "leaky"));
   EXPECT_EQ(describe_broken(advice, advice.failing.back()), "--max-rmse 0.012 with 0.015 and --max-leak 0.1 with 0.5");
 }
@@ -249,7 +223,7 @@ TEST(Advice, WhatFails_IsOrderedByHowManyLimitsItBreaks_ThenByHowMuch_ThenByCost
 TEST(Advice, NothingFits_NamesTheClosest_WithALimitThatLetsItPass) {
   std::vector<CellRecord> cells = {measure("cubes", "a", 1.0, 0.0412345), measure("cubes", "b", 2.0, 0.06),
                                    measure("cubes", "c", 9.0, 0.05)};
-  const Advice advice = advise_on(cells, {limit("--max-rmse", 0.03), limit("--max-ms", 5.0)});
+  const Advice advice = advise_on(cells, {limit("error.rmse", 0.03), limit("time_ms", 5.0)});
   EXPECT_THAT(advice.keeping, IsEmpty());
   EXPECT_EQ(describe_failure(advice),
             "none of 3 configurations keeps the limits; a comes closest, and breaks --max-rmse 0.03 with 0.0413");
@@ -258,31 +232,29 @@ TEST(Advice, NothingFits_NamesTheClosest_WithALimitThatLetsItPass) {
 TEST(Advice, NothingCanBeJudged_SaysWhy) {
   std::vector<CellRecord> cells = {measure("cubes", "a", 9.0, 0.3), measure("cubes", "b", 9.0, 0.3)};
   for (CellRecord& cell : cells) cell.error.rmse.reset();
-  EXPECT_EQ(describe_failure(advise_on(cells, {limit("--max-rmse", 0.03)})),
+  EXPECT_EQ(describe_failure(advise_on(cells, {limit("error.rmse", 0.03)})),
             "none of 2 configurations can be judged: 2: no error.rmse on cubes: not measured");
 }
 
 TEST(Advice, RmseKeptByLessThanTheTruthsStandardError_IsMarked) {
   std::vector<CellRecord> cells = {measure("cubes", "a", 9.0, 0.0295), measure("stack", "a", 9.0, 0.001)};
-  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.03)}).keeping.at(0).verdicts[0].uncertain, &cells[0]);
-  EXPECT_FALSE(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].uncertain);
+  EXPECT_EQ(advise_on(cells, {limit("error.rmse", 0.03)}).keeping.at(0).verdicts[0].uncertain, &cells[0]);
+  EXPECT_FALSE(advise_on(cells, {limit("error.rmse", 0.031)}).keeping.at(0).verdicts[0].uncertain);
   cells[1].truth.se = 0.04;
-  EXPECT_EQ(advise_on(cells, {limit("--max-rmse", 0.031)}).keeping.at(0).verdicts[0].uncertain, &cells[1])
+  EXPECT_EQ(advise_on(cells, {limit("error.rmse", 0.031)}).keeping.at(0).verdicts[0].uncertain, &cells[1])
       << "not the worst";
-  EXPECT_FALSE(advise_on(cells, {limit("--max-fetches", 4.0)}).keeping.at(0).verdicts[0].uncertain);
+  EXPECT_FALSE(advise_on(cells, {limit("cost.fetches", 4.0)}).keeping.at(0).verdicts[0].uncertain);
 }
 
 TEST(Advice, ContactHardening_IsRequiredOfTheFilter) {
   std::vector<CellRecord> cells = {measure("cubes", "hard", 1.0, 0.01), measure("cubes", "soft", 4.0, 0.01)};
   cells[1].claims = {"contact-hardening"};
   for (CellRecord& cell : cells) cell.penumbra.growth = 1.0;
-  AdviceRequest request;
-  request.demands.resize(1);
-  const Advice advice = advise(cells, request);
+  const Advice advice = advise_on(cells, {kHardening});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("soft"));
   EXPECT_THAT(labels(advice.failing), ElementsAre("hard"));
   cells.pop_back();
-  EXPECT_THAT(describe_failure(advise(cells, request)),
+  EXPECT_THAT(describe_failure(advise_on(cells, {kHardening})),
               HasSubstr("hard comes closest, and breaks --requires contact-hardening"));
 }
 
@@ -298,9 +270,7 @@ TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
   cells[1].penumbra.growth = -1.0;
   cells[2].penumbra.growth = 0.9;
   cells[6].penumbra.growth = 0.1;
-  AdviceRequest request;
-  request.demands.resize(1);
-  const Advice advice = advise(cells, request);
+  const Advice advice = advise_on(cells, {kHardening});
   EXPECT_THAT(labels(advice.keeping), ElementsAre("grows")) << "a place that cannot show it says nothing";
   const std::string claimed = "'contact-hardening' is claimed, not shown: ";
   const auto least = [](const char* scene, const char* by) {
@@ -310,7 +280,7 @@ TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
               ElementsAre(claimed + least("ball", "-1"), claimed + least("cubes", "0.1"), claimed + "all are narrow"));
 }
 
-/// A cell with a leak rate on "cubes", and none on "fence", where too little is blocked.
+/// A filter's cells: a leak rate on "cubes", and none on "fence", where too little is blocked.
 std::vector<CellRecord> measure_leak_on_one(const std::string& filter, double ms, double leak) {
   std::vector<CellRecord> cells = {measure("cubes", filter, ms, 0.01), measure("fence", filter, ms, 0.01)};
   cells[0].artefact.leak = leak;
@@ -319,14 +289,10 @@ std::vector<CellRecord> measure_leak_on_one(const std::string& filter, double ms
   return cells;
 }
 
-std::vector<CellRecord> join(std::vector<CellRecord> a, const std::vector<CellRecord>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 TEST(Advice, SceneWithNothingToSee_BarsNothingAndIsNamed) {
-  const auto cells = join(measure_leak_on_one("leaky", 1.0, 0.5), measure_leak_on_one("tight", 2.0, 0.01));
-  const Advice advice = advise_on(cells, {limit("--max-leak", 0.1)});
+  std::vector<CellRecord> cells = measure_leak_on_one("leaky", 1.0, 0.5);
+  for (const CellRecord& cell : measure_leak_on_one("tight", 2.0, 0.01)) cells.push_back(cell);
+  const Advice advice = advise_on(cells, {limit("artefact.leak", 0.1)});
   EXPECT_THAT(advice.unjudged, IsEmpty());
   ASSERT_THAT(labels(advice.keeping), ElementsAre("tight"));
   EXPECT_THAT(labels(advice.failing), ElementsAre("leaky"));
@@ -337,22 +303,20 @@ TEST(Advice, SceneWithNothingToSee_BarsNothingAndIsNamed) {
       "--max-leak 0.1 could not be judged on fence, and cannot be broken there: fewer than 100 receivers "
       "are blocked.";
   EXPECT_THAT(list_advice_notes(advice, make_run().gl), Contains(note));
-  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-leak", 0.001)}), make_run().gl),
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("artefact.leak", 0.001)}), make_run().gl),
               Contains(HasSubstr("could not be judged on fence")))
       << "nothing fits";
-  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-acne", 0.1)}), make_run().gl),
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("artefact.acne", 0.1)}), make_run().gl),
               Each(Not(HasSubstr("fence"))));
 }
 
 TEST(Advice, EveryFaultWithoutReceivers_BarsNothing) {
-  for (const char* name : {"acne", "leak", "contact_gap"}) {
+  for (const char* field : {"artefact.acne", "artefact.leak", "artefact.contact_gap"}) {
     std::vector<CellRecord> cells = measure_leak_on_one("a", 1.0, 0.0);
     cells[1].artefact = {};
     cells[1].absent.clear();
-    explain(cells[1], std::string("artefact.") + name, {"too few", true});
-    std::string option = "--max-" + std::string(name);
-    std::ranges::replace(option, '_', '-');
-    EXPECT_THAT(advise_on(cells, {limit(option, 0.1)}).keeping, SizeIs(1)) << name;
+    explain(cells[1], field, {"too few", true});
+    EXPECT_THAT(advise_on(cells, {limit(field, 0.1)}).keeping, SizeIs(1)) << field;
   }
 }
 
@@ -360,7 +324,7 @@ TEST(Advice, WhatWasNotMeasuredBesideNothingToSee_IsNotJudged) {
   auto cells = measure_leak_on_one("a", 1.0, 0.0);
   cells[0].artefact = {};
   cells[0].absent["artefact"] = "the run was made with --no-truth";
-  EXPECT_THAT(reasons(advise_on(cells, {limit("--max-leak", 0.1)})),
+  EXPECT_THAT(reasons(advise_on(cells, {limit("artefact.leak", 0.1)})),
               ElementsAre("no artefact.leak on cubes: the run was made with --no-truth"));
 }
 
@@ -369,15 +333,14 @@ TEST(Advice, NothingToSeeAnywhere_IsNotJudgedAndSaysSo) {
   cells[0].artefact.leak.reset();
   cells[0].absent = cells[1].absent;
   cells[0].nothing_to_see = cells[1].nothing_to_see;
-  EXPECT_EQ(describe_failure(advise_on(cells, {limit("--max-leak", 0.1)})),
+  EXPECT_EQ(describe_failure(advise_on(cells, {limit("artefact.leak", 0.1)})),
             "none of 1 configurations can be judged: 1: no artefact.leak anywhere: fewer than 100 "
             "receivers are blocked");
 }
 
 TEST(Advice, Scenes_ChooseWhatIsJudged) {
   const std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("stack", "none", 1.0, 0.09)};
-  AdviceRequest request;
-  request.demands = {limit("--max-rmse", 0.03)};
+  AdviceRequest request{.demands = {limit("error.rmse", 0.03)}};
   EXPECT_THAT(advise(cells, request).keeping, IsEmpty());
   request.scenes = {"cubes"};
   EXPECT_THAT(advise(cells, request).keeping, SizeIs(1));
@@ -402,8 +365,7 @@ TEST(Advice, Size_ChoosesThePicture) {
   std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01), measure("cubes", "none", 4.0, 0.01)};
   cells[0].width = 480;
   cells[0].height = 270;
-  AdviceRequest request;
-  request.whole = true;
+  AdviceRequest request{.whole = true};
   EXPECT_THAT(advise(cells, request).keeping, SizeIs(2));
   EXPECT_THAT(list_advice_notes(advise(cells, request), make_run().gl),
               Contains("Pictures of 480x270, 960x540 pixels compete here, and a smaller one costs less: --size "
@@ -420,17 +382,17 @@ TEST(Advice, RunWithoutCells_IsAnInputError) { expect_refusal({}, {}, ErrorKind:
 TEST(Advice, Notes_SayWhatWeakensIt) {
   std::vector<CellRecord> cells = {measure("cubes", "none", 1.0, 0.01)};
   GlRecord gl = make_run().gl;
-  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl),
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("error.rmse", 1.0)}), gl),
               ElementsAre("Times are CPU time (software rasteriser): a GPU ranks filters differently."));
   gl.software = false;
   gl.timer = TimerKind::kTimerQuery;
-  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl), IsEmpty());
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("error.rmse", 1.0)}), gl), IsEmpty());
   std::vector<CellRecord> two = {cells[0], measure("cubes", "better", 2.0, 0.001)};
   EXPECT_THAT(list_advice_notes(advise_on(two, {}), gl),
               ElementsAre("No error limit set; left out as no better than none: none."));
   cells[0].nan = 12;
   cells[0].time_ms.lookup->n = 1;
-  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("--max-rmse", 1.0)}), gl),
+  EXPECT_THAT(list_advice_notes(advise_on(cells, {limit("error.rmse", 1.0)}), gl),
               ElementsAre(HasSubstr("a single round"), HasSubstr("12 pixels of it on cubes are not finite")));
 }
 

@@ -11,24 +11,20 @@ namespace shadowbench::analysis {
 namespace {
 
 std::vector<records::CellRecord> make_cells(const std::vector<Made>& all) {
-  std::vector<records::CellRecord> cells;
-  for (const Made& each : all) cells.push_back(make_picked(each));
-  return cells;
+  return records::list_each(
+      all, [](const Made& made) { return make_picked(made); });
 }
 
 std::vector<std::string> list_names(const std::vector<Candidate>& candidates) {
-  std::vector<std::string> names;
-  for (const Candidate& each : candidates) names.push_back(each.configuration.name);
-  return names;
+  return records::list_each(
+      candidates, [](const Candidate& each) { return each.configuration.name; });
 }
 
 std::vector<std::string> list_picks(const std::vector<records::CellRecord>& cells, const AdviceRequest& request = {}) {
   const Advice advice = advise(cells, request);
-  std::vector<std::string> picks;
-  for (const Pick& each : analysis::list_picks(advice))
-    picks.push_back(fmt::format("{}: ", fmt::join(each.names, " and ")) +
-                    advice.keeping[each.index].configuration.name);
-  return picks;
+  return records::list_each(analysis::list_picks(advice), [&](const Pick& each) {
+    return fmt::format("{}: {}", fmt::join(each.names, " and "), advice.keeping[each.index].configuration.name);
+  });
 }
 
 TEST(Picks, FastIsTheCheapestWithAGain_BestHasTheLeastError_AndTheKneeIsBetween) {
@@ -98,12 +94,9 @@ TEST(Picks, OneThatIsCheapestAndLeastWrong_IsBoth) {
 
 TEST(Picks, ALimitOnAnError_LetsNoneThrough) {
   const auto cells = make_cells({{"none", 1, 0.05}, {"pcf", 2, 0.04}, {"pcss", 9, 0.03}});
-  const auto spec = std::ranges::find(limit_table(), "error.rmse", &Quantity::field);
-  AdviceRequest request;
-  request.demands = {{&*spec, 0.06}};
-  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast: none", "balanced: pcf", "best: pcss"));
-  request.demands = {{&cost_spec(CostKind::kTime), 5.0}};
-  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast and best: pcf"))
+  EXPECT_THAT(list_picks(cells, {.demands = {{&limit_of("error.rmse"), 0.06}}}),
+              ElementsAre("fast: none", "balanced: pcf", "best: pcss"));
+  EXPECT_THAT(list_picks(cells, {.demands = {{&cost_spec(CostKind::kTime), 5.0}}}), ElementsAre("fast and best: pcf"))
       << "a limit on the cost asks for no gain less";
 }
 
@@ -116,9 +109,7 @@ TEST(Picks, WithoutErrors_TheCheapestIsFast_AndNothingIsBest) {
 TEST(Picks, AClassOfWidth_IsComparedWithTheNoneOfAnother) {
   auto cells = make_cells({{"none", 1, 0.05}, {"wide", 2, 0.08}, {"wider", 3, 0.04}});
   cells[1].kernel.width_class = cells[2].kernel.width_class = "soft";
-  AdviceRequest request;
-  request.width_class = "soft";
-  EXPECT_THAT(list_picks(cells, request), ElementsAre("fast and best: wider"));
+  EXPECT_THAT(list_picks(cells, {.width_class = "soft"}), ElementsAre("fast and best: wider"));
 }
 
 /// A cell of 100 x 100 pixels, of which so many are receivers at a penumbra, with this FLIP of the picture.
@@ -181,9 +172,7 @@ TEST(LeftOutPlaces, WithAllLightsUnseen_NothingIsPicked_AndItIsSaidWhy) {
   EXPECT_EQ(describe_failure(advice),
             "0 of 2 lights judged; lamp not tested: no receiver in view sees it; open not tested: no edge of its "
             "shadows is in view");
-  AdviceRequest soft;
-  soft.width_class = "soft";
-  EXPECT_EQ(describe_failure(advise(cells, soft)), describe_failure(advice));
+  EXPECT_EQ(describe_failure(advise(cells, {.width_class = "soft"})), describe_failure(advice));
 }
 
 }  // namespace

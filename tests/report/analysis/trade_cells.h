@@ -16,7 +16,7 @@ struct SweepCell {
 };
 
 inline records::CellRecord make_sweep_cell(const SweepCell& from) {
-  records::CellRecord cell = records::make_cell(from.scene, from.filter, 4.0 * from.ratio);
+  records::CellRecord cell = records::make_scored_cell(from.scene, from.filter, 4.0 * from.ratio, from.rmse);
   cell.params = {{"radius", from.radius}};
   cell.map_size = from.map_size;
   cell.kernel_radius_texels = cell.kernel.sigma_texels = from.radius;
@@ -26,9 +26,6 @@ inline records::CellRecord make_sweep_cell(const SweepCell& from) {
   const double ms = 4.0 * from.ratio, reach = ms * from.slack;
   cell.time_ms.static_light = cell.time_ms.moving =
       records::OwnTime{{ms, ms - reach, ms + reach, 9}, {ms - reach, ms + reach}};
-  cell.error.rmse = from.rmse;
-  cell.truth.se = 0.001;
-  cell.cost.prefilter_texels = 0;
   cell.absent.clear();
   cell.key = records::cell_key(cell);
   return cell;

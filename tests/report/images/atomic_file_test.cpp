@@ -9,10 +9,6 @@ namespace {
 
 using namespace records;
 
-std::size_t count_files(const std::filesystem::path& dir) {
-  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(dir), {}));
-}
-
 std::string message_of(const std::function<void()>& action) {
   const Error error = error_of(action);
   EXPECT_EQ(error.kind(), ErrorKind::kOutput);

@@ -15,12 +15,15 @@ namespace shadowbench::document {
 /// What a page says first.
 inline std::string answer_of(const Page& page) { return std::get<Paragraph>(page.sections.at(0).blocks.at(0)).text; }
 
-/// The first table of blocks, folded ones included; null where there is none.
-inline const Table* find_table(const std::vector<Block>& blocks) {
+/// The first block of a kind that `is_it`, folded ones included; null where there is none.
+template <typename Kind>
+const Kind* find_block(
+    const std::vector<Block>& blocks,
+    const std::function<bool(const Kind&)>& is_it = [](const Kind&) { return true; }) {
   for (const Block& block : blocks) {
-    if (const auto* table = std::get_if<Table>(&block)) return table;
+    if (const auto* own = std::get_if<Kind>(&block); own && is_it(*own)) return own;
     const auto* details = std::get_if<Details>(&block);
-    if (const Table* inside = details ? find_table(details->blocks) : nullptr) return inside;
+    if (const Kind* inside = details ? find_block<Kind>(details->blocks, is_it) : nullptr) return inside;
   }
   return nullptr;
 }
@@ -28,7 +31,7 @@ inline const Table* find_table(const std::vector<Block>& blocks) {
 /// What a section's first table says of a thing under a filter, and its grade.
 inline std::pair<std::string, Grade> verdict_of(const Page& page, const std::string& thing, const std::string& filter,
                                                 const std::string& id = "answer") {
-  const Table& table = *find_table(std::ranges::find(page.sections, id, &Section::id)->blocks);
+  const Table& table = *find_block<Table>(std::ranges::find(page.sections, id, &Section::id)->blocks);
   const auto column = std::ranges::find(table.table.header, filter) - table.table.header.begin();
   for (std::size_t r = 0; r < table.table.rows.size(); ++r)
     if (table.table.rows[r][0].starts_with(thing) && column < std::ssize(table.table.header))
@@ -49,16 +52,10 @@ inline std::vector<std::string> list_shown(const Chart& chart) {
 
 namespace shadowbench::pages {
 
-/// Writes the report of some cells, and reads one of its files.
-inline std::string write_and_read(const TestFolder& folder, const records::RunRecord& run,
-                                  const std::vector<records::CellRecord>& cells, const std::string& file) {
-  std::vector<std::string> keys;
-  for (const records::CellRecord& cell : cells) {
-    records::write_cell(folder.path(), cell);
-    keys.push_back(cell.key);
-  }
-  write_report(folder.path(), run, keys);
-  return folder.read(file);
+/// The JSON in a page's script of that id.
+inline std::string read_script(const std::string& page, const std::string& id) {
+  const std::size_t begin = page.find('>', page.find("id=\"" + id + "\"")) + 1;
+  return page.substr(begin, page.find("</script>", begin) - begin);
 }
 
 }  // namespace shadowbench::pages

@@ -221,7 +221,7 @@ records::BiasSweepRecord make_engine_sweep() {
 
 TEST(EngineBias, Settings_MoveAsFarAsTheBiasTheyStandFor) {
   const document::Details details = make_engine_details(make_engine_sweep());
-  const records::TextTable& table = document::find_table(details.blocks)->table;
+  const records::TextTable& table = document::find_block<document::Table>(details.blocks)->table;
   ASSERT_EQ(table.rows.size(), 2u);
   std::size_t checked = 0;
   for (std::size_t i = 1; i < table.header.size(); ++i) {
@@ -243,7 +243,7 @@ TEST(EngineBias, Settings_MoveAsFarAsTheBiasTheyStandFor) {
 TEST(EngineBias, OfALamp_IsLeftOut) {
   records::BiasSweepRecord sweep = make_engine_sweep();
   sweep.texel_m.high *= 2.0;
-  EXPECT_FALSE(document::find_table(make_engine_details(sweep).blocks));
+  EXPECT_FALSE(document::find_block<document::Table>(make_engine_details(sweep).blocks));
 }
 
 }  // namespace

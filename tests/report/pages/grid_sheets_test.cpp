@@ -4,8 +4,7 @@
 
 #include "report/images/picture_io.h"
 #include "report/pages/frames_page.h"
-#include "report/pages/write_page.h"
-#include "report/records/json_io.h"
+#include "tests/report/pages/answer.h"
 #include "tests/report/records/synthetic.h"
 
 namespace shadowbench::pages {
@@ -22,9 +21,8 @@ class GridFolder {
   std::vector<CellRecord> cells;
 
   void add(const std::string& filter, float softness, std::optional<double> rmse) {
-    CellRecord cell = records::make_cell("cubes", filter, 4.0);
-    cell.error.rmse = rmse;
-    if (rmse) cell.absent.erase("error");
+    CellRecord cell =
+        rmse ? records::make_scored_cell("cubes", filter, 4.0, *rmse) : records::make_cell("cubes", filter, 4.0);
     cell.images = {};
     cell.images.grid = "cubes.grid.png";
     cell.images.exr = "cubes.exr";
@@ -41,11 +39,9 @@ class GridFolder {
     std::vector<images::Part> parts = parts_;
     const images::Image truth = records::make_visibility(kWidth, kHeight, 5.0f);
     images::write_picture_png(path() / "truth.png", records::shade(truth));
-    images::Image mask(kWidth, kHeight, 1);
-    std::ranges::fill(mask.texels, 1.0f);
     if (with_truth) {
       parts.push_back({"truth.area", {"Y"}, truth});
-      parts.push_back({"truth.mask", {"Y"}, mask});
+      parts.push_back({"truth.mask", {"Y"}, records::fill(images::Image(kWidth, kHeight, 1), 1.0f)});
     }
     images::write_exr(path() / "cubes.exr", parts, {});
   }
@@ -61,9 +57,7 @@ class GridFolder {
 };
 
 std::vector<std::string> list_names(const images::Sheet& sheet) {
-  std::vector<std::string> names;
-  for (const images::SheetTile& tile : sheet.filters) names.push_back(tile.name);
-  return names;
+  return records::list_each(sheet.filters, &images::SheetTile::name);
 }
 
 TEST(GridSheets, FiltersStandByTheirErrors_WithBarsOfOneScale_SuspectsBehind) {
@@ -218,10 +212,7 @@ TEST(FramesPage, SaysIt) {
 
 TEST(FramesPage, ItsFirstChart_IsNeverEmpty) {
   const auto find_first = [](const std::vector<records::CellRecord>& cells) {
-    const document::Page page = make_frames_page(cells, {});
-    for (const document::Block& block : page.sections.front().blocks)
-      if (const auto* choice = std::get_if<document::ChartChoice>(&block)) return choice->charts.front();
-    return document::Chart();
+    return document::find_block<document::ChartChoice>(make_frames_page(cells, {}).sections.front().blocks)->charts[0];
   };
   EXPECT_EQ(find_first(make_accumulated_cells()).y_name, "noise");
   const document::Chart still = find_first({make_accumulated(4, "none", 0.0)});

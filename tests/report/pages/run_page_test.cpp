@@ -29,19 +29,6 @@ std::set<std::string> list_links(const std::string& page) {
   return links;
 }
 
-std::string decode_url(const std::string& url) {
-  std::string text;
-  for (std::size_t i = 0; i < url.size(); ++i) {
-    if (url[i] == '%') {
-      text += static_cast<char>(std::stoi(url.substr(i + 1, 2), nullptr, 16));
-      i += 2;
-    } else {
-      text += url[i];
-    }
-  }
-  return text;
-}
-
 // Every tag that opens is closed, in order; what scripts hold is no tag.
 void expect_balanced(const std::string& with_scripts) {
   std::string page = with_scripts;
@@ -66,12 +53,7 @@ void expect_balanced(const std::string& with_scripts) {
   EXPECT_TRUE(open.empty());
 }
 
-/// What the page's scripts read.
-nlohmann::json read_data(const std::string& page) {
-  const std::string start = "id=\"run\">";
-  const std::size_t begin = page.find(start) + start.size();
-  return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin));
-}
+nlohmann::json read_data(const std::string& page) { return nlohmann::json::parse(read_script(page, "run")); }
 
 std::string make_html(const RunRecord& run, const std::vector<CellRecord>& cells) {
   return document::write_html(make_run_page(run, cells));
@@ -79,6 +61,13 @@ std::string make_html(const RunRecord& run, const std::vector<CellRecord>& cells
 
 std::string make_summary(const RunRecord& run, const std::vector<CellRecord>& cells) {
   return document::write_markdown(make_run_page(run, cells));
+}
+
+/// Writes the report of some cells, and reads one of its files.
+std::string write_and_read(const RunRecord& run, const std::vector<CellRecord>& cells, const std::string& file) {
+  const TestFolder folder;
+  write_report(folder.path(), run, cells);
+  return folder.read(file);
 }
 
 CellRecord make_illustrated_cell(const std::string& scene, const std::string& filter) {
@@ -145,10 +134,12 @@ TEST(RunPage, BeginsWithFastBalancedAndBest_AndWhy) {
                            "cheap: 2 ms (CPU), RMSE 0.08; the cheapest clearly better than none<",
                            "knee: 3 ms (CPU), RMSE 0.05; 75 % of the quality gain for 10 % of the extra cost<",
                            "dear: 12 ms (CPU), RMSE 0.04; the least RMSE, at 6 times the cost of the fast one<",
-                           "<img src=\"cubes.grid.png\" alt=\"filters on cubes by their error\" loading="})
+                           "<img src=\"cubes.grid.png\" alt=\"filters on cubes by their error\" loading=",
+                           "<h2>The trade</h2>", "id=\"evidence\""})
     EXPECT_NE(page.find(text, answer), page.npos) << text;
   EXPECT_LT(page.find("dear: 12"), page.find("<img src=\"cubes.grid.png\""));
   EXPECT_LT(page.find("<img src=\"cubes.grid.png\""), page.find("id=\"table\""));
+  EXPECT_LT(page.find("id=\"trade\""), page.find("id=\"evidence\""));
   const nlohmann::json data = read_data(page);
   EXPECT_EQ(data["cells"][1]["values_of"]["error.rmse"], 0.08);
   EXPECT_EQ(data["cells"][1]["part"], nlohmann::json({480, 348, 480, 192}))
@@ -232,17 +223,20 @@ TEST(RunPage, EveryLink_LeadsToAFileOfTheReport) {
   }
   const auto count_files = [&] {
     const std::string page = read_text(folder.path() / "index.html");
+    std::set<std::string> there;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
+      there.insert(encode_url_path(entry.path().lexically_relative(folder.path()).string()));
     std::size_t files = 0;
     for (const std::string& url : list_links(page)) {
       if (url.front() == '#') {
         EXPECT_THAT(page, HasSubstr("id=\"" + url.substr(1) + "\""));
       } else if (url.rfind("data:", 0) != 0) {
-        EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(url))) << url;
+        EXPECT_THAT(there, Contains(url));
         ++files;
       }
     }
     for (const nlohmann::json& cell : read_data(page)["cells"])
-      EXPECT_TRUE(std::filesystem::exists(folder.path() / decode_url(cell["picture"]))) << cell;
+      EXPECT_THAT(there, Contains(cell["picture"].get<std::string>()));
     return files;
   };
   write_early_report(folder.path(), make_run(), read_cells(folder.path(), {keys.front()}), "1 of 2 scenes");
@@ -393,15 +387,15 @@ TEST_F(WritePage, LinksNothingOutsideTheReport) {
 bool says_milliseconds(const std::string& text) { return std::regex_search(text, std::regex("[0-9] ms")); }
 
 TEST(MixedMachines, NoTimeIsSaid_ButInTheTablesOfMeasurements) {
-  const std::string summary = write_and_read(TestFolder(), make_run(), make_mixed_cells(), "details.md");
+  const std::string summary = write_and_read(make_run(), make_mixed_cells(), "details.md");
   EXPECT_FALSE(says_milliseconds(summary)) << summary;
   EXPECT_THAT(summary, HasSubstr("Nothing fits: none of 3 configurations can be judged"));
   EXPECT_THAT(summary, HasSubstr("A fast CPU, 64 cores, A GPU, GPU time (timer query) (1 cell)"));
-  EXPECT_THAT(write_and_read(TestFolder(), make_run(), make_mixed_cells(), "timings.csv"),
+  EXPECT_THAT(write_and_read(make_run(), make_mixed_cells(), "timings.csv"),
               HasSubstr("\"A fast CPU, 64 cores, A GPU, GPU time (timer query)\""));
   std::vector<CellRecord> alike = make_mixed_cells();
   for (CellRecord& cell : alike) cell.machine = make_kind("A CPU");
-  const std::string usual = write_and_read(TestFolder(), make_run(), alike, "details.md");
+  const std::string usual = write_and_read(make_run(), alike, "details.md");
   EXPECT_TRUE(says_milliseconds(usual));
   EXPECT_THAT(usual, Not(HasSubstr("Several kinds")));
 }
@@ -409,7 +403,7 @@ TEST(MixedMachines, NoTimeIsSaid_ButInTheTablesOfMeasurements) {
 TEST(MixedMachines, OneWarningSaysSo_AlsoWhereTheReportIsWrittenAgain) {
   RunRecord run = make_run();
   run.warnings = {"another", warn_of_mixed_machines(make_mixed_cells())};
-  const auto results = nlohmann::json::parse(write_and_read(TestFolder(), run, make_mixed_cells(), "results.json"));
+  const auto results = nlohmann::json::parse(write_and_read(run, make_mixed_cells(), "results.json"));
   EXPECT_THAT(results["warnings"], ElementsAre(warn_of_mixed_machines(make_mixed_cells()), "another"));
   EXPECT_FALSE(results["cells"][2]["time_ms"]["moving"].is_null()) << "records keep what was measured";
 }

@@ -8,6 +8,24 @@
 
 namespace shadowbench::records {
 
+/// What a function or a member gives of each of some things, in their order.
+template <typename Things, typename Get>
+auto list_each(const Things& things, Get get) {
+  std::vector<std::decay_t<decltype(std::invoke(get, *std::begin(things)))>> list;
+  for (const auto& thing : things) list.push_back(std::invoke(get, thing));
+  return list;
+}
+
+inline std::size_t count_files(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+/// An image of one value.
+inline images::Image fill(images::Image image, float value) {
+  std::ranges::fill(image.texels, value);
+  return image;
+}
+
 /// A slanted shadow edge of the given softness, in pixels.
 inline images::Image make_visibility(int width, int height, float softness) {
   images::Image image(width, height, 1);
@@ -88,11 +106,19 @@ inline CellRecord make_cell(const std::string& scene, const std::string& filter,
   return cell;
 }
 
-/// That cell with an RMSE of `rmse` to a truth whose standard error is 0.001, and with the shares of its parts.
-inline CellRecord make_attributed_cell(const std::string& filter, double rmse, const PartValues& shares) {
-  CellRecord cell = make_cell("cubes", filter, 4.0);
+/// That cell of a filter without a prefilter, with its RMSE to a truth whose standard error is 0.001.
+inline CellRecord make_scored_cell(const std::string& scene, const std::string& filter, double lookup_ms, double rmse) {
+  CellRecord cell = make_cell(scene, filter, lookup_ms);
   cell.absent.erase("error");
+  cell.cost.prefilter_texels = 0;
   cell.error.rmse = rmse;
+  cell.truth.se = 0.001;
+  return cell;
+}
+
+/// That cell with further errors, and with the shares of its parts.
+inline CellRecord make_attributed_cell(const std::string& filter, double rmse, const PartValues& shares) {
+  CellRecord cell = make_scored_cell("cubes", filter, 4.0, rmse);
   cell.error.mae = rmse / 4.0;
   cell.error.p95 = 2.0 * rmse;
   cell.error.max = 1.0;
@@ -100,7 +126,6 @@ inline CellRecord make_attributed_cell(const std::string& filter, double rmse, c
   cell.error.flip = 0.02;
   cell.error.kernel_rmse = rmse / 2.0;
   cell.error.flicker = rmse / 3.0;
-  cell.truth.se = 0.001;
   cell.truth.unanimous = 0.9;
   cell.truth.weight_rmse = 0.002;
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i)

@@ -4,7 +4,7 @@
 
 #include "report/records/cell_key.h"
 #include "report/regress/tolerances.h"
-#include "tests/test_files.h"
+#include "tests/report/records/synthetic.h"
 
 namespace shadowbench::regress {
 namespace {
@@ -12,11 +12,7 @@ namespace {
 constexpr int kWidth = 32;
 constexpr int kHeight = 16;
 
-images::Image make_image(float value) {
-  images::Image image(kWidth, kHeight, 1);
-  for (float& texel : image.texels) texel = value;
-  return image;
-}
+images::Image make_image(float value) { return records::fill(images::Image(kWidth, kHeight, 1), value); }
 
 /// A cell of a stand-in filter, half lit everywhere.
 ActualCell make_cell() {
@@ -122,28 +118,22 @@ TEST(Comparison, BrokenBoundOfTheBaseline_ExcusesNothing) {
 }
 
 TEST(Comparison, DamagedImages_AreUnreadable) {
-  const auto compare_damaged = [](const auto& damage) {
+  using UncertaintyMember = images::Image images::UncertaintyImages::*;
+  /// Both have all images, the baseline's or the run's `damaged` one another size.
+  const auto compare_damaged = [](UncertaintyMember damaged, bool is_baselines, const images::Image& by) {
     ActualCell cell = make_cell();
     for (const images::UncertaintyImage& each : images::list_uncertainty_images())
       cell.images.uncertainty.*each.image = make_image(0.0f);
     CellImages expected = cell.images;
-    damage(cell.images, expected);
+    (is_baselines ? expected : cell.images).uncertainty.*damaged = by;
     return compare_cell(cell, expect(cell), expected, Tolerances()).outcome;
   };
-  EXPECT_EQ(compare_damaged([](CellImages&, CellImages&) {}), Outcome::kSame);
-  for (const images::UncertaintyImage& each : images::list_uncertainty_images()) {
-    EXPECT_EQ(
-        compare_damaged([&](CellImages& run, CellImages&) { run.uncertainty.*each.image = images::Image(4, 4, 1); }),
-        Outcome::kUnreadable)
-        << each.id;
-    EXPECT_EQ(compare_damaged([&](CellImages&, CellImages& baseline) {
-                baseline.uncertainty.*each.image = images::Image(4, 4, 1);
-              }),
-              Outcome::kUnreadable)
-        << each.id;
-  }
-  EXPECT_EQ(compare_damaged([](CellImages&, CellImages& baseline) { baseline.uncertainty.seed_deviation = {}; }),
-            Outcome::kUnreadable);
+  for (const images::UncertaintyImage& each : images::list_uncertainty_images())
+    for (const bool is_baselines : {false, true}) {
+      EXPECT_EQ(compare_damaged(each.image, is_baselines, make_image(0.0f)), Outcome::kSame) << each.id;
+      EXPECT_EQ(compare_damaged(each.image, is_baselines, images::Image(4, 4, 1)), Outcome::kUnreadable) << each.id;
+    }
+  EXPECT_EQ(compare_damaged(&images::UncertaintyImages::seed_deviation, true, {}), Outcome::kUnreadable);
 }
 
 TEST(Comparison, ManyExcusedPixelsThatDiffer_AreAChange) {
@@ -410,9 +400,7 @@ TEST_F(Truth, AnotherSeed_IsTheSame_AnotherTruthIsNot) {
 }
 
 TEST_F(Truth, TheErrorsOfBothCount) {
-  TruthImages sure = trace(0.5);
-  for (float& texel : sure.area.texels) texel = 0.5f;
-  sure.standard_error = make_image(1e-4f);
+  const TruthImages sure{make_image(0.5f), make_image(1e-4f)};
   EXPECT_FALSE(compare(trace(0.5), sure).failed());
   EXPECT_FALSE(compare(sure, trace(0.5)).failed());
 }
