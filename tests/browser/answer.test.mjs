@@ -2,9 +2,8 @@
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
-import { test } from "node:test";
 import { isDeepStrictEqual } from "node:util";
-import { changePage, folderOf, linkOf, open, openRun, readData, readResults, runProgram, splitWords } from "./support.mjs";
+import { changePage, folderOf, linkOf, open, openRun, readData, readResults, runProgram, splitWords, testPage } from "./support.mjs";
 
 // Parameters as a reader names them: what the light's width sets is "light".
 const nameParams = ({ params, kernel }) => (kernel.by_light ? { ...params, [kernel.by_light]: "light" } : params);
@@ -78,18 +77,14 @@ const move = (page, { name }, position) => page.locator(`.sliders input[name="${
 const choose = (page, name, value) => page.locator(`.limits select[name="${name}"]`).selectOption(value);
 
 for (const run of ["several", "odd", "untrue", "single", "mixed"]) {
-  test(`OnLoad_TheAnswerIsThatOfTheProgram: ${run}`, async () => {
-    const { page, messages, close } = await openRun(run);
+  testPage(`OnLoad_TheAnswerIsThatOfTheProgram: ${run}`, () => openRun(run), async ({ page }) => {
     await compare(page, run);
     await compareScenes(page, run);
-    assert.deepEqual(messages, []);
-    await close();
   });
 }
 
 // tests/report/pages/picks_script.cpp asks the script what the program is asked, under limits; here they are moved.
-test("SlidersAndChoices_MoveTheAnswerAsTheProgramDoes", async () => {
-  const { page, messages, close } = await openAnswer("several");
+testPage("SlidersAndChoices_MoveTheAnswerAsTheProgramDoes", () => openAnswer("several"), async ({ page }) => {
   const exits = new Set(), sliders = await listSliders(page);
   assert.ok(sliders.length >= 5, String(sliders.length));
   for (const slider of sliders) {
@@ -116,22 +111,18 @@ test("SlidersAndChoices_MoveTheAnswerAsTheProgramDoes", async () => {
   await page.keyboard.press("ArrowLeft");
   assert.equal(Number(await rmse.inputValue()), before - 1, "a key moves the slider");
   assert.deepEqual([...exits].sort(), [0, 1], "some limits are kept and some are not");
-  assert.deepEqual(messages, []);
-  await close();
 });
 
-test("ALimitIsNeverBelowNought_ThoughATimeMayBe", async () => {
-  const file = changePage("several", "below.html", ({ scopes }) => scopes.forEach(({ rows }) => { rows[0].worst["time_ms.static"].limit = -0.01; }));
-  const { page, close } = await open(file);
+const lowerLimit = ({ scopes }) => scopes.forEach(({ rows }) => { rows[0].worst["time_ms.static"].limit = -0.01; });
+testPage("ALimitIsNeverBelowNought_ThoughATimeMayBe", () => open(changePage("several", lowerLimit)), async ({ page }) => {
   await page.locator(".reasons").evaluate((each) => { each.open = true; });
   await choose(page, "cost", "static");
   await move(page, { name: "time_ms" }, 0);
   assert.match(await readCommand(page), / --max-ms 0 /);
-  await close();
 });
 
-test("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", async () => {
-  const { page, messages, close } = await openRun("several"), data = await readData(page);
+testPage("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", () => openRun("several"), async ({ page }) => {
+  const data = await readData(page);
   const stage = page.locator(".split .stage"), names = () => page.locator(".split figcaption bdi").allTextContents();
   const [first] = await page.evaluate(() => shadowbench.answer.picks());
   assert.deepEqual((await names())[0], "truth");
@@ -162,12 +153,10 @@ test("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", async () =
   await page.getByRole("button", { name: "Look closer" }).click();
   await page.waitForFunction((name) => document.querySelectorAll(".viewer figcaption")[1].textContent.includes(name), data.configurations[chosen[0]].label);
   assert.match(await linkOf(page), /view=/);
-  assert.deepEqual(messages, []);
-  await close();
 });
 
-test("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven_OrIsHidden", async () => {
-  const { page, close } = await openAnswer("odd"), { scenes } = readResults("odd"), { configurations, places } = await readData(page);
+testPage("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven", () => openAnswer("odd"), async ({ page }) => {
+  const { scenes } = readResults("odd"), { configurations, places } = await readData(page);
   const write = async (index, place) => splitWords(await page.evaluate((pick) => shadowbench.answer.writeView(...pick), [index, place])).join("|");
   const [button] = await page.locator(".picks button").all();
   await button.click();
@@ -178,28 +167,26 @@ test("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven_OrIsHidden", asy
   assert.ok(odd.endsWith("|--ground|") && lines.some((line) => line.startsWith(odd)) && lines.some((line) => line.startsWith(cubes)), lines.join());
   const own = await write(configurations.findIndex(({ filter }) => filter === "nine_compares"), 0);
   assert.ok(own.includes("|--filter-file|nine_compares.glsl|--left|truth|--right|nine_compares"), own);
-  await close();
-  for (const forget of [({ places }) => places.forEach((place) => { place.view = []; }), (data) => data.configurations.forEach(({ filter }) => { data.files[filter] = null; })]) {
-    const unknown = await open(changePage("odd", "unknown.html", forget));
-    await unknown.page.getByText("Why, limits and commands").click();
-    assert.deepEqual(await unknown.page.locator(".reasons code").evaluateAll((all) => all.map((each) => each.checkVisibility())), [true, false]);
-    await unknown.close();
-  }
 });
 
-test("Printed_TheAnswerHasItsThreeNames_AndNoForm", async () => {
-  const { page, close } = await openRun("several");
+const forgetScenes = ({ places }) => places.forEach((place) => { place.view = []; });
+const forgetFiles = ({ configurations, files }) => configurations.forEach(({ filter }) => { files[filter] = null; });
+for (const forget of [forgetScenes, forgetFiles])
+  testPage(`TheCommandForTheWindow_IsHiddenWhereItIsNotKnown: ${forget.name}`, () => open(changePage("odd", forget)), async ({ page }) => {
+    await page.getByText("Why, limits and commands").click();
+    assert.deepEqual(await page.locator(".reasons code").evaluateAll((all) => all.map((each) => each.checkVisibility())), [true, false]);
+  });
+
+testPage("Printed_TheAnswerHasItsThreeNames_AndNoForm", () => openRun("several"), async ({ page }) => {
   const names = await page.locator(".picks tbody tr").first().locator("bdi").allTextContents();
   assert.ok(names.length > 1, names.join());
   await page.emulateMedia({ media: "print" });
   const printed = await page.locator(".picks").innerText();
   for (const name of names) assert.ok(printed.includes(name), name);
   for (const form of await page.locator("form, .sliders").all()) assert.equal(await form.isVisible(), false);
-  await close();
 });
 
-test("ALink_OpensTheSameAnswerAndTable", async () => {
-  const { page, close } = await openAnswer("several");
+testPage("ALink_OpensTheSameAnswerAndTable", () => openAnswer("several"), async ({ page }) => {
   await choose(page, "cost", "static");
   await choose(page, "class", "medium");
   await move(page, { name: "error.flip" }, 2);
@@ -217,5 +204,5 @@ test("ALink_OpensTheSameAnswerAndTable", async () => {
   const bad = await openRun("several", { hash: "#limits=noon,vast,,error.rmse:x,nothing:1&shown=nobody,nowhere&table=none,none,none,none,&view" }), plain = await openRun("several");
   assert.deepEqual((await read(bad.page))[2], (await read(plain.page))[2]);
   assert.deepEqual(bad.messages, []);
-  for (const each of [{ close }, again, bad, plain]) await each.close();
+  for (const each of [again, bad, plain]) await each.close();
 });

@@ -1,4 +1,5 @@
-// Functions of the pages' scripts that need no page: titles of GPUs from what browsers say of them, and axes of charts.
+// Functions of the pages' scripts that need no page: titles of GPUs from what browsers say of them, axes of charts, and what times
+// a browser's GPU.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
@@ -54,4 +55,27 @@ test("HiddenCurves_TakeNoRoom", () => {
   assert.deepEqual(fitted.ticks.map(([value]) => value), [0.05, 0.1, 0.2]);
   assert.deepEqual(fitAxis(axis, [curve(0.06, 1.5)]).high, 2, "beyond the last tick");
   assert.deepEqual(fitAxis(axis, []), axis, "nothing is shown");
+});
+
+// What times a GPU leaves the page alive meanwhile.
+const kTiming = new URL("../../report/document/live/timing.js", import.meta.url);
+const makeTimer = new Function("makeTarget", "document", `${readFileSync(kTiming, "utf8")}; return makeTimer;`)(() => ({ framebuffer: 0 }), { hidden: false });
+const draw = (count) => {
+  const end = performance.now() + 0.02 * count;
+  while (performance.now() < end);
+};
+
+test("ThePageIsAliveBetweenAllTimes", async () => {
+  const gl = new Proxy({}, { get: (own, name) => own[name] ?? (() => 0) });
+  const seen = [];
+  let ticks = 0, isOver = false;
+  const tick = () => {
+    ++ticks;
+    if (!isOver) setTimeout(tick);
+  };
+  tick();
+  const times = await makeTimer(gl)([draw, draw, draw], 3, () => seen.push(ticks), () => false);
+  isOver = true;
+  assert.equal(times.length, 3);
+  for (const [i, count] of seen.entries()) assert.ok(count >= (i > 0 ? seen[i - 1] : 0) + 3, `the page did something else so often by the end of the rounds: ${seen}`);
 });

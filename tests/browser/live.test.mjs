@@ -1,15 +1,13 @@
 // The section that draws with WebGL 2: as the run drew, on two implementations of it.
 import assert from "node:assert/strict";
-import test from "node:test";
-import { changeFrames, kMesa, kOwn, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { pageOf, pick } from "./support.mjs";
+import { changeFrames, kMesa, kOwn, openLive, press, readTable } from "./live_support.mjs";
+import { pageOf, pick, testPage } from "./support.mjs";
 
 // On the second every filter is drawn once; the other kinds of map are those of few filters there.
 for (const [title, args, mostScenes] of [["OnTheRunsOwnRasteriser", kMesa, 9], ["OnAnotherImplementation", kOwn, 1]])
-  test(`EveryFilterDrawsAsTheRunDid_${title}`, () => withBrowser(args, async (browser) => {
-    for (const [run, count, absent] of [["live", 29, { textureGather: 2 }], ["lamps", 4, {}], ["fits", 18, { "geometry shaders": 2 }],
-      ["hashed", 3, {}], ["dither", 3, {}]]) {
-      const { page, messages, shoot, close } = await openLive(pageOf(run), browser);
+  for (const [run, count, absent] of [["live", 29, { textureGather: 2 }], ["lamps", 4, {}], ["fits", 18, { "geometry shaders": 2 }],
+    ["hashed", 3, {}], ["dither", 3, {}]])
+    testPage(`EveryFilterDrawsAsTheRunDid_${title}: ${run}`, () => openLive(pageOf(run), { args }), async ({ page, shoot }) => {
       const requests = [], scenes = await page.locator(".live select").first().locator("option").allTextContents();
       page.on("request", (request) => requests.push(request.url()));
       for (const scene of run === "live" ? scenes.slice(0, mostScenes) : scenes) {
@@ -26,33 +24,24 @@ for (const [title, args, mostScenes] of [["OnTheRunsOwnRasteriser", kMesa, 9], [
       }
       await shoot(`live.${run}.${title}`);
       assert.deepEqual(requests.filter((url) => !url.startsWith("file://")), []);
-      assert.deepEqual(messages, []);
-      await close();
-    }
-  }));
+    });
 
-test("AWrongSignInAShader_IsSeen", () => withBrowser(kMesa, async (browser) => {
-  const wrong = changeFrames("untrue", "wrong", ({ programs }) => {
-    for (const each of programs.filter(({ label }) => label === "vsm lookup")) each.fragment = each.fragment.replace("moments.y -", "moments.y +");
-  });
-  const { page, close } = await openLive(wrong, browser);
+// What the check says of each filter of a run whose shaders a function has changed.
+const testShaders = (name, edit, act) => testPage(name, () => openLive(changeFrames("untrue", name, edit)), async ({ page }) => {
   await press(page, "Check against the run");
-  const rows = Object.fromEntries((await readTable(page)).map(([filter, rmse]) => [filter, rmse]));
+  act(Object.fromEntries((await readTable(page)).map(([filter, text]) => [filter, text])));
+}, /GL_INVALID|shader/);
+testShaders("AWrongSignInAShader_IsSeen", ({ programs }) => {
+  for (const each of programs.filter(({ label }) => label === "vsm lookup")) each.fragment = each.fragment.replace("moments.y -", "moments.y +");
+}, (rows) => {
   assert.match(rows.vsm, /^✗/);
   assert.doesNotMatch(rows.pcf2x2, /✗/);
-  await close();
-}));
-
-test("AShaderThatTheBrowserRefuses_IsSaidInItsRow", () => withBrowser(kMesa, async (browser) => {
-  const broken = changeFrames("untrue", "broken", ({ programs }) => {
-    for (const each of programs.filter(({ label }) => label === "pcf2x2 lookup")) each.fragment = each.fragment.replace("void main()", "void nothing()");
-    for (const each of programs.filter(({ label }) => label === "vsm encode")) Object.assign(each, { vertex: undefined, refused: "WebGL 2 cannot have this" });
-  });
-  const { page, close } = await openLive(broken, browser);
-  await press(page, "Check against the run");
-  const rows = Object.fromEntries((await readTable(page)).map(([filter, text]) => [filter, text]));
+});
+testShaders("AShaderThatTheBrowserRefuses_IsSaidInItsRow", ({ programs }) => {
+  for (const each of programs.filter(({ label }) => label === "pcf2x2 lookup")) each.fragment = each.fragment.replace("void main()", "void nothing()");
+  for (const each of programs.filter(({ label }) => label === "vsm encode")) Object.assign(each, { vertex: undefined, refused: "WebGL 2 cannot have this" });
+}, (rows) => {
   assert.match(rows.pcf2x2, /refuses the shader of pcf2x2 lookup/);
   assert.match(rows.vsm, /WebGL 2 cannot have this/);
   assert.match(rows.none, /^[\d.e-]+$/);
-  await close();
-}));
+});

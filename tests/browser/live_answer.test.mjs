@@ -2,9 +2,8 @@
 import assert from "node:assert/strict";
 import { cpSync, rmSync } from "node:fs";
 import { join } from "node:path";
-import test from "node:test";
-import { changeFrames, keepContexts, kMesa, withBrowser } from "./live_support.mjs";
-import { folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf } from "./support.mjs";
+import { changeFrames, keepContexts, kMesa, openDrawing } from "./live_support.mjs";
+import { folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf, pick, testPage } from "./support.mjs";
 
 const kMeasure = "this GPU (measure)";
 const listTitles = (page) => page.locator("select[name=cost] option").allTextContents();
@@ -22,8 +21,7 @@ const measureInVain = async (page, words) => {
   assert.equal(await chosen(page), before);
 };
 
-test("ThisGpuIsACost_ThatIsMeasuredWhenItIsChosen", () => withBrowser(kMesa, async (browser) => {
-  const { page, messages, shoot, close } = await open(pageOf("untrue"), { browser, viewport: kNarrow });
+testPage("ThisGpuIsACost_ThatIsMeasuredWhenItIsChosen", () => openDrawing(pageOf("untrue"), { viewport: kNarrow }), async ({ page, shoot }) => {
   const before = await chosen(page), top = await page.evaluate(() => scrollY);
   assert.equal((await listTitles(page)).at(-1), kMeasure);
   await measure(page);
@@ -40,12 +38,9 @@ test("ThisGpuIsACost_ThatIsMeasuredWhenItIsChosen", () => withBrowser(kMesa, asy
   assert.match(await linkOf(page), /machine0\.moving/);
   await page.reload();
   assert.equal(await chosen(page), "moving light, this GPU", "the link holds it");
-  assert.deepEqual(messages, []);
-  await close();
-}));
+});
 
-test("MeasuringThatEnds_LeavesTheChoiceAsItWas_AndSaysWhy", () => withBrowser(kMesa, async (browser) => {
-  const { page, close } = await open(pageOf("untrue"), { browser, init: keepContexts });
+testPage("MeasuringThatEnds_LeavesTheChoiceAsItWas_AndSaysWhy", () => openDrawing(pageOf("untrue"), { init: keepContexts }), async ({ page }) => {
   const before = await chosen(page);
   const endsWith = async (words) => {
     await whenItEnds(page);
@@ -66,43 +61,48 @@ test("MeasuringThatEnds_LeavesTheChoiceAsItWas_AndSaysWhy", () => withBrowser(kM
   await page.evaluate(() => window.contexts[0].getExtension("WEBGL_lose_context").loseContext());
   await endsWith("The browser has taken the GPU away from this page: load it again.");
   await measureInVain(page, "load it again");
-  await close();
-}));
+});
 
-test("WhereNothingAgreesWithTheRun_MeasuringSaysSo", () => withBrowser(kMesa, async (browser) => {
-  const file = changeFrames("single", "disagrees", ({ programs }) => {
-    for (const each of programs.filter(({ label }) => label.endsWith("lookup"))) each.fragment = each.fragment.replace("void main()", "void nothing()");
+const breakLookups = ({ programs }) => {
+  for (const each of programs.filter(({ label }) => label.endsWith("lookup"))) each.fragment = each.fragment.replace("void main()", "void nothing()");
+};
+testPage("WhereNothingAgreesWithTheRun_MeasuringSaysSo", () => openDrawing(changeFrames("single", "disagrees", breakLookups)), ({ page }) =>
+  measureInVain(page, "Nothing that is drawn here agrees with the run"));
+
+// In a page before its scripts: the browser draws into no floats.
+const lackFloats = () => {
+  const { getExtension } = WebGL2RenderingContext.prototype;
+  WebGL2RenderingContext.prototype.getExtension = function (name) { return name === "EXT_color_buffer_float" ? null : getExtension.call(this, name); };
+};
+for (const [name, options, words] of [["TargetsOfFloats", { args: kMesa, init: lackFloats }, "lacks EXT_color_buffer_float"],
+  ["WebGl", { args: ["--disable-gpu", "--disable-3d-apis"] }, "no WebGL 2"]])
+  testPage(`Without${name}_ThePageSaysSo_AndGoesOn`, () => open(pageOf("several"), options), async ({ page }) => {
+    await page.locator("#live").evaluate((section) => section.scrollIntoView());
+    await page.waitForFunction((text) => document.querySelector(".live").textContent.includes(text), words);
+    assert.equal(await page.locator(".live canvas").count(), 0);
+    await measureInVain(page, words);
+    // The rest of the page works.
+    await page.locator(".picks button").last().click();
+    assert.ok(await page.locator(".stage img").first().isVisible());
+    await pick(page, "Right", { index: 3 });
   });
-  const { page, close } = await open(file, { browser });
-  await measureInVain(page, "Nothing that is drawn here agrees with the run");
-  await close();
-}));
 
-test("WithoutWebGl_MeasuringSaysSo", () => withBrowser(["--disable-gpu", "--disable-3d-apis"], async (browser) => {
-  const { page, close } = await open(pageOf("untrue"), { browser });
-  await measureInVain(page, "no WebGL 2");
-  await close();
-}));
-
-test("TheAnswersPicture_OpensLiveAtItsSceneAndFilter", () => withBrowser(kMesa, async (browser) => {
-  const { page, messages, close } = await open(pageOf("several"), { browser });
-  const pick = page.locator(".picks button").last(), wanted = await pick.evaluate(({ dataset }) => [Number(dataset.place), -1, Number(dataset.index)]);
-  await pick.click();
+testPage("TheAnswersPicture_OpensLiveAtItsSceneAndFilter", () => openDrawing(pageOf("several")), async ({ page }) => {
+  const button = page.locator(".picks button").last(), wanted = await button.evaluate(({ dataset }) => [Number(dataset.place), -1, Number(dataset.index)]);
+  await button.click();
   await page.locator(".answer").getByRole("button", { name: "Live" }).click();
   await page.waitForSelector(".live canvas");
   assert.deepEqual(await page.locator(".live select").evaluateAll((all) => all.slice(0, 3).map(({ value }) => Number(value))), wanted);
   assert.ok(await page.locator(".live canvas").evaluate((canvas) => canvas.getBoundingClientRect().top < innerHeight));
-  assert.deepEqual(messages, []);
-  await close();
-}));
+});
 
-test("WhereFramesAreMissing_TheRestOfThePageStays_AndLiveSaysSo", () => withBrowser(kMesa, async (browser) => {
+testPage("WhereFramesAreMissing_TheRestOfThePageStays_AndLiveSaysSo", () => {
   const folder = folderOf("ball") + ".bare";
   cpSync(folderOf("ball"), folder, { recursive: true });
   rmSync(join(folder, "live"), { recursive: true });
-  const { page, close } = await open(join(folder, "index.html"), { browser });
+  return openDrawing(join(folder, "index.html"));
+}, async ({ page }) => {
   await page.locator(".answer").getByRole("button", { name: "Live" }).click();
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("not beside this page"));
   assert.ok(await page.locator(".stage img").first().isVisible());
-  await close();
-}));
+}, /ERR_FILE_NOT_FOUND/);

@@ -4,14 +4,14 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
-import { compareShots, kMesa, measure, openLive, press, withBrowser } from "./live_support.mjs";
+import { compareShots, measure, openLive, press } from "./live_support.mjs";
 import { pageOf, pick, readData, settle, splitWords } from "./support.mjs";
 
 const kScene = new URL("../../data/scenes/teaching/three_lights.toml", import.meta.url);
 // The right side's picture with camera and light turned so, and the page.
-const drawTurned = async (browser, run, place, filter, camera, light) => {
+const drawTurned = async (run, place, filter, camera, light) => {
   const fields = [place, filter, filter, 0.5, ...camera, ...light].map(encodeURIComponent).join();
-  const { page, messages, close } = await openLive(pageOf(run), browser, { hash: `#live=${fields}` });
+  const { page, messages, close } = await openLive(pageOf(run), { hash: `#live=${fields}` });
   await settle(page);
   const picture = await page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL().split(",")[1]);
   const said = await page.locator(".live").textContent(), command = await page.locator(".live code").textContent(), data = await readData(page);
@@ -30,7 +30,7 @@ const holdAgainst = (context, name, [shown, drawn, own], most = 0.03) => {
   assert.ok(gap.share < most && gap.share < moved.share / 3, `${name}: ${JSON.stringify([gap, moved])}`);
 };
 
-test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", (context) => withBrowser(kMesa, async (browser) => {
+test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", async (context) => {
   const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), yaw = 0.5, [c, s] = [Math.cos(yaw), Math.sin(yaw)];
   // Floor and posts of the scene have their middle over the origin.
   const turn = (text, key) => text.replace(new RegExp(`^${key} = \\[(.*)\\]$`, "gm"), (_, list) => {
@@ -40,20 +40,20 @@ test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", (context) => withBrowser
   const [head, ...lights] = readFileSync(kScene, "utf8").split("[[light]]"), moved = lights.map((light, i) => (i === 0 ? light : turn(turn(light, "position"), "target")));
   writeFileSync(join(folder, "moved.toml"), [head, ...moved].join("[[light]]"));
   for (const light of ["spot", "bulb"]) {
-    const place = `three_lights.${light}`, { picture, said, data } = await drawTurned(browser, "lamps", place, "tent3x3", [0, 0], [yaw, 0]);
+    const place = `three_lights.${light}`, { picture, said, data } = await drawTurned("lamps", place, "tent3x3", [0, 0], [yaw, 0]);
     assert.match(said, /the scene's own lamp, not the moved one/);
     const drawn = drawByProgram(["run", "--scene", "moved.toml", "--light-name", light, "--filters", "tent3x3", "--size", "160x90", "--map-size", "128"], join(folder, light), folder);
     holdAgainst(context, light, [picture, drawn, ownPicture("lamps", data, place, "tent3x3")]);
   }
   rmSync(folder, { recursive: true });
-}));
+});
 
 // Maps from the lamps' middles alone are 0.11 and 0.23 off.
-test("AReferenceForALamp_IsNearItsTracedTruth", (context) => withBrowser(kMesa, async (browser) => {
+test("AReferenceForALamp_IsNearItsTracedTruth", async (context) => {
   const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), out = join(folder, "out");
   writeFileSync(join(folder, "wide.toml"), readFileSync(kScene, "utf8").replace("radius = 0.04", "radius = 0.4").replace("radius = 0.03", "radius = 0.15"));
   measure(["run", "--scene", "wide.toml", "--filters", "none", "--size", "240x135", "--map-size", "1024"], out, folder);
-  const { page, messages, close } = await openLive(join(out, "index.html"), browser), found = {};
+  const { page, messages, close } = await openLive(join(out, "index.html")), found = {};
   for (const light of ["spot", "bulb"]) {
     await pick(page, "Scene", { label: `wide.${light}` }, ".live");
     await press(page, "Check against the run");
@@ -65,24 +65,24 @@ test("AReferenceForALamp_IsNearItsTracedTruth", (context) => withBrowser(kMesa, 
   assert.deepEqual(messages, []);
   await close();
   rmSync(folder, { recursive: true });
-}));
+});
 
-test("CascadesFollowSunAndCamera_AndAWarpedMapSaysThatItStays", (context) => withBrowser(kMesa, async (browser) => {
-  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), { data } = await drawTurned(browser, "fits", "avenue", "none", [0, 0], [0, 0]);
+test("CascadesFollowSunAndCamera_AndAWarpedMapSaysThatItStays", async (context) => {
+  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), { data } = await drawTurned("fits", "avenue", "none", [0, 0], [0, 0]);
   const labelOf = (fit) => data.configurations.find(({ surroundings, filter }) => filter === "none" && JSON.parse(surroundings).fit.startsWith(fit)).label;
   // One map of 128 texels over all that is seen has coarse edges, which another window puts elsewhere.
   for (const [fit, most] of [["cascades", 0.03], ["view", 0.08]]) {
-    const label = labelOf(fit), { picture, words } = await drawTurned(browser, "fits", "avenue", label, [0, 0], [0.4, 0.1]);
+    const label = labelOf(fit), { picture, words } = await drawTurned("fits", "avenue", label, [0, 0], [0.4, 0.1]);
     assert.ok(words.includes("--light"));
     const own = ownPicture("fits", data, "avenue", label);
     holdAgainst(context, fit, [picture, drawByProgram(words, join(folder, fit), folder), own], most);
     // A whole turn of the camera fits its windows anew, and shows what was seen before.
-    const whole = await drawTurned(browser, "fits", "avenue", label, [2 * Math.PI, 0], [0, 0]), gap = compareShots([whole.picture, own], 24);
+    const whole = await drawTurned("fits", "avenue", label, [2 * Math.PI, 0], [0, 0]), gap = compareShots([whole.picture, own], 24);
     context.diagnostic(`${fit}: ${gap.share} of the values move with a whole turn`);
     assert.ok(gap.share < most, JSON.stringify(gap));
   }
-  const label = labelOf("lispsm"), warped = await drawTurned(browser, "fits", "avenue", label, [0, 0], [0.4, 0.1]);
+  const label = labelOf("lispsm"), warped = await drawTurned("fits", "avenue", label, [0, 0], [0.4, 0.1]);
   assert.match(warped.said, /This light cannot move: its map is warped/);
   assert.ok((compareShots([warped.picture, ownPicture("fits", data, "avenue", label)])).mean < 0.5);
   rmSync(folder, { recursive: true });
-}));
+});

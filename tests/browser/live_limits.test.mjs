@@ -1,14 +1,12 @@
-// The section that draws with WebGL 2 where there is much to draw, and where something is missing.
+// The section that draws with WebGL 2 where there is much to draw.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import test from "node:test";
-import { compareShots, keepTime, kMesa, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { dragOver, folderOf, kNarrow, kWide, measureOverflow, open, pageOf, pick, readData, runProgram, settle } from "./support.mjs";
+import { compareShots, keepTime, openLive, press, readTable } from "./live_support.mjs";
+import { dragOver, folderOf, kNarrow, kWide, measureOverflow, pageOf, pick, readData, runProgram, settle, testPage } from "./support.mjs";
 
 const kMostSeconds = 10;
 
-test("APageOfManyConfigurations_DrawsSoon", (context) => withBrowser(kMesa, async (browser) => {
-  const { page, messages, shoot, close } = await openLive(pageOf("hundreds"), browser, { viewport: kNarrow });
+testPage("APageOfManyConfigurations_DrawsSoon", () => openLive(pageOf("hundreds"), { viewport: kNarrow }), async ({ page, shoot }, context) => {
   const since = async (begin, what) => {
     const seconds = (Date.now() - begin) / 1000;
     context.diagnostic(`${labels.length} configurations: ${what} after ${seconds} s`);
@@ -37,12 +35,10 @@ test("APageOfManyConfigurations_DrawsSoon", (context) => withBrowser(kMesa, asyn
     assert.ok((await measureOverflow(page)) <= 0, `${viewport.width}`);
   }
   await shoot("live.hundreds");
-  assert.deepEqual(messages, []);
-  await close();
-}));
+});
 
-test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa, async (browser) => {
-  const { page, messages, shoot, close } = await openLive(pageOf("waves"), browser, { init: keepTime }), label = (await readData(page)).configurations[1].label;
+testPage("AVeryLargeScene_TravelsAsReceiversAndMap", () => openLive(pageOf("waves"), { init: keepTime }), async ({ page, shoot }, context) => {
+  const label = (await readData(page)).configurations[1].label;
   const settled = async () => {
     await settle(page);
     return page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL());
@@ -67,27 +63,4 @@ test("AVeryLargeScene_TravelsAsReceiversAndMap", (context) => withBrowser(kMesa,
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
   const said = runProgram(["advise", folderOf("waves"), "--times", await download.path(), "--light-motion", "static", "--json"]);
   assert.equal(said.status, 0, said.stderr);
-  assert.deepEqual(messages, []);
-  await close();
-}));
-
-// In a page before its scripts: the browser draws into no floats.
-const lackFloats = () => {
-  const { getExtension } = WebGL2RenderingContext.prototype;
-  WebGL2RenderingContext.prototype.getExtension = function (name) { return name === "EXT_color_buffer_float" ? null : getExtension.call(this, name); };
-};
-test("WithoutTargetsOfFloats_ThePageSaysSo_AndGoesOn", () => withBrowser(kMesa, async (browser) => {
-  const { page, messages, close } = await open(pageOf("several"), { browser, init: lackFloats });
-  const says = (place) => page.waitForFunction((where) => document.querySelector(where).textContent.includes("lacks EXT_color_buffer_float"), place);
-  await page.locator("#live").evaluate((section) => section.scrollIntoView());
-  await says(".live");
-  assert.equal(await page.locator(".live canvas").count(), 0);
-  await page.locator("select[name=cost]").selectOption({ label: "this GPU (measure)" });
-  await says(".answer form");
-  // The rest of the page works.
-  await page.locator(".picks button").last().click();
-  assert.ok(await page.locator(".stage img").first().isVisible());
-  await pick(page, "Right", { index: 3 });
-  assert.deepEqual(messages, []);
-  await close();
-}));
+});

@@ -3,9 +3,8 @@ import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import test from "node:test";
-import { compareShots, kMesa, measure, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, readData, settle, splitWords } from "./support.mjs";
+import { compareShots, measure, openLive } from "./live_support.mjs";
+import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, readData, settle, splitWords, testPage } from "./support.mjs";
 
 const canvasOf = (page) => page.locator(".live-stage canvas");
 const settled = async (page) => {
@@ -30,8 +29,7 @@ const setParameter = async (page, name, value) => {
   }, value);
 };
 
-test("ALink_HoldsAllThatIsSeen", () => withBrowser(kMesa, async (browser) => {
-  const { page, messages, close } = await openLive(pageOf("several"), browser);
+testPage("ALink_HoldsAllThatIsSeen", () => openLive(pageOf("several")), async ({ page }) => {
   const titles = (await readData(page)).places.map(({ title }) => title);
   await pick(page, "Scene", { label: titles[1] }, ".live");
   await pick(page, "Left", { label: "none" }, ".live");
@@ -50,10 +48,8 @@ test("ALink_HoldsAllThatIsSeen", () => withBrowser(kMesa, async (browser) => {
   await page.reload();
   await page.waitForSelector(".live-stage canvas");
   assert.equal(await settled(page), seen, "reloaded");
-  assert.deepEqual(messages, []);
-  await close();
 
-  const again = await openLive(pageOf("several"), browser, { hash });
+  const again = await openLive(pageOf("several"), { hash });
   assert.equal(await settled(again.page), seen, "opened");
   assert.equal(Number(await again.page.locator(".live").getByLabel("bleed_reduction").inputValue()), value);
   assert.equal(await again.page.locator(".live-stage input").inputValue(), "30");
@@ -63,17 +59,16 @@ test("ALink_HoldsAllThatIsSeen", () => withBrowser(kMesa, async (browser) => {
 
   // A link of another run, and links that nobody could have made.
   for (const bad of [hash, "#live=cubes,nobody,nobody,x,1e9,,2,3,right:radius:2", "#live=cubes,none,none,0.5,0,0,0,0,left:constructor:1,left:radius:1e99,left", "#live="]) {
-    const other = await openLive(pageOf("untrue"), browser, { hash: bad });
+    const other = await openLive(pageOf("untrue"), { hash: bad });
     await settled(other.page);
     assert.deepEqual(other.messages, [], bad);
     await other.close();
   }
-}));
+});
 
-test("TheCommand_MeasuresWhatIsSeen", (context) => withBrowser(kMesa, async (browser) => {
-  const folder = mkdtempSync(join(tmpdir(), "shadowbench-"));
-  for (const [run, filter, name, wanted] of [["ball", "vsm", "bleed_reduction", 0.7], ["odd", "nine_compares", "weight", 0.5]]) {
-    const { page, shoot, close } = await openLive(pageOf(run), browser, { viewport: kNarrow });
+for (const [run, filter, name, wanted] of [["ball", "vsm", "bleed_reduction", 0.7], ["odd", "nine_compares", "weight", 0.5]])
+  testPage(`TheCommand_MeasuresWhatIsSeen: ${run}`, () => openLive(pageOf(run), { viewport: kNarrow }), async ({ page, shoot }, context) => {
+    const folder = mkdtempSync(join(tmpdir(), "shadowbench-"));
     const data = await readData(page), labels = await page.locator(".live select").nth(2).locator("option").allTextContents();
     await pick(page, "Right", { label: labels.find((label) => label === filter || data.configurations.find((each) => each.label === label)?.filter === filter) }, ".live");
     const value = await setParameter(page, name, wanted);
@@ -110,13 +105,10 @@ test("TheCommand_MeasuresWhatIsSeen", (context) => withBrowser(kMesa, async (bro
     await page.waitForFunction(() => document.querySelector(".live").textContent.includes("not the turned one"));
     assert.ok((await measureOverflow(page)) <= 0);
     await shoot(`live.command.${run}`);
-    await close();
-  }
-  rmSync(folder, { recursive: true });
-}));
+    rmSync(folder, { recursive: true });
+  });
 
-test("ASliderOfManyDecades_GoesBackToTheRunsOwnValue_AndAWeightIsListed", () => withBrowser(kMesa, async (browser) => {
-  const { page, messages, close } = await openLive(pageOf("ball"), browser, { viewport: kNarrow });
+testPage("ASliderOfManyDecades_GoesBackToTheRunsOwnValue_AndAWeightIsListed", () => openLive(pageOf("ball"), { viewport: kNarrow }), async ({ page }) => {
   const data = await readData(page);
   await pick(page, "Right", { label: data.configurations.find(({ filter }) => filter === "vsm").label }, ".live");
   const slider = page.locator(".live").getByLabel("min_variance"), own = await slider.inputValue(), before = (await commandOf(page)).replace("1e-05", "0.00001");
@@ -128,6 +120,4 @@ test("ASliderOfManyDecades_GoesBackToTheRunsOwnValue_AndAWeightIsListed", () => 
   assert.match(await commandOf(page), /min_variance=0\b(?!\.)/);
   // What the run made weights of cannot be moved here, and is listed.
   assert.match(await page.locator(".live").textContent(), /weights: radius \d+/);
-  assert.deepEqual(messages, []);
-  await close();
-}));
+});

@@ -4,12 +4,14 @@ import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync }
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { deflateSync, inflateSync } from "node:zlib";
-import { folderOf, launch, open, readPng, runProgram } from "./support.mjs";
+import { folderOf, open, readPng, runProgram } from "./support.mjs";
 
 // Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
 export const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-export const openLive = async (file, browser, options = {}) => {
-  const opened = await open(file, { browser, ...options });
+// Opens a page where WebGL draws, and its section Live too.
+export const openDrawing = (file, options) => open(file, { args: kMesa, ...options });
+export const openLive = async (file, options) => {
+  const opened = await openDrawing(file, options);
   await opened.page.locator("#live").evaluate((section) => section.scrollIntoView());
   await opened.page.waitForSelector(".live canvas");
   return opened;
@@ -29,14 +31,6 @@ export const loadTimes = async (page, name, text) => {
   await page.waitForFunction((said) => document.querySelector(".live").textContent.includes(said + ":"), name);
   rmSync(folder, { recursive: true });
   return page.locator(".live p.note", { hasText: `${name}:` }).textContent();
-};
-export const withBrowser = async (args, action) => {
-  const browser = await launch(args);
-  try {
-    await action(browser);
-  } finally {
-    await browser.close();
-  }
 };
 // Has the program measure what some words name, as quickly as it can; gives the cells.
 export const measure = (words, out, cwd, phases = 1) => {
@@ -92,7 +86,6 @@ export const keepTime = `(${(msPerLetter) => {
 export const compareShots = (shots, far = 8) => {
   const [a, b] = shots.map(readPng), gaps = [];
   if (a.width !== b.width || a.height !== b.height) throw new Error("the shots have different sizes");
-  for (let pixel = 0; pixel < a.width * a.height; ++pixel)
-    for (let i = 0; i < 3; ++i) gaps.push(Math.abs(a.pixels[pixel * a.channels + Math.min(i, a.channels - 1)] - b.pixels[pixel * b.channels + Math.min(i, b.channels - 1)]));
+  for (let i = 0; i < a.data.length; ++i) if (i % 4 < 3) gaps.push(Math.abs(a.data[i] - b.data[i]));
   return { mean: gaps.reduce((sum, gap) => sum + gap, 0) / gaps.length, share: gaps.filter((gap) => gap > far).length / gaps.length };
 };

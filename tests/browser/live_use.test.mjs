@@ -1,19 +1,17 @@
-// The section that draws with WebGL 2, as its readers use it: timed, turned, taken away, on a phone and without WebGL.
+// The section that draws with WebGL 2, as its readers use it: timed, turned, taken away and on a phone.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import test from "node:test";
-import { changeFrames, keepContexts, keepTime, kMesa, kMsPerLetter, loadTimes, openLive, press, readTable, withBrowser } from "./live_support.mjs";
-import { dragOver, folderOf, kNarrow, open, pageOf, pick, readData, runProgram, settle } from "./support.mjs";
+import { changeFrames, keepContexts, keepTime, kMsPerLetter, loadTimes, openDrawing, openLive, press, readTable } from "./live_support.mjs";
+import { dragOver, folderOf, kNarrow, pageOf, pick, readData, runProgram, settle, testPage } from "./support.mjs";
 
 const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
 
-test("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => withBrowser(kMesa, async (browser) => {
+testPage("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => openLive(pageOf("odd"), { init: keepTime }), async ({ page }) => {
   const letters = {};  // more than its empty lookup has: in each scene the same
   changeFrames("odd", "letters", ({ programs }) => {
     const empty = programs.find(({ label }) => label === "empty lookup").fragment.length;
     programs.forEach(({ label, fragment }) => (letters[label] = fragment.length - empty));
   });
-  const { page, messages, close } = await openLive(pageOf("odd"), browser, { init: keepTime });
   await press(page, "Time on this GPU");
   for (const [filter, , , , time] of await readTable(page)) {
     const wanted = kMsPerLetter * letters[`${filter} lookup`];
@@ -56,12 +54,9 @@ test("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => withBrowser(kMesa, asyn
   for (const [i, text] of bad.entries()) assert.match(await loadTimes(page, `${i}.json`, text), /This is no gpu-times\.json that a page of this run saved/);
   assert.match(await loadTimes(page, "f.json", spoil((file) => { file.renderer = "Another GPU"; })), /its times are among the costs/);
   await chooseCost(page, "moving light, Another GPU");
-  assert.deepEqual(messages, []);
-  await close();
-}));
+});
 
-test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () => withBrowser(kMesa, async (browser) => {
-  const { page, messages, shoot, close } = await openLive(pageOf("ball"), browser);
+testPage("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () => openLive(pageOf("ball")), async ({ page, shoot }) => {
   const canvas = page.locator(".live canvas"), look = async () => (await canvas.screenshot()).toString("base64"), note = page.locator(".live p.note").nth(1);
   const turn = async () => {
     await dragOver(canvas, [300, 200], [80, 10]);
@@ -92,12 +87,10 @@ test("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt", () 
   const said = await page.locator(".live .results").textContent(), rmse = Number(/The mean of 256 maps .* RMSE of ([\d.]+) to the traced truth/.exec(said)[1]);
   assert.ok(rmse > 0 && rmse < 0.01, said);
   for (const [filter, own] of await readTable(page)) assert.match(own, /^[\d.e-]+$/, filter);
-  assert.deepEqual(messages, []);
-  await close();
-}));
+});
 
-test("Layers_AreVisibility_AndItsErrorAgainstTheTruth", (context) => withBrowser(kMesa, async (browser) => {
-  const { page, messages, shoot, close } = await openLive(pageOf("several"), browser), slider = page.locator(".live-stage input");
+testPage("Layers_AreVisibility_AndItsErrorAgainstTheTruth", () => openLive(pageOf("several")), async ({ page, shoot }, context) => {
+  const slider = page.locator(".live-stage input");
   const look = async (layer, split) => {
     await pick(page, "Layer", layer, ".live");
     await slider.fill(`${split}`);
@@ -130,22 +123,17 @@ test("Layers_AreVisibility_AndItsErrorAgainstTheTruth", (context) => withBrowser
   await dragOver(page.locator(".live-stage canvas"), [60, 60], [30, 0]);
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("mean of 256 maps"), null, { timeout: 120000 });
   assert.equal((await page.locator(".live > p.note", { hasText: "mean of" }).textContent()).match(/No rays were traced there/g).length, 1);
-  assert.deepEqual(messages, []);
-  await close();
-}));
+});
 
-test("AContextThatIsLost_IsSaid", () => withBrowser(kMesa, async (browser) => {
-  const { page, close } = await openLive(pageOf("ball"), browser, { init: keepContexts });
+testPage("AContextThatIsLost_IsSaid", () => openLive(pageOf("ball"), { init: keepContexts }), async ({ page }) => {
   await page.evaluate(() => window.contexts[0].getExtension("WEBGL_lose_context").loseContext());
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("the browser has taken the GPU away"));
   await page.locator(".live").getByRole("button", { name: "Check against the run" }).click();
   await settle(page);
   assert.match(await page.locator(".live [role=status]").textContent(), /Nothing is drawn now/, "also once a check has ended");
-  await close();
-}));
+});
 
-test("BeforeItIsReached_AStillAndASentenceAreThere_AndNotesAreWholeAfterwards", () => withBrowser(kMesa, async (browser) => {
-  const { page, close } = await open(pageOf("several"), { browser, viewport: { ...kNarrow, width: 700 } });
+testPage("BeforeItIsReached_AStillAndASentenceAreThere_AndNotesAreWholeAfterwards", () => openDrawing(pageOf("several"), { viewport: { ...kNarrow, width: 700 } }), async ({ page }) => {
   const still = page.locator(".live img");
   assert.match(await page.locator(".live").textContent(), /once you scroll to this section/);
   assert.ok(await still.evaluate(async (image) => (await image.decode(), image.naturalWidth > 0)));
@@ -155,13 +143,4 @@ test("BeforeItIsReached_AStillAndASentenceAreThere_AndNotesAreWholeAfterwards", 
   await press(page, "Check against the run");
   for (const note of await page.locator(".live p.note, .live .unsaid").all())
     assert.ok(await note.evaluate((each) => each.scrollWidth <= each.clientWidth + 1 && each.getBoundingClientRect().right <= innerWidth), await note.textContent());
-  await close();
-}));
-
-test("WithoutWebGl_ThePageSaysSo", () => withBrowser(["--disable-gpu", "--disable-3d-apis"], async (browser) => {
-  const opened = await open(pageOf("several"), { browser });
-  await opened.page.locator("#live").evaluate((section) => section.scrollIntoView());
-  await opened.page.waitForFunction(() => document.querySelector(".live").textContent.includes("no WebGL 2"));
-  assert.deepEqual(opened.messages.filter((text) => /Error/.test(text)), []);
-  await opened.close();
-}));
+});

@@ -1,22 +1,26 @@
 // What the tests of the pages share. CTest puts into the environment where the program, the runs and the packages are.
+import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { join } from "node:path";
-import { after, before } from "node:test";
+import { basename, join } from "node:path";
+import test, { after } from "node:test";
 import { pathToFileURL } from "node:url";
-import { inflateSync } from "node:zlib";
 
 const { SHADOWBENCH_PROGRAM: kProgram, SHADOWBENCH_BROWSER: kFolder, SHADOWBENCH_CHROMIUM: kChromium, SHADOWBENCH_SHOTS: kShots } = process.env;
 if (!kProgram || !kFolder || !kChromium) throw new Error("Run these tests with 'ctest -L browser': it names the program, its runs and the browser.");
 const require = createRequire(join(kFolder, "package.json"));
-const kAxe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+const { PNG } = require("pngjs"), kAxe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 export const kWide = { width: 1400, height: 900 }, kNarrow = { width: 400, height: 800 };
 
-let common;
-export const launch = (args) => require("playwright-core").chromium.launch({ executablePath: kChromium, args });
-before(async () => { common = await launch(["--disable-gpu"]); });
-after(() => common.close());
+// One browser for each list of arguments serves all tests of a file.
+const browsers = new Map();
+const launch = (args) => {
+  const key = args.join(" ");
+  if (!browsers.has(key)) browsers.set(key, require("playwright-core").chromium.launch({ executablePath: kChromium, args }));
+  return browsers.get(key);
+};
+after(async () => { for (const each of browsers.values()) await (await each).close(); });
 
 export const folderOf = (run) => join(kFolder, "runs", run);
 export const pageOf = (run, file = "index.html") => join(folderOf(run), file);
@@ -28,8 +32,8 @@ export const splitWords = (command) => execFileSync("sh", ["-c", command.replace
 
 // Opens a page from disk in a profile of its own, and keeps every word that the console gets; `init` runs in it before
 // its own scripts.
-export const open = async (file, { hash = "", waits = true, browser = common, init, ...options } = {}) => {
-  const context = await browser.newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
+export const open = async (file, { hash = "", waits = true, args = ["--disable-gpu"], init, ...options } = {}) => {
+  const context = await (await launch(args)).newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
   page.setDefaultTimeout(60000);  // a busy machine opens pages slowly
   if (init) await page.addInitScript(init);
   // Chromium's own word on its software rasteriser, which draws the section Live wherever that is near, is no fault of a page.
@@ -42,6 +46,16 @@ export const open = async (file, { hash = "", waits = true, browser = common, in
   return { page, messages, shoot, close: () => context.close() };
 };
 export const openRun = (run, options) => open(pageOf(run), options);
+// Tests a page that a function opens. Its console stays empty, but for what `allows` matches.
+export const testPage = (name, opens, act, allows = /$^/) => test(name, async (context) => {
+  const opened = await opens();
+  try {
+    await act(opened, context);
+    assert.deepEqual(opened.messages.filter((text) => !allows.test(text)), []);
+  } finally {
+    await opened.close();
+  }
+});
 // What stands below the screen is made when it is scrolled to.
 export const openViewer = async (file, options) => {
   const opened = await open(file, options);
@@ -81,30 +95,14 @@ export const dragOver = async (locator, [left, top], [across, down]) => {
 export const pick = (page, title, value, within = ".viewer") =>
   page.locator(within).getByRole("combobox", { name: title, exact: true }).selectOption(value);
 export const labels = (page) => page.locator(".viewer .panes canvas:visible").evaluateAll((all) => all.map((each) => each.getAttribute("aria-label")));
-// The page's address with all that the reader chose: it is written 300 ms after the last choice by a timer of the page, and
-// timers of one page end in order however busy the machine is.
+// The page's address with all that the reader chose.
 export const linkOf = async (page) => {
-  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve, 600))));
-  await page.waitForFunction(() => location.hash !== "").catch(() => {});
+  await settle(page);
   return page.evaluate(() => location.hash);
 };
 export const hashOf = async (page) => decodeURIComponent(await linkOf(page));
-// The pixels of a PNG with 8 bits a channel, which screenshots, canvases and the program's pictures are.
-export const readPng = (png) => {
-  const chunks = [], [width, height] = [png.readUInt32BE(16), png.readUInt32BE(20)], channels = { 0: 1, 2: 3, 4: 2, 6: 4 }[png[25]], row = width * channels;
-  if (png[24] !== 8 || !channels || png[28] !== 0) throw new Error("a PNG of another kind");
-  for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at)) if (png.toString("latin1", at + 4, at + 8) === "IDAT") chunks.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
-  const coded = inflateSync(Buffer.concat(chunks)), pixels = new Uint8Array(row * height);
-  for (let y = 0, from = 0, to = 0; y < height; ++y) {
-    const filter = coded[from++];
-    for (let i = 0; i < row; ++i, ++from, ++to) {
-      const left = i < channels ? 0 : pixels[to - channels], up = y === 0 ? 0 : pixels[to - row], corner = i < channels || y === 0 ? 0 : pixels[to - row - channels];
-      const [a, b, c] = [Math.abs(up - corner), Math.abs(left - corner), Math.abs(left + up - 2 * corner)];
-      pixels[to] = coded[from] + [0, left, up, (left + up) >> 1, a <= b && a <= c ? left : b <= c ? up : corner][filter];
-    }
-  }
-  return { width, height, channels, pixels };
-};
+// Four channels of 8 bits a pixel.
+export const readPng = (png) => PNG.sync.read(png);
 // How often each colour is in one pane.
 export const colours = async (page, index = 0) => {
   const canvas = page.locator(".viewer .panes canvas").nth(index);
@@ -115,22 +113,29 @@ export const colours = async (page, index = 0) => {
     const top = drawn.getBoundingClientRect().top + scrollY;
     style.top = `${Math.ceil(top) - top}px`;
   });
-  const { channels, pixels } = readPng(await canvas.screenshot()), counts = new Map();
-  for (let i = 0; i < pixels.length; i += channels) {
-    const colour = (pixels[i] << 16) | (pixels[i + 1] << 8) | pixels[i + 2];
+  const { data } = readPng(await canvas.screenshot()), counts = new Map();
+  for (let i = 0; i < data.length; i += 4) {
+    const colour = (data[i] << 16) | (data[i + 1] << 8) | data[i + 2];
     counts.set(colour, (counts.get(colour) ?? 0) + 1);
   }
   return Object.fromEntries([...counts].map(([colour, count]) => [[colour >> 16, (colour >> 8) & 255, colour & 255].join(), count]));
 };
 
 // Writes a page beside a run's own, whose data a function has changed.
-export const changePage = (run, name, edit) => {
+let changed = 0;
+export const changePage = (run, edit) => {
   const html = readFileSync(pageOf(run), "utf8"), pattern = /(id="run">)([^]*?)(<\/script>)/, data = JSON.parse(pattern.exec(html)[2]);
   edit(data);
-  const file = pageOf(run, name), text = JSON.stringify(data).replaceAll("<", "\\u003c");
+  const file = pageOf(run, `${basename(process.argv[1])}.${++changed}.html`), text = JSON.stringify(data).replaceAll("<", "\\u003c");
   writeFileSync(file, html.replace(pattern, (_, begin, old, end) => begin + text + end));
   return file;
 };
+// Texts of a chart that lie over one another.
+export const listOverlaps = (svg) => svg.evaluate((chart) => {
+  const boxes = [...chart.querySelectorAll("text")].map((text) => [text.textContent, text.getBBox()]);
+  const isOver = (p, q) => p.x + 1 < q.x + q.width && q.x + 1 < p.x + p.width && p.y + 4 < q.y + q.height && q.y + 4 < p.y + p.height;
+  return boxes.flatMap(([a, p], i) => boxes.slice(i + 1).filter(([, q]) => isOver(p, q)).map(([b]) => `${a} over ${b}`));
+});
 // Repeats the configurations of a page, each with its cells, until there are as many as wanted.
 export const multiply = (data, count) => {
   const { configurations, cells, scopes } = data;
