@@ -4,7 +4,12 @@ import atexit
 import json
 import os
 import subprocess
+import sys
 import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "exr"))
+from recompute import ExrFile  # noqa: E402
 
 
 class Window:
@@ -18,8 +23,9 @@ class Window:
         command = [str(program), "view", *arguments, "--out", str(folder / "saved"), "--log", str(self.log)]
         # A cache of its own, or a truth that an earlier test traced would be there at once.
         environment = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"), **(more_environment or {}))
+        self.folder = folder
         self.process = subprocess.Popen(command, env=environment, stdout=self.errors.open("w"), stderr=subprocess.STDOUT)
-        atexit.register(self.process.kill)  # where a test fails
+        atexit.register(self.process.kill)  # where no first frame comes
         self.wait("the first frame", lambda frame: True, 60.0)
         # Nobody else on this display gives a window the keyboard.
         self.send("search", "--sync", "--name", "^shadowbench: ", "windowfocus", "--sync")
@@ -67,10 +73,12 @@ class Window:
         time.sleep(seconds)
         self.poll()
 
-    def now(self):
-        """The number of frames so far: what wait() takes as `since`."""
+    def after(self, act, what, holds=lambda frame: frame["drawn"]):
+        """The first frame after an action for which `holds` is true."""
         self.poll()
-        return len(self.frames)
+        since = len(self.frames)
+        act()
+        return self.wait(what, holds, since=since)
 
     @staticmethod
     def send(*words):
@@ -130,16 +138,23 @@ class Window:
         self.key(key)
         return self.wait_event(f"saved {what}")
 
-    def close(self):
+    def picture(self, part):
+        """Width, height and the first channel of a part of the picture that it saves now."""
+        ((width, height, channels, values),) = ExrFile(Path(self.save("ctrl+p", "picture") + ".exr"), self.folder).unpack(part)
+        return width, height, list(values)[::channels]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if kind:
+            self.process.kill()
+            self.process.wait()
+            return
         self.key("ctrl+q")
         code = self.process.wait(timeout=30)
         said = self.errors.read_text()
         assert code == 0 and not said, f"exit code {code}: {said}"
-
-    def kill(self):
-        if self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
 
 
 class Display:
