@@ -15,22 +15,17 @@ std::string message_of(const std::function<void()>& action) {
   return error.what();
 }
 
-TEST(AtomicFile, NotCommitted_LeavesNothing) {
-  const TestFolder folder;
-  {
-    AtomicFile file(folder.path() / "results.json");
-    file.write("half");
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / "results.json"));
-    EXPECT_EQ(count_files(folder.path()), 1u);
-  }
-  EXPECT_EQ(count_files(folder.path()), 0u);
-}
-
-TEST(AtomicFile, NotCommitted_KeepsTheOldFile) {
+TEST(AtomicFile, NotCommitted_LeavesTheOldFileAndNothingElse) {
   const TestFolder folder;
   write_text_file(folder.path() / "a.txt", "old");
-  { AtomicFile(folder.path() / "a.txt").write("new"); }
+  {
+    AtomicFile file(folder.path() / "a.txt");
+    file.write("half");
+    EXPECT_EQ(read_text(folder.path() / "a.txt"), "old");
+    EXPECT_EQ(count_files(folder.path()), 2u);
+  }
   EXPECT_EQ(read_text(folder.path() / "a.txt"), "old");
+  EXPECT_EQ(count_files(folder.path()), 1u);
 }
 
 TEST(AtomicFile, Committed_IsWholeAndAlone) {

@@ -78,19 +78,11 @@ CellRecord make_full_cell() {
   cell.ratio_to_none.static_light = Ratio{1.5, {1.25, 1.75}};
   cell.ratio_to_none.moving = Ratio{2.5, {2.25, 2.75}};
   cell.range = {filters::Border::kEdge, false, false};
-  cell.error.kernel_rmse = 0.04;
   cell.attribution.estimator.share = -0.1;
   cell.images = {"a.png", "b.png", "c.png",   "d.png", "e.exr",
                  "g.png", "h.png", "all.png", "i.png", "j.js",
                  "k.png", "l.js",  "m.js",    "vsm",   TileRecord{1, 2, 3, 4},
                  "n.png", "o.png", 16};
-  cell.stability.negative_variance_texels = 3;
-  cell.stability.safe_exponent = 11.25;
-  cell.stability.bound_exact_violations = 5;
-  cell.coverage.texels_per_pixel = 3.5;
-  cell.coverage.fewest_texels_per_pixel = 0.25;
-  cell.coverage.map_used = 0.75;
-  cell.coverage.map_filled = 0.5;
   fill_metrics(cell);
   cell.fit = "view snapped";
   cell.light = "120,-35.5";
