@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { isDeepStrictEqual } from "node:util";
-import { changePage, folderOf, linkOf, open, openRun, readData, readResults, runProgram, splitWords, testPage } from "./support.mjs";
+import { changePage, folderOf, linkOf, open, openRun, readResults, runProgram, splitWords, testPage } from "./support.mjs";
 
 // Parameters as a reader names them: what the light's width sets is "light".
 const nameParams = ({ params, kernel }) => (kernel.by_light ? { ...params, [kernel.by_light]: "light" } : params);
@@ -22,14 +22,14 @@ const runAdvice = (command, ...more) => {
   return { status, advice: JSON.parse(stdout) };
 };
 const readCommand = (page, i = 0) => page.locator(".reasons code").nth(i).textContent();
-const compare = async (page, run) => {
+const compare = async ({ page, data }, run) => {
   const command = await readCommand(page), { status, advice } = runAdvice(command), headline = await page.locator(".choice").textContent();
   assert.equal(advice.fits, status === 0);
   const judged = await page.evaluate(() => {
     const { keeping, beaten, failing, unjudged, noGain } = shadowbench.answer.judge();
     return { keeping: keeping.length, beaten: beaten.length, failing: failing.length, unjudged: unjudged.length, noGain: noGain.length };
   });
-  const data = await readData(page), indexOf = ({ settings }) => findConfiguration(run, data, settings), labelOf = (each) => data.configurations[indexOf(each)].label;
+  const indexOf = ({ settings }) => findConfiguration(run, data, settings), labelOf = (each) => data.configurations[indexOf(each)].label;
   const counts = { keeping: advice.keeping.length, beaten: advice.beaten.length, failing: advice.failing.length, unjudged: advice.not_judged.length, noGain: advice.no_better_than_none.length };
   assert.deepEqual(judged, counts, command);
   if (status === 1) {
@@ -53,8 +53,8 @@ const compare = async (page, run) => {
   return status;
 };
 // Each scene's row is what the command says with --scene.
-const compareScenes = async (page, run) => {
-  const command = await readCommand(page), data = await readData(page);
+const compareScenes = async ({ page, data }, run) => {
+  const command = await readCommand(page);
   for (const { scene, left_out: leftOut } of data.scopes.slice(1)) {
     const rows = page.locator(".picks tbody tr"), own = rows.filter({ has: page.locator("th", { hasText: scene }) });
     if (leftOut) continue;
@@ -77,25 +77,25 @@ const move = (page, { name }, position) => page.locator(`.sliders input[name="${
 const choose = (page, name, value) => page.locator(`.limits select[name="${name}"]`).selectOption(value);
 
 for (const run of ["several", "odd", "untrue", "single", "mixed"]) {
-  testPage(`OnLoad_TheAnswerIsThatOfTheProgram: ${run}`, () => openRun(run), async ({ page }) => {
-    await compare(page, run);
-    await compareScenes(page, run);
+  testPage(`OnLoad_TheAnswerIsThatOfTheProgram: ${run}`, () => openRun(run), async (opened) => {
+    await compare(opened, run);
+    await compareScenes(opened, run);
   });
 }
 
 // tests/report/pages/picks_script.cpp asks the script what the program is asked, under limits; here they are moved.
-testPage("SlidersAndChoices_MoveTheAnswerAsTheProgramDoes", () => openAnswer("several"), async ({ page }) => {
-  const exits = new Set(), sliders = await listSliders(page);
+testPage("SlidersAndChoices_MoveTheAnswerAsTheProgramDoes", () => openAnswer("several"), async (opened) => {
+  const { page } = opened, exits = new Set(), sliders = await listSliders(page);
   assert.ok(sliders.length >= 5, String(sliders.length));
   for (const slider of sliders) {
     await move(page, slider, Math.floor(slider.max / 2));
-    exits.add(await compare(page, "several"));
+    exits.add(await compare(opened, "several"));
     await move(page, slider, slider.max);
   }
   for (const [name, option] of [["cost", "static"], ["class", "medium"]]) {
     await choose(page, name, option);
-    await compare(page, "several");
-    await compareScenes(page, "several");
+    await compare(opened, "several");
+    await compareScenes(opened, "several");
   }
   const soft = page.locator('.limits input[name="soft"]');
   if (await soft.isVisible()) {
@@ -104,7 +104,7 @@ testPage("SlidersAndChoices_MoveTheAnswerAsTheProgramDoes", () => openAnswer("se
     await soft.uncheck();
   }
   for (const slider of await listSliders(page)) await move(page, slider, 0);
-  exits.add(await compare(page, "several"));
+  exits.add(await compare(opened, "several"));
   for (const slider of await listSliders(page)) await move(page, slider, slider.max);
   const rmse = page.locator('.sliders input[name="error.rmse"]'), before = Number(await rmse.inputValue());
   await rmse.focus();
@@ -121,8 +121,7 @@ testPage("ALimitIsNeverBelowNought_ThoughATimeMayBe", () => open(changePage("sev
   assert.match(await readCommand(page), / --max-ms 0 /);
 });
 
-testPage("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", () => openRun("several"), async ({ page }) => {
-  const data = await readData(page);
+testPage("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", () => openRun("several"), async ({ page, data }) => {
   const stage = page.locator(".split .stage"), names = () => page.locator(".split figcaption bdi").allTextContents();
   const [first] = await page.evaluate(() => shadowbench.answer.picks());
   assert.deepEqual((await names())[0], "truth");
@@ -155,8 +154,8 @@ testPage("ThePicture_ShowsThePickAgainstTheTruth_AndOpensTheViewerThere", () => 
   assert.match(await linkOf(page), /view=/);
 });
 
-testPage("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven", () => openAnswer("odd"), async ({ page }) => {
-  const { scenes } = readResults("odd"), { configurations, places } = await readData(page);
+testPage("TheCommandForTheWindow_NamesSceneAndFilterAsTheyWereGiven", () => openAnswer("odd"), async ({ page, data }) => {
+  const { scenes } = readResults("odd"), { configurations, places } = data;
   const write = async (index, place) => splitWords(await page.evaluate((pick) => shadowbench.answer.writeView(...pick), [index, place])).join("|");
   const [button] = await page.locator(".picks button").all();
   await button.click();

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { kNarrow, kWide, listOverlaps, open, pageOf, readPng, testPage } from "./support.mjs";
 
 for (const [name, viewport] of [["wide", kWide], ["narrow", kNarrow]])
-  testPage(`Charts_AnswerToThePointer_AndAreSaved: ${name}`, () => open(pageOf("bias", "bias.html"), { viewport, waits: false }), async ({ page, shoot }) => {
+  testPage(`Charts_AnswerToThePointer_AndAreSaved: ${name}`, () => open(pageOf("bias", "bias.html"), { viewport, waits: false }), async ({ page }) => {
     const figure = page.locator("figure.chart").first(), svg = figure.locator("svg").first(), marks = svg.locator("path[transform]");
     await svg.scrollIntoViewIfNeeded();
     for (const each of await page.locator(".holder svg").all()) {
@@ -28,7 +28,6 @@ for (const [name, viewport] of [["wide", kWide], ["narrow", kNarrow]])
     assert.match((await save("SVG")).toString(), /^<svg [^]*<path [^>]*transform[^]*<\/svg>\s*$/);
     const { width, data } = readPng(await save("PNG"));
     assert.ok(width > 1000 && data[0] === 255 && new Set(data).size > 10, "not a white sheet");
-    await shoot(`charts.${name}`);
   });
 
 testPage("CurvesThatSayLeast_AreHidden_UntilTheirNamesAreClicked", () => open(pageOf("stress", "stress.html"), { waits: false }), async ({ page }) => {

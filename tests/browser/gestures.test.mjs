@@ -12,7 +12,7 @@ const wheel = async (page, by) => {
   await page.mouse.wheel(0, by);
   await page.evaluate(() => window.wheeled);
 };
-testPage("Gestures_PanSplitCropAndPinch", () => openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,slider,120,67.5,4", hasTouch: true }), async ({ page, shoot }) => {
+testPage("Gestures_PanSplitCropAndPinch", () => openViewer(kPage, { hash: "#view=cubes,truth,none,visibility,slider,120,67.5,4", hasTouch: true }), async ({ page }) => {
   await page.waitForSelector(".viewer tbody tr", { state: "attached" });
   const box = await page.locator(".viewer .panes canvas").first().boundingBox(), step = 240 / box.width / 4;
   const middle = [box.x + box.width / 2, box.y + box.height / 2];
@@ -33,7 +33,6 @@ testPage("Gestures_PanSplitCropAndPinch", () => openViewer(kPage, { hash: "#view
   await drag(page, [box.x + 500, box.y + 200], [box.x + 600, box.y + 280]);
   await page.keyboard.up("Shift");
   assert.equal((await hashOf(page)).split(",").length, 9);
-  await shoot("gestures");
   const client = await page.context().newCDPSession(page);
   const touch = (type, apart) => client.send("Input.dispatchTouchEvent", { type, touchPoints: apart === null ? []
     : [{ x: middle[0] - apart, y: middle[1], id: 0 }, { x: middle[0] + apart, y: middle[1], id: 1 }] });
@@ -53,11 +52,10 @@ testPage("MissingAndDamagedFiles_AreNamed_AndTheRestWorks", () => {
   writeFileSync(join(folder, "images/cubes.pcf2x2.values.js"), readFileSync(join(folder, "images/cubes.pcf2x2.values.js"), "utf8").replace(/"data": ?"[^"]{40}/, '"data": "'));
   rmSync(join(folder, "images/cubes.tent3x3.picture.png"));
   return openViewer(join(folder, "index.html"), { hash: "#view=cubes,none,pcf2x2,visibility,side,0,0,1" });
-}, async ({ page, shoot }) => {
+}, async ({ page }) => {
   await page.waitForSelector(".viewer tbody tr", { state: "attached" });
   assert.deepEqual(await page.locator(".viewer .message").allTextContents(), ["images/cubes.none.values.js cannot be read: the file is not beside this page.",
     "images/cubes.pcf2x2.values.js cannot be read: it is damaged or cut short."]);
-  await shoot("missing");
   await pick(page, "Layer", "picture");
   await pick(page, "Right", { label: "tent3x3" });
   await settle(page);
@@ -98,14 +96,13 @@ const nameMany = (data) => {
 };
 for (const viewport of [kWide, kNarrow]) {
   const hash = "#view=" + ["cubes", kNames[0], kNames[3], "visibility", "side", "9", "9", "1", "10-10-50-50"].map(encodeURIComponent);
-  testPage(`ManyFiltersWithOddNames_StayUsable: ${viewport.width}`, () => openViewer(changePage("several", nameMany), { viewport, hash }), async ({ page, shoot }) => {
+  testPage(`ManyFiltersWithOddNames_StayUsable: ${viewport.width}`, () => openViewer(changePage("several", nameMany), { viewport, hash }), async ({ page }) => {
     await showCrops(page);
     await settle(page);
     assert.equal(await page.locator(".viewer .said").textContent(), "");
     assert.ok(await page.locator(".viewer tbody tr").count() <= 15, "the values of few filters are loaded at first");
     assert.equal(await page.locator(".viewer b").count(), 0);
     assert.ok(await measureOverflow(page) <= 0);
-    await shoot("many_" + viewport.width);
     await pick(page, "Right", { label: kNames[1] });
     await settle(page);
     assert.match(await hashOf(page), /مرشح الظل/);

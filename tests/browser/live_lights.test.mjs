@@ -5,16 +5,16 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
 import { compareShots, measure, openLive, press } from "./live_support.mjs";
-import { pageOf, pick, readData, settle, splitWords } from "./support.mjs";
+import { pageOf, pick, settle, splitWords } from "./support.mjs";
 
 const kScene = new URL("../../data/scenes/teaching/three_lights.toml", import.meta.url);
 // The right side's picture with camera and light turned so, and the page.
 const drawTurned = async (run, place, filter, camera, light) => {
   const fields = [place, filter, filter, 0.5, ...camera, ...light].map(encodeURIComponent).join();
-  const { page, messages, close } = await openLive(pageOf(run), { hash: `#live=${fields}` });
+  const { page, messages, data, close } = await openLive(pageOf(run), { hash: `#live=${fields}` });
   await settle(page);
   const picture = await page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL().split(",")[1]);
-  const said = await page.locator(".live").textContent(), command = await page.locator(".live code").textContent(), data = await readData(page);
+  const said = await page.locator(".live").textContent(), command = await page.locator(".live code").textContent();
   assert.deepEqual(messages, []);
   await close();
   return { picture: Buffer.from(picture, "base64"), said, words: splitWords(command), data };

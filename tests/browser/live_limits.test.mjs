@@ -2,17 +2,17 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { compareShots, keepTime, openLive, press, readTable } from "./live_support.mjs";
-import { dragOver, folderOf, kNarrow, kWide, measureOverflow, pageOf, pick, readData, runProgram, settle, testPage } from "./support.mjs";
+import { dragOver, folderOf, kNarrow, kWide, measureOverflow, pageOf, pick, runProgram, settle, testPage } from "./support.mjs";
 
 const kMostSeconds = 10;
 
-testPage("APageOfManyConfigurations_DrawsSoon", () => openLive(pageOf("hundreds"), { viewport: kNarrow }), async ({ page, shoot }, context) => {
+testPage("APageOfManyConfigurations_DrawsSoon", () => openLive(pageOf("hundreds"), { viewport: kNarrow }), async ({ page, data }, context) => {
   const since = async (begin, what) => {
     const seconds = (Date.now() - begin) / 1000;
     context.diagnostic(`${labels.length} configurations: ${what} after ${seconds} s`);
     return seconds;
   };
-  const begin = Date.now(), labels = (await readData(page)).configurations.map(({ label }) => label);
+  const begin = Date.now(), labels = data.configurations.map(({ label }) => label);
   assert.equal(labels.length, 400);
   const isDrawn = (name) => page.waitForFunction((right) => {
     const canvas = document.querySelector(".live-stage canvas");
@@ -34,18 +34,17 @@ testPage("APageOfManyConfigurations_DrawsSoon", () => openLive(pageOf("hundreds"
     await page.setViewportSize(viewport);
     assert.ok((await measureOverflow(page)) <= 0, `${viewport.width}`);
   }
-  await shoot("live.hundreds");
 });
 
-testPage("AVeryLargeScene_TravelsAsReceiversAndMap", () => openLive(pageOf("waves"), { init: keepTime }), async ({ page, shoot }, context) => {
-  const label = (await readData(page)).configurations[1].label;
+testPage("AVeryLargeScene_TravelsAsReceiversAndMap", () => openLive(pageOf("waves"), { init: keepTime }), async ({ page, data }, context) => {
+  const label = data.configurations[1].label;
   const settled = async () => {
     await settle(page);
     return page.locator(".live-stage canvas").evaluate((canvas) => canvas.toDataURL());
   };
   await pick(page, "Right", { label }, ".live");
   await page.locator(".live-stage input").fill("0");
-  const before = await settled(), data = await readData(page), own = data.cells.find(({ configuration }) => configuration === 1);
+  const before = await settled(), own = data.cells.find(({ configuration }) => configuration === 1);
   const gap = compareShots([Buffer.from(before.split(",")[1], "base64"), readFileSync(pageOf("waves", decodeURI(own.picture)))]);
   context.diagnostic(`the picture differs from the run's by ${gap.mean} of 255`);
   assert.ok(gap.mean < 0.1, JSON.stringify(gap));
@@ -53,7 +52,6 @@ testPage("AVeryLargeScene_TravelsAsReceiversAndMap", () => openLive(pageOf("wave
   await dragOver(page.locator(".live-stage canvas"), [100, 60], [60, 0]);
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("Camera and light cannot move: the scene has more triangles"));
   assert.equal(await settled(), before);
-  await shoot("live.large");
   await page.locator(".live").getByRole("button", { name: "As it was" }).click();
   assert.equal(await settled(), before);
   await press(page, "Time on this GPU");

@@ -4,7 +4,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { compareShots, measure, openLive } from "./live_support.mjs";
-import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, readData, settle, splitWords, testPage } from "./support.mjs";
+import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, settle, splitWords, testPage } from "./support.mjs";
 
 const canvasOf = (page) => page.locator(".live-stage canvas");
 const settled = async (page) => {
@@ -29,8 +29,8 @@ const setParameter = async (page, name, value) => {
   }, value);
 };
 
-testPage("ALink_HoldsAllThatIsSeen", () => openLive(pageOf("several")), async ({ page }) => {
-  const titles = (await readData(page)).places.map(({ title }) => title);
+testPage("ALink_HoldsAllThatIsSeen", () => openLive(pageOf("several")), async ({ page, data }) => {
+  const titles = data.places.map(({ title }) => title);
   await pick(page, "Scene", { label: titles[1] }, ".live");
   await pick(page, "Left", { label: "none" }, ".live");
   await pick(page, "Right", { label: "tent3x3" }, ".live");
@@ -67,9 +67,9 @@ testPage("ALink_HoldsAllThatIsSeen", () => openLive(pageOf("several")), async ({
 });
 
 for (const [run, filter, name, wanted] of [["ball", "vsm", "bleed_reduction", 0.7], ["odd", "nine_compares", "weight", 0.5]])
-  testPage(`TheCommand_MeasuresWhatIsSeen: ${run}`, () => openLive(pageOf(run), { viewport: kNarrow }), async ({ page, shoot }, context) => {
+  testPage(`TheCommand_MeasuresWhatIsSeen: ${run}`, () => openLive(pageOf(run), { viewport: kNarrow }), async ({ page, data }, context) => {
     const folder = mkdtempSync(join(tmpdir(), "shadowbench-"));
-    const data = await readData(page), labels = await page.locator(".live select").nth(2).locator("option").allTextContents();
+    const labels = await page.locator(".live select").nth(2).locator("option").allTextContents();
     await pick(page, "Right", { label: labels.find((label) => label === filter || data.configurations.find((each) => each.label === label)?.filter === filter) }, ".live");
     const value = await setParameter(page, name, wanted);
     assert.notEqual(value, undefined);
@@ -104,12 +104,10 @@ for (const [run, filter, name, wanted] of [["ball", "vsm", "bleed_reduction", 0.
     await drag(page, 50, 0);
     await page.waitForFunction(() => document.querySelector(".live").textContent.includes("not the turned one"));
     assert.ok((await measureOverflow(page)) <= 0);
-    await shoot(`live.command.${run}`);
     rmSync(folder, { recursive: true });
   });
 
-testPage("ASliderOfManyDecades_GoesBackToTheRunsOwnValue_AndAWeightIsListed", () => openLive(pageOf("ball"), { viewport: kNarrow }), async ({ page }) => {
-  const data = await readData(page);
+testPage("ASliderOfManyDecades_GoesBackToTheRunsOwnValue_AndAWeightIsListed", () => openLive(pageOf("ball"), { viewport: kNarrow }), async ({ page, data }) => {
   await pick(page, "Right", { label: data.configurations.find(({ filter }) => filter === "vsm").label }, ".live");
   const slider = page.locator(".live").getByLabel("min_variance"), own = await slider.inputValue(), before = (await commandOf(page)).replace("1e-05", "0.00001");
   await slider.fill("1");

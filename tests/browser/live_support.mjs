@@ -33,8 +33,8 @@ export const loadTimes = async (page, name, text) => {
   return page.locator(".live p.note", { hasText: `${name}:` }).textContent();
 };
 // Has the program measure what some words name, as quickly as it can; gives the cells.
-export const measure = (words, out, cwd, phases = 1) => {
-  const said = runProgram([...words, "--rounds", "1", "--phases", `${phases}`, "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd });
+export const measure = (words, out, cwd) => {
+  const said = runProgram([...words, "--rounds", "1", "--phases", "1", "--no-attribution", "--gpu", "none", "--no-grids", "--out", out], { cwd });
   assert.equal(said.status, 0, said.stderr);
   return JSON.parse(readFileSync(join(out, "results.json"), "utf8")).cells;
 };

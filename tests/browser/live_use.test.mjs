@@ -2,11 +2,11 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { changeFrames, keepContexts, keepTime, kMsPerLetter, loadTimes, openDrawing, openLive, press, readTable } from "./live_support.mjs";
-import { dragOver, folderOf, kNarrow, pageOf, pick, readData, runProgram, settle, testPage } from "./support.mjs";
+import { dragOver, folderOf, kNarrow, pageOf, pick, runProgram, settle, testPage } from "./support.mjs";
 
 const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
 
-testPage("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => openLive(pageOf("odd"), { init: keepTime }), async ({ page }) => {
+testPage("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => openLive(pageOf("odd"), { init: keepTime }), async ({ page, data }) => {
   const letters = {};  // more than its empty lookup has: in each scene the same
   changeFrames("odd", "letters", ({ programs }) => {
     const empty = programs.find(({ label }) => label === "empty lookup").fragment.length;
@@ -24,7 +24,7 @@ testPage("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => openLive(pageOf("od
     const { keeping, beaten, noGain } = shadowbench.answer.judge();
     return [...keeping, ...beaten, ...noGain].sort((a, b) => a.rank - b.rank).map(({ index }) => index);
   });
-  const labels = (await readData(page)).configurations.map(({ label }) => label);
+  const labels = data.configurations.map(({ label }) => label);
   assert.deepEqual(order.map((index) => labels[index]), ["none", "nine_compares"]);
   assert.match(await page.locator(".answer code").first().textContent(), / --light-motion static/);
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
@@ -89,7 +89,7 @@ testPage("CameraAndSunAreTurned_AndAReferenceStandsInForTheTruth_WhichIsNearIt",
   for (const [filter, own] of await readTable(page)) assert.match(own, /^[\d.e-]+$/, filter);
 });
 
-testPage("Layers_AreVisibility_AndItsErrorAgainstTheTruth", () => openLive(pageOf("several")), async ({ page, shoot }, context) => {
+testPage("Layers_AreVisibility_AndItsErrorAgainstTheTruth", () => openLive(pageOf("several")), async ({ page }, context) => {
   const slider = page.locator(".live-stage input");
   const look = async (layer, split) => {
     await pick(page, "Layer", layer, ".live");
@@ -114,7 +114,6 @@ testPage("Layers_AreVisibility_AndItsErrorAgainstTheTruth", () => openLive(pageO
   context.diagnostic(`${marked} pixels have an error, ${wrong} of them another sign than their colour`);
   assert.ok(marked > 200 && wrong === 0);
   await look("error", 50);
-  await shoot("live.error");
   await page.reload();
   await page.waitForSelector(".live-stage canvas");
   assert.equal(await page.locator(".live").getByRole("combobox", { name: "Layer" }).inputValue(), "error");

@@ -1,6 +1,6 @@
 // What holds for a run's page as a whole: its length, paper, charts and the time to open.
 import assert from "node:assert/strict";
-import { changePage, kNarrow, kWide, listOverlaps, multiply, open, openRun, pageOf, readData, settle, testPage } from "./support.mjs";
+import { changePage, kNarrow, kWide, listOverlaps, multiply, open, openRun, pageOf, settle, testPage } from "./support.mjs";
 
 const kRunPages = ["several", "odd", "untrue", "single"];
 const kMostWords = 500, kMostFirst = 120, kChoiceAbove = 600, kMostPaper = 2;
@@ -67,8 +67,7 @@ for (const [name, find] of [...kRunPages.map((run) => [run, () => pageOf(run)]),
     assert.ok(count <= kMostPaper, `${count} pages`);
   });
 
-testPage("AClickOnAMark_OpensTheViewerWithThatFilterAndTheTruth", () => openRun("several"), async ({ page }) => {
-  const data = await readData(page);
+testPage("AClickOnAMark_OpensTheViewerWithThatFilterAndTheTruth", () => openRun("several"), async ({ page, data }) => {
   const chart = await page.evaluate(() => {
     const { charts } = JSON.parse(document.getElementById("charts").textContent);
     return charts.findIndex(({ charts }) => charts.some(({ series }) => series.some(({ points }) => points.some((point) => point[4]))));
@@ -99,8 +98,8 @@ testPage("AClickOnAMark_OpensTheViewerWithThatFilterAndTheTruth", () => openRun(
   assert.ok(opened.size > 2, [...opened].join());
 });
 
-testPage("TheTrade_NamesItsMarks_WithoutAKey_AndRingsTheAnswers", () => openRun("several"), async ({ page }) => {
-  const data = await readData(page), picks = await page.evaluate(() => shadowbench.answer.picks());
+testPage("TheTrade_NamesItsMarks_WithoutAKey_AndRingsTheAnswers", () => openRun("several"), async ({ page, data }) => {
+  const picks = await page.evaluate(() => shadowbench.answer.picks());
   const classes = [...new Set(data.configurations.map((configuration) => configuration.class).filter(Boolean))], front = page.locator("#front svg");
   const readLabels = () => front.locator("text[stroke]").allTextContents(), rings = front.locator(":scope > path[transform]");
   assert.ok(classes.length > 1);

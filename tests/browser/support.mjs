@@ -30,8 +30,8 @@ export const runProgram = (words, options = {}) => spawnSync(kProgram, words, { 
 // The words of a command of the program as a shell reads them.
 export const splitWords = (command) => execFileSync("sh", ["-c", command.replace("shadowbench", "printf '%s\\n'")], { encoding: "utf8" }).trimEnd().split("\n");
 
-// Opens a page from disk in a profile of its own, and keeps every word that the console gets; `init` runs in it before
-// its own scripts.
+// Opens a page from disk in a profile of its own, and keeps every word that the console gets, and what a run's page has of
+// the run; `init` runs in it before its own scripts.
 export const open = async (file, { hash = "", waits = true, args = ["--disable-gpu"], init, ...options } = {}) => {
   const context = await (await launch(args)).newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
   page.setDefaultTimeout(60000);  // a busy machine opens pages slowly
@@ -42,8 +42,9 @@ export const open = async (file, { hash = "", waits = true, args = ["--disable-g
   await page.goto(pathToFileURL(file).href + hash);
   if (waits) await page.waitForFunction(() => document.querySelector(".viewer figcaption bdi"));
   // Screenshots are for people: they are taken where SHADOWBENCH_SHOTS names a folder.
-  const shoot = async (name) => kShots && page.screenshot({ path: join(kShots, name + ".png"), fullPage: true });
-  return { page, messages, shoot, close: () => context.close() };
+  const shoot = async (name) => kShots && page.screenshot({ path: join(kShots, name.replaceAll(/\W+/g, "_") + ".png"), fullPage: true });
+  const data = await page.evaluate(() => JSON.parse(document.getElementById("run")?.textContent ?? "null"));
+  return { page, messages, data, shoot, close: () => context.close() };
 };
 export const openRun = (run, options) => open(pageOf(run), options);
 // Tests a page that a function opens. Its console stays empty, but for what `allows` matches.
@@ -51,6 +52,7 @@ export const testPage = (name, opens, act, allows = /$^/) => test(name, async (c
   const opened = await opens();
   try {
     await act(opened, context);
+    await opened.shoot(name);
     assert.deepEqual(opened.messages.filter((text) => !allows.test(text)), []);
   } finally {
     await opened.close();
@@ -77,7 +79,6 @@ export const settle = async (page, timeout = 60000) => {
   await nextFrame(page);
 };
 export const measureOverflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-export const readData = (page) => page.evaluate(() => JSON.parse(document.getElementById("run").textContent));
 
 // Drags the mouse over the page, and over what a locator finds: from a place in it, so far.
 export const drag = async (page, from, to) => {

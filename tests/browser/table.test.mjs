@@ -1,6 +1,6 @@
 // The table of a run's page holds what results.json holds, sorts, filters and marks.
 import assert from "node:assert/strict";
-import { changePage, kNarrow, open, openRun, readData, readResults, testPage } from "./support.mjs";
+import { changePage, kNarrow, open, openRun, readResults, testPage } from "./support.mjs";
 
 const readHead = (page) => page.locator(".numbers thead th").allTextContents();
 const readRows = (page) => page.locator(".numbers tbody tr").evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => ({
@@ -22,8 +22,7 @@ const readValue = (cell, id) => {
 };
 
 for (const run of ["several", "odd", "untrue", "single"]) {
-  testPage(`EveryCellOfEveryMeasure_EqualsTheResults: ${run}`, () => openRun(run), async ({ page }) => {
-    const data = await readData(page);
+  testPage(`EveryCellOfEveryMeasure_EqualsTheResults: ${run}`, () => openRun(run), async ({ page, data }) => {
     const cells = new Map(readResults(run).cells.map((cell) => [cell.key, cell])), labels = data.configurations.map(({ label }) => label);
     const shown = await page.locator('.numbers select[name="measure"] option').evaluateAll((all) => all.map(({ value }) => value));
     assert.deepEqual(shown, data.measures.map(({ id }) => id).filter((id) => [...cells.values()].some((cell) => readValue(cell, id) !== null)));
@@ -53,8 +52,8 @@ const makeOddRanks = (data) => {
   for (const cell of data.cells) if (cell.place === 0) cell.values_of["error.flip"] = Number(cell.values_of["error.flip"].toFixed(2));
   data.configurations[0].teaching = true;
 };
-testPage("BestAndTies_AreThoseOfTheColumn_WhateverIsShown", () => open(changePage("several", makeOddRanks)), async ({ page }) => {
-  const data = await readData(page), seen = new Set();
+testPage("BestAndTies_AreThoseOfTheColumn_WhateverIsShown", () => open(changePage("several", makeOddRanks)), async ({ page, data }) => {
+  const seen = new Set();
   for (const [measure, rank] of [["error.rmse", (value) => value], ["error.mean", Math.abs], ["error.flip", (value) => value], ["time_ms.moving", (value) => value]]) {
     await show(page, measure);
     const wanted = new Map();
@@ -96,8 +95,8 @@ testPage("TheWorstOfTheScenes_IsFarthestFromWhatIsBest", () => openRun("several"
 });
 
 const makeGap = (data) => { data.cells[2].values_of["error.rmse"] = null; };
-testPage("EveryHead_SortsUpAndDown_WithWhatIsMissingLast", () => open(changePage("several", makeGap)), async ({ page }) => {
-  const count = (await readHead(page)).length, data = await readData(page);
+testPage("EveryHead_SortsUpAndDown_WithWhatIsMissingLast", () => open(changePage("several", makeGap)), async ({ page, data }) => {
+  const count = (await readHead(page)).length;
   const kept = (await readRows(page)).map(([name]) => name.text), key = page.locator(".numbers > .note"), usual = await key.textContent();
   for (let column = 0; column < count; ++column) {
     const head = page.locator(".numbers thead th").nth(column), isSorted = (await head.getAttribute("aria-sort")) !== "none";
@@ -121,8 +120,7 @@ testPage("EveryHead_SortsUpAndDown_WithWhatIsMissingLast", () => open(changePage
   assert.deepEqual((await readRows(page)).map(([name]) => name.text).sort(), kept.sort());
 });
 
-testPage("NameParameterAndClass_Filter", () => openRun("several"), async ({ page }) => {
-  const data = await readData(page);
+testPage("NameParameterAndClass_Filter", () => openRun("several"), async ({ page, data }) => {
   const search = page.locator('.numbers input[type="search"]'), width = page.locator('.numbers select[name="width"]');
   const names = async () => (await readRows(page)).map(([name]) => name.text).sort();
   const expect = (test) => data.configurations.filter(test).map(({ label }) => label).sort();
@@ -141,16 +139,14 @@ testPage("NameParameterAndClass_Filter", () => openRun("several"), async ({ page
   assert.equal((await names()).length, data.configurations.length);
 });
 
-testPage("ACell_OpensTheViewer", () => openRun("several"), async ({ page }) => {
-  const data = await readData(page);
+testPage("ACell_OpensTheViewer", () => openRun("several"), async ({ page, data }) => {
   const row = page.locator(".numbers tbody tr").filter({ hasText: "box4x4" });
   await row.locator("td button").nth(1).click();
   const pattern = `#view=${data.places[1].title},truth,box4x4,`;
   await page.waitForFunction((start) => decodeURIComponent(location.hash).startsWith(start), pattern);
 });
 
-testPage("ACostChosenOnTop_IsThatOfAnswerTableAndChart_AndSaysWhatItIsOf", () => openRun("several"), async ({ page }) => {
-  const data = await readData(page);
+testPage("ACostChosenOnTop_IsThatOfAnswerTableAndChart_AndSaysWhatItIsOf", () => openRun("several"), async ({ page, data }) => {
   const front = await page.evaluate(() => JSON.parse(document.getElementById("charts").textContent).charts.find(({ id }) => id === "front"));
   const chart = page.locator("#front select").nth(2), { costs } = front.selectors[2];
   const readChosen = async () => costs[Number(await chart.inputValue())];
@@ -176,14 +172,13 @@ testPage("ACostChosenOnTop_IsThatOfAnswerTableAndChart_AndSaysWhatItIsOf", () =>
 });
 
 const giveLongName = (data) => { data.configurations[0].label = "a_filter_of_a_long_name (parameter 12, another 0.5), map 512 x 512"; };
-testPage("OnAPhone_NamesStay_ANumberIsSeenBesideThem_AndTheCaptionIsWhole", () => open(changePage("several", giveLongName), { viewport: kNarrow }), async ({ page, shoot }) => {
+testPage("OnAPhone_NamesStay_ANumberIsSeenBesideThem_AndTheCaptionIsWhole", () => open(changePage("several", giveLongName), { viewport: kNarrow }), async ({ page }) => {
   const find = () => page.locator(".numbers .scroll").evaluate((scroll) => {
     const edges = (node) => { const { left, right } = node.getBoundingClientRect(); return { left, right }; };
     const rows = [...scroll.querySelectorAll("tbody tr")].map((row) => [...row.children].map(edges));
     return { box: edges(scroll), caption: edges(scroll.querySelector("caption")), rows, moves: scroll.scrollWidth - scroll.clientWidth };
   });
   const { moves, ...before } = await find();
-  await shoot("phone_table");
   assert.ok(moves > 0, "the table is wider than the phone");
   for (const [name, , cost, first] of before.rows) {
     assert.ok(name.right - name.left > 90, "a name keeps room for a word");

@@ -6,13 +6,12 @@ import { colours, drag, hashOf, labels, linkOf, openViewer, pageOf, pick, settle
 
 const kPage = pageOf("several");
 
-testPage("FirstPaint_ShowsTheTruthAndAFilter_Silently", () => openViewer(kPage), async ({ page, shoot }) => {
+testPage("FirstPaint_ShowsTheTruthAndAFilter_Silently", () => openViewer(kPage), async ({ page }) => {
   await page.waitForSelector(".viewer tbody tr:nth-child(9)", { state: "attached" });
   assert.deepEqual((await labels(page)).map((each) => each.replace(/[\u2068\u2069]/g, "")),
     ["Picture of cubes, Side by side. Left: truth", "Picture of cubes, Side by side. Right: none"]);
   assert.equal(new URL(page.url()).hash, "", "the address stays until the reader changes something");
   assert.ok(Object.keys(await colours(page)).length > 20);
-  await shoot("first");
 });
 
 testPage("EveryLayerInEveryMode_IsShownOrExplained", () => openViewer(kPage, { hash: "#view=cubes,none,vsm%20(radius%201),picture,side,0,0,1" }), async ({ page, shoot }) => {
@@ -46,7 +45,7 @@ testPage("Difference_IsRightLessLeft_AsTheErrorIs", () => openViewer(kPage, { ha
   assert.equal(named.replace("right is lower", "darker than the truth").replace("right is higher", "lighter than the truth"), scale);
 });
 
-testPage("LayerThatTheTruthLacks_LeavesItsVisibility", () => openViewer(kPage, { hash: "#view=cubes,truth,vsm%20(radius%201),visibility,side,0,0,1,30-30-60-60" }), async ({ page, shoot }) => {
+testPage("LayerThatTheTruthLacks_LeavesItsVisibility", () => openViewer(kPage, { hash: "#view=cubes,truth,vsm%20(radius%201),visibility,side,0,0,1,30-30-60-60" }), async ({ page }) => {
   await settle(page);
   const grey = await colours(page);
   for (const layer of ["error", "model", "flip", "stability.half_difference"]) {
@@ -59,7 +58,6 @@ testPage("LayerThatTheTruthLacks_LeavesItsVisibility", () => openViewer(kPage, {
     assert.match(right, /^Right: vsm \(radius 1\), \S+ to \S+$/);
   }
   await showCrops(page);
-  await shoot("stands_in");
   assert.equal(await page.locator(".viewer .strip [data-who='-1']").textContent(), "truth");
   await pick(page, "Layer", "uncertainty");
   await settle(page);
