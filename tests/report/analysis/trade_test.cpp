@@ -244,8 +244,8 @@ TEST(WidthCharts, OtherParameters_MakeOtherCurves) {
   EXPECT_THAT(charts[0].curves[3].points, SizeIs(3));
 }
 
-CellRecord make_map_cell(const std::string& fit, int size, const std::string& filter = "vsm") {
-  CellRecord cell = make_sweep_cell({.scene = "avenue", .filter = filter, .map_size = size});
+CellRecord make_map_cell(const std::string& fit, int size, const std::string& filter = "vsm", double rmse = 0.1) {
+  CellRecord cell = make_sweep_cell({.scene = "avenue", .filter = filter, .rmse = rmse, .map_size = size});
   cell.fit = fit;
   cell.cost.map_bytes = std::int64_t{4} * size * size;
   return cell;
@@ -277,23 +277,16 @@ TEST(MapFamilies, WithoutErrorTimesOrTrust_CellsAreLeftOut) {
 }
 
 /// A map of four cascades, as large as one of twice the side.
-CellRecord make_cascades(const std::string& split, double rmse, double seam, const std::string& filter = "vsm") {
-  CellRecord cell = make_map_cell("cascades:count=4,split=" + split, 1024, filter);
+CellRecord make_cascades(const std::string& split, const std::string& filter, double rmse) {
+  CellRecord cell = make_map_cell("cascades:count=4,split=" + split, 1024, filter, rmse);
   cell.cost.map_bytes = 4 * *cell.cost.map_bytes - 3;
-  cell.error.rmse = rmse;
-  cell.artefact.seam = seam;
-  return cell;
-}
-
-CellRecord with_rmse(CellRecord cell, double rmse) {
-  cell.error.rmse = rmse;
   return cell;
 }
 
 TEST(MapFamilies, OfSeveralFilters_TakeTheRootMeanSquareOfTheMapsThatAllHave) {
-  const std::vector<CellRecord> cells = {with_rmse(make_map_cell("view", 2048), 0.03), make_cascades("1", 0.04, 0.0),
-                                         with_rmse(make_map_cell("view", 2048, "esm"), 0.05),
-                                         make_cascades("1", 0.01, 0.0, "esm"), make_cascades("0.5", 0.001, 0.0)};
+  const std::vector<CellRecord> cells = {make_map_cell("view", 2048, "vsm", 0.03), make_cascades("1", "vsm", 0.04),
+                                         make_map_cell("view", 2048, "esm", 0.05), make_cascades("1", "esm", 0.01),
+                                         make_cascades("0.5", "vsm", 0.001)};
   const auto families = list_map_families(point_to(cells));
   ASSERT_THAT(families, SizeIs(3));
   EXPECT_EQ(families[0].title, "all filters");

@@ -370,15 +370,15 @@ std::vector<double> decode(const nlohmann::json& file, const nlohmann::json& pla
   return values;
 }
 
-nlohmann::json write_and_parse(const Image& plane) {
+nlohmann::json write_and_parse(const ValuePlanes& planes) {
   const TestFolder folder;
-  write_value_file(folder.path() / "a.js", "a", {{"p", plane}});
-  const std::string text = read_text(folder.path() / "a.js");
-  return nlohmann::json::parse(text.substr(23, text.size() - 26));
+  write_value_file(folder.path() / "a.js", "a \"b\".js", planes);
+  const std::string text = folder.read("a.js"), start = "shadowbenchValues(\"a \\\"b\\\".js\", ", end = ");\n";
+  EXPECT_THAT(text, AllOf(StartsWith(start), EndsWith(end)));
+  return nlohmann::json::parse(text.substr(start.size(), text.size() - start.size() - end.size()));
 }
 
 TEST(ValueFile, ComesBackWithinHalfAStep) {
-  const TestFolder folder;
   Image visibility(5, 3, 1), error(5, 3, 1);
   for (std::size_t i = 0; i < 15; ++i) {
     visibility.texels[i] = static_cast<float>(i * i % 15) / 14.0f;
@@ -386,12 +386,7 @@ TEST(ValueFile, ComesBackWithinHalfAStep) {
   }
   visibility.texels[7] = std::numeric_limits<float>::quiet_NaN();
   error.texels[8] = std::numeric_limits<float>::infinity();
-  write_value_file(folder.path() / "a.js", "a \"b\".js", {{"visibility", visibility}, {"error", error}});
-  const std::string text = read_text(folder.path() / "a.js");
-  const std::string start = "shadowbenchValues(\"a \\\"b\\\".js\", ";
-  ASSERT_EQ(text.substr(0, start.size()), start);
-  ASSERT_EQ(text.substr(text.size() - 3), ");\n");
-  const auto file = nlohmann::json::parse(text.substr(start.size(), text.size() - start.size() - 3));
+  const auto file = write_and_parse({{"visibility", visibility}, {"error", error}});
   EXPECT_EQ(file["planes"][0]["low"], 0.0);
   EXPECT_EQ(file["planes"][0]["high"], 1.0);
   EXPECT_EQ(file["planes"][1]["name"], "error");
@@ -411,7 +406,7 @@ TEST(ValueFile, EveryLengthOfBase64_IsWhole) {
   for (int width = 1; width < 12; ++width) {
     Image plane(width, 1, 1);
     for (int x = 0; x < width; ++x) plane.at(x, 0)[0] = static_cast<float>((37 * x) % 11) / 10.0f;
-    const auto file = write_and_parse(plane);
+    const auto file = write_and_parse({{"p", plane}});
     EXPECT_EQ(file["planes"][0]["data"].get<std::string>().size() % 4, 0u);
     EXPECT_THAT(decode(file, file["planes"][0]), SizeIs(width));
   }
@@ -423,7 +418,7 @@ TEST(ValueFile, LargeAndTinyValues_ComeBackExactly) {
     for (std::size_t i = 0; i < 150; ++i)
       plane.texels[i] = greatest * std::pow(0.9f, static_cast<float>(i)) * (i % 7 == 0 ? -1.0f : 1.0f);
     plane.texels[70] = std::numeric_limits<float>::infinity();
-    const auto file = write_and_parse(plane);
+    const auto file = write_and_parse({{"p", plane}});
     const auto values = decode(file, file["planes"][0]);
     EXPECT_FALSE(file["planes"][0].contains("low"));
     for (std::size_t i = 0; i < 150; ++i)
@@ -436,9 +431,9 @@ TEST(ValueFile, LargeAndTinyValues_ComeBackExactly) {
 
 TEST(ValueFile, FewStepsAndNothing_TakeCodes) {
   Image plane(50, 3, 1);
-  EXPECT_EQ(write_and_parse(plane)["planes"][0]["high"], 1.0);
+  EXPECT_EQ(write_and_parse({{"p", plane}})["planes"][0]["high"], 1.0);
   for (std::size_t i = 0; i < 150; ++i) plane.texels[i] = static_cast<float>(i % 5) / 32767.0f - 2.0f / 32767.0f;
-  EXPECT_EQ(write_and_parse(plane)["planes"][0]["low"], -1.0);
+  EXPECT_EQ(write_and_parse({{"p", plane}})["planes"][0]["low"], -1.0);
 }
 
 }  // namespace
