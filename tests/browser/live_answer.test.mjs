@@ -42,24 +42,18 @@ testPage("ThisGpuIsACost_ThatIsMeasuredWhenItIsChosen", () => openDrawing(pageOf
 
 testPage("MeasuringThatEnds_LeavesTheChoiceAsItWas_AndSaysWhy", () => openDrawing(pageOf("untrue"), { init: keepContexts }), async ({ page }) => {
   const before = await chosen(page);
-  const endsWith = async (words) => {
+  const stopped = "Timing was stopped before it had all times.";
+  for (const [end, words] of [[() => page.locator(".answer form").getByRole("button", { name: "Stop" }).click(), stopped],
+    [() => page.locator("select[name=cost]").selectOption({ label: before }), stopped],
+    [() => page.evaluate(() => window.contexts[0].getExtension("WEBGL_lose_context").loseContext()), "The browser has taken the GPU away from this page: load it again."]]) {
+    await measure(page);
+    await whenItSays(page, "round 1 of");
+    await end();
     await whenItEnds(page);
     assert.equal(await line(page).textContent(), words);
     assert.equal(await chosen(page), before);
     assert.ok((await listTitles(page)).includes(kMeasure));
-  };
-  await measure(page);
-  await whenItSays(page, "round 1 of");
-  await page.locator(".answer form").getByRole("button", { name: "Stop" }).click();
-  await endsWith("Timing was stopped before it had all times.");
-  await measure(page);
-  await whenItSays(page, "round 1 of");
-  await page.locator("select[name=cost]").selectOption({ label: before });
-  await endsWith("Timing was stopped before it had all times.");
-  await measure(page);
-  await whenItSays(page, "round 1 of");
-  await page.evaluate(() => window.contexts[0].getExtension("WEBGL_lose_context").loseContext());
-  await endsWith("The browser has taken the GPU away from this page: load it again.");
+  }
   await measureInVain(page, "load it again");
 });
 

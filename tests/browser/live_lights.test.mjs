@@ -1,10 +1,9 @@
 // Lights of every kind are moved by the page, and the program draws the same.
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
-import { compareShots, measure, openLive, press } from "./live_support.mjs";
+import { compareShots, makeFolder, measure, openLive, press } from "./live_support.mjs";
 import { pageOf, pick, settle, splitWords } from "./support.mjs";
 
 const kScene = new URL("../../data/scenes/teaching/three_lights.toml", import.meta.url);
@@ -31,7 +30,7 @@ const holdAgainst = (context, name, [shown, drawn, own], most = 0.03) => {
 };
 
 test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", async (context) => {
-  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), yaw = 0.5, [c, s] = [Math.cos(yaw), Math.sin(yaw)];
+  const folder = makeFolder(context), yaw = 0.5, [c, s] = [Math.cos(yaw), Math.sin(yaw)];
   // Floor and posts of the scene have their middle over the origin.
   const turn = (text, key) => text.replace(new RegExp(`^${key} = \\[(.*)\\]$`, "gm"), (_, list) => {
     const [x, y, z] = list.split(",").map(Number);
@@ -45,12 +44,11 @@ test("LampsGoRoundTheScene_AsTheProgramDrawsThemThere", async (context) => {
     const drawn = drawByProgram(["run", "--scene", "moved.toml", "--light-name", light, "--filters", "tent3x3", "--size", "160x90", "--map-size", "128"], join(folder, light), folder);
     holdAgainst(context, light, [picture, drawn, ownPicture("lamps", data, place, "tent3x3")]);
   }
-  rmSync(folder, { recursive: true });
 });
 
 // Maps from the lamps' middles alone are 0.11 and 0.23 off.
 test("AReferenceForALamp_IsNearItsTracedTruth", async (context) => {
-  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), out = join(folder, "out");
+  const folder = makeFolder(context), out = join(folder, "out");
   writeFileSync(join(folder, "wide.toml"), readFileSync(kScene, "utf8").replace("radius = 0.04", "radius = 0.4").replace("radius = 0.03", "radius = 0.15"));
   measure(["run", "--scene", "wide.toml", "--filters", "none", "--size", "240x135", "--map-size", "1024"], out, folder);
   const { page, messages, close } = await openLive(join(out, "index.html")), found = {};
@@ -64,11 +62,10 @@ test("AReferenceForALamp_IsNearItsTracedTruth", async (context) => {
   for (const [light, rmse] of Object.entries(found)) assert.ok(rmse > 0 && rmse < 0.02, `${light}: ${rmse}`);
   assert.deepEqual(messages, []);
   await close();
-  rmSync(folder, { recursive: true });
 });
 
 test("CascadesFollowSunAndCamera_AndAWarpedMapSaysThatItStays", async (context) => {
-  const folder = mkdtempSync(join(tmpdir(), "shadowbench-")), { data } = await drawTurned("fits", "avenue", "none", [0, 0], [0, 0]);
+  const folder = makeFolder(context), { data } = await drawTurned("fits", "avenue", "none", [0, 0], [0, 0]);
   const labelOf = (fit) => data.configurations.find(({ surroundings, filter }) => filter === "none" && JSON.parse(surroundings).fit.startsWith(fit)).label;
   // One map of 128 texels over all that is seen has coarse edges, which another window puts elsewhere.
   for (const [fit, most] of [["cascades", 0.03], ["view", 0.08]]) {
@@ -84,5 +81,4 @@ test("CascadesFollowSunAndCamera_AndAWarpedMapSaysThatItStays", async (context) 
   const label = labelOf("lispsm"), warped = await drawTurned("fits", "avenue", label, [0, 0], [0.4, 0.1]);
   assert.match(warped.said, /This light cannot move: its map is warped/);
   assert.ok((compareShots([warped.picture, ownPicture("fits", data, "avenue", label)])).mean < 0.5);
-  rmSync(folder, { recursive: true });
 });

@@ -1,9 +1,8 @@
 // What the section Live shows is in the page's address, and a command measures it.
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { compareShots, measure, openLive } from "./live_support.mjs";
+import { compareShots, makeFolder, measure, openLive } from "./live_support.mjs";
 import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, settle, splitWords, testPage } from "./support.mjs";
 
 const canvasOf = (page) => page.locator(".live-stage canvas");
@@ -68,7 +67,7 @@ testPage("ALink_HoldsAllThatIsSeen", () => openLive(pageOf("several")), async ({
 
 for (const [run, filter, name, wanted] of [["ball", "vsm", "bleed_reduction", 0.7], ["odd", "nine_compares", "weight", 0.5]])
   testPage(`TheCommand_MeasuresWhatIsSeen: ${run}`, () => openLive(pageOf(run), { viewport: kNarrow }), async ({ page, data }, context) => {
-    const folder = mkdtempSync(join(tmpdir(), "shadowbench-"));
+    const folder = makeFolder(context);
     const labels = await page.locator(".live select").nth(2).locator("option").allTextContents();
     await pick(page, "Right", { label: labels.find((label) => label === filter || data.configurations.find((each) => each.label === label)?.filter === filter) }, ".live");
     const value = await setParameter(page, name, wanted);
@@ -104,7 +103,6 @@ for (const [run, filter, name, wanted] of [["ball", "vsm", "bleed_reduction", 0.
     await drag(page, 50, 0);
     await page.waitForFunction(() => document.querySelector(".live").textContent.includes("not the turned one"));
     assert.ok((await measureOverflow(page)) <= 0);
-    rmSync(folder, { recursive: true });
   });
 
 testPage("ASliderOfManyDecades_GoesBackToTheRunsOwnValue_AndAWeightIsListed", () => openLive(pageOf("ball"), { viewport: kNarrow }), async ({ page, data }) => {

@@ -21,15 +21,20 @@ export const press = async (page, name) => {
   await page.waitForFunction(() => [...document.querySelectorAll(".live button")].find((each) => each.textContent === "Stop").hidden, null, { timeout: 240000 });
 };
 export const readTable = (page) => page.locator(".live table tbody tr").evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
+// A folder that goes with a test.
+export const makeFolder = (context) => {
+  const folder = mkdtempSync(join(tmpdir(), "shadowbench-"));
+  context.after(() => rmSync(folder, { recursive: true }));
+  return folder;
+};
 // Hands the page a file of times, and gives what it says of that file.
-export const loadTimes = async (page, name, text) => {
+export const loadTimes = async (page, folder, name, text) => {
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator(".live").getByRole("button", { name: "Load times" }).click()]);
   await page.locator(".live p.note").evaluateAll((notes) => notes.forEach((note) => note.getAttribute("role") || note.querySelector("code") || (note.textContent = "")));
-  const folder = mkdtempSync(join(tmpdir(), "times")), file = join(folder, name);
+  const file = join(folder, name);
   writeFileSync(file, text);
   await chooser.setFiles(file);
   await page.waitForFunction((said) => document.querySelector(".live").textContent.includes(said + ":"), name);
-  rmSync(folder, { recursive: true });
   return page.locator(".live p.note", { hasText: `${name}:` }).textContent();
 };
 // Has the program measure what some words name, as quickly as it can; gives the cells.

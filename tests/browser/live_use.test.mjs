@@ -1,12 +1,12 @@
 // The section that draws with WebGL 2, as its readers use it: timed, turned, taken away and on a phone.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { changeFrames, keepContexts, keepTime, kMsPerLetter, loadTimes, openDrawing, openLive, press, readTable } from "./live_support.mjs";
+import { changeFrames, keepContexts, keepTime, kMsPerLetter, loadTimes, makeFolder, openDrawing, openLive, press, readTable } from "./live_support.mjs";
 import { dragOver, folderOf, kNarrow, pageOf, pick, runProgram, settle, testPage } from "./support.mjs";
 
 const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
 
-testPage("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => openLive(pageOf("odd"), { init: keepTime }), async ({ page, data }) => {
+testPage("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => openLive(pageOf("odd"), { init: keepTime }), async ({ page, data }, context) => {
   const letters = {};  // more than its empty lookup has: in each scene the same
   changeFrames("odd", "letters", ({ programs }) => {
     const empty = programs.find(({ label }) => label === "empty lookup").fragment.length;
@@ -49,10 +49,10 @@ testPage("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => openLive(pageOf("od
   await page.waitForSelector(".live canvas");
   const [again] = await Promise.all([page.waitForEvent("download"), page.locator(".live").getByRole("button", { name: "Save times" }).click()]);
   assert.deepEqual(JSON.parse(readFileSync(await again.path(), "utf8")), saved, "what the browser kept is saved");
-  const key = Object.keys(saved.cells)[0], spoil = (edit) => { const copy = structuredClone(saved); edit(copy); return JSON.stringify(copy); };
+  const folder = makeFolder(context), key = Object.keys(saved.cells)[0], spoil = (edit) => { const copy = structuredClone(saved); edit(copy); return JSON.stringify(copy); };
   const bad = ["{", spoil((file) => { file.schema = "another"; }), spoil((file) => { file.cells = { other: file.cells[key] }; }), spoil((file) => { file.cells[key].map.median = null; }), spoil((file) => { delete file.renderer; })];
-  for (const [i, text] of bad.entries()) assert.match(await loadTimes(page, `${i}.json`, text), /This is no gpu-times\.json that a page of this run saved/);
-  assert.match(await loadTimes(page, "f.json", spoil((file) => { file.renderer = "Another GPU"; })), /its times are among the costs/);
+  for (const [i, text] of bad.entries()) assert.match(await loadTimes(page, folder, `${i}.json`, text), /This is no gpu-times\.json that a page of this run saved/);
+  assert.match(await loadTimes(page, folder, "f.json", spoil((file) => { file.renderer = "Another GPU"; })), /its times are among the costs/);
   await chooseCost(page, "moving light, Another GPU");
 });
 
