@@ -8,6 +8,9 @@ namespace shadowbench {
 namespace {
 
 using namespace records;
+using AtomicFileTest = FolderTest;
+using FolderLockTest = FolderTest;
+using TemporaryFiles = FolderTest;
 
 std::string message_of(const std::function<void()>& action) {
   const Error error = error_of(action);
@@ -15,38 +18,34 @@ std::string message_of(const std::function<void()>& action) {
   return error.what();
 }
 
-TEST(AtomicFile, NotCommitted_LeavesTheOldFileAndNothingElse) {
-  const TestFolder folder;
-  write_text_file(folder.path() / "a.txt", "old");
+TEST_F(AtomicFileTest, NotCommitted_LeavesTheOldFileAndNothingElse) {
+  write_text_file(folder_.path() / "a.txt", "old");
   {
-    AtomicFile file(folder.path() / "a.txt");
+    AtomicFile file(folder_.path() / "a.txt");
     file.write("half");
-    EXPECT_EQ(read_text(folder.path() / "a.txt"), "old");
-    EXPECT_EQ(count_files(folder.path()), 2u);
+    EXPECT_EQ(read_text(folder_.path() / "a.txt"), "old");
+    EXPECT_EQ(count_files(folder_.path()), 2u);
   }
-  EXPECT_EQ(read_text(folder.path() / "a.txt"), "old");
-  EXPECT_EQ(count_files(folder.path()), 1u);
+  EXPECT_EQ(read_text(folder_.path() / "a.txt"), "old");
+  EXPECT_EQ(count_files(folder_.path()), 1u);
 }
 
-TEST(AtomicFile, Committed_IsWholeAndAlone) {
-  const TestFolder folder;
-  write_text_file(folder.path() / "cells" / "a.json", "text");
-  EXPECT_EQ(read_text(folder.path() / "cells" / "a.json"), "text");
-  EXPECT_EQ(count_files(folder.path() / "cells"), 1u);
+TEST_F(AtomicFileTest, Committed_IsWholeAndAlone) {
+  write_text_file(folder_.path() / "cells" / "a.json", "text");
+  EXPECT_EQ(read_text(folder_.path() / "cells" / "a.json"), "text");
+  EXPECT_EQ(count_files(folder_.path() / "cells"), 1u);
 }
 
-TEST(AtomicFile, TemporaryName_KeepsFolderAndExtension) {
-  const TestFolder folder;
-  const PendingFile file(folder.path() / "cubes.grid.png");
-  EXPECT_EQ(file.temporary_path().parent_path(), folder.path());
+TEST_F(AtomicFileTest, TemporaryName_KeepsFolderAndExtension) {
+  const PendingFile file(folder_.path() / "cubes.grid.png");
+  EXPECT_EQ(file.temporary_path().parent_path(), folder_.path());
   EXPECT_EQ(file.temporary_path().extension(), ".png");
   EXPECT_NE(file.temporary_path(), file.path());
 }
 
 /// Whoever made the folder may know the name that is written to first.
-TEST(AtomicFile, LinkOfTheTemporaryName_IsNotWrittenThrough) {
-  const TestFolder folder;
-  const std::filesystem::path own = folder.path() / "own.txt", out = folder.path() / "a.png";
+TEST_F(AtomicFileTest, LinkOfTheTemporaryName_IsNotWrittenThrough) {
+  const std::filesystem::path own = folder_.path() / "own.txt", out = folder_.path() / "a.png";
   const std::function<void()> writers[] = {[&] { write_text_file(out, "x"); }, [&] { copy_whole_file(__FILE__, out); },
                                            [&] { images::write_grey_png(out, images::Image(2, 2, 1)); }};
   write_text_file(own, "kept");
@@ -58,45 +57,41 @@ TEST(AtomicFile, LinkOfTheTemporaryName_IsNotWrittenThrough) {
   }
 }
 
-TEST(AtomicFile, FolderThatIsAFile_IsAnOutputErrorWithPathAndReason) {
-  const TestFolder folder;
-  write_text_file(folder.path() / "file", "");
-  const std::string message = message_of([&] { write_text_file(folder.path() / "file" / "a.txt", "x"); });
-  EXPECT_THAT(message, HasSubstr((folder.path() / "file").string()));
+TEST_F(AtomicFileTest, FolderThatIsAFile_IsAnOutputErrorWithPathAndReason) {
+  write_text_file(folder_.path() / "file", "");
+  const std::string message = message_of([&] { write_text_file(folder_.path() / "file" / "a.txt", "x"); });
+  EXPECT_THAT(message, HasSubstr((folder_.path() / "file").string()));
   EXPECT_THAT(message, HasSubstr("Not a directory"));
   EXPECT_THAT(message, HasSubstr("--out"));
 }
 
-TEST(AtomicFile, FolderThatVanishes_IsSaid) {
-  const TestFolder folder;
+TEST_F(AtomicFileTest, FolderThatVanishes_IsSaid) {
   const std::string message = message_of([&] {
-    AtomicFile file(folder.path() / "cells" / "a.json");
-    std::filesystem::rename(folder.path() / "cells", folder.path() / "moved");
+    AtomicFile file(folder_.path() / "cells" / "a.json");
+    std::filesystem::rename(folder_.path() / "cells", folder_.path() / "moved");
     file.commit();
   });
   EXPECT_THAT(message,
-              HasSubstr((folder.path() / "cells" / "a.json").string() + ": its folder was removed or replaced"));
+              HasSubstr((folder_.path() / "cells" / "a.json").string() + ": its folder was removed or replaced"));
   EXPECT_THAT(message, HasSubstr("--out"));
 }
 
-TEST(AtomicFile, NameThatIsAFolder_IsAnOutputErrorAndLeavesNoTemporary) {
-  const TestFolder folder;
-  std::filesystem::create_directories(folder.path() / "a.txt" / "inside");
-  EXPECT_THAT(message_of([&] { write_text_file(folder.path() / "a.txt", "x"); }), HasSubstr("Is a directory"));
-  EXPECT_EQ(count_files(folder.path()), 1u);
+TEST_F(AtomicFileTest, NameThatIsAFolder_IsAnOutputErrorAndLeavesNoTemporary) {
+  std::filesystem::create_directories(folder_.path() / "a.txt" / "inside");
+  EXPECT_THAT(message_of([&] { write_text_file(folder_.path() / "a.txt", "x"); }), HasSubstr("Is a directory"));
+  EXPECT_EQ(count_files(folder_.path()), 1u);
 }
 
-TEST(AtomicFile, FullDisk_IsAnOutputErrorAndKeepsTheOldFile) {
-  const TestFolder folder;
-  write_text_file(folder.path() / "a.txt", "old");
+TEST_F(AtomicFileTest, FullDisk_IsAnOutputErrorAndKeepsTheOldFile) {
+  write_text_file(folder_.path() / "a.txt", "old");
   for (const std::size_t bytes : {100000u, 4097u})
     EXPECT_THAT(
         with_file_limit(
             4096,
-            [&] { return message_of([&] { write_text_file(folder.path() / "a.txt", std::string(bytes, 'x')); }); }),
+            [&] { return message_of([&] { write_text_file(folder_.path() / "a.txt", std::string(bytes, 'x')); }); }),
         HasSubstr("File too large"));
-  EXPECT_EQ(read_text(folder.path() / "a.txt"), "old");
-  EXPECT_EQ(count_files(folder.path()), 1u);
+  EXPECT_EQ(read_text(folder_.path() / "a.txt"), "old");
+  EXPECT_EQ(count_files(folder_.path()), 1u);
 }
 
 TEST(FileName, PlainNames_StayAsTheyAre) {
@@ -143,9 +138,8 @@ std::set<std::string> list_names(const std::filesystem::path& folder) {
   return names;
 }
 
-TEST(FolderLock, IsOfOneAtATime_AndLeavesItsMark) {
-  const TestFolder folder;
-  const std::filesystem::path out = folder.path() / "a" / "out";
+TEST_F(FolderLockTest, IsOfOneAtATime_AndLeavesItsMark) {
+  const std::filesystem::path out = folder_.path() / "a" / "out";
   {
     const FolderLock lock(out);
     lock.require_in_place();
@@ -157,15 +151,13 @@ TEST(FolderLock, IsOfOneAtATime_AndLeavesItsMark) {
   EXPECT_EQ(refusal_of(out), "");
 }
 
-TEST(FolderLock, OfAKilledProcess_IsFree) {
-  const TestFolder folder;
-  write_text_file(folder.path() / ".shadowbench-lock", "1\n");
-  EXPECT_EQ(refusal_of(folder.path()), "");
+TEST_F(FolderLockTest, OfAKilledProcess_IsFree) {
+  write_text_file(folder_.path() / ".shadowbench-lock", "1\n");
+  EXPECT_EQ(refusal_of(folder_.path()), "");
 }
 
-TEST(FolderLock, FolderThatIsGoneOrAnother_IsNoticed) {
-  const TestFolder folder;
-  const std::filesystem::path out = folder.path() / "out";
+TEST_F(FolderLockTest, FolderThatIsGoneOrAnother_IsNoticed) {
+  const std::filesystem::path out = folder_.path() / "out";
   const FolderLock lock(out);
   std::filesystem::remove_all(out);
   EXPECT_THROW(lock.require_in_place(), Error);
@@ -175,9 +167,8 @@ TEST(FolderLock, FolderThatIsGoneOrAnother_IsNoticed) {
 }
 
 /// It would empty the file that the link leads to.
-TEST(FolderLock, LockThatIsALinkOrAPipe_IsRefused) {
-  const TestFolder folder;
-  const std::filesystem::path own = folder.path() / "own.txt", lock = folder.path() / "out" / ".shadowbench-lock";
+TEST_F(FolderLockTest, LockThatIsALinkOrAPipe_IsRefused) {
+  const std::filesystem::path own = folder_.path() / "own.txt", lock = folder_.path() / "out" / ".shadowbench-lock";
   write_text_file(own, "kept");
   std::filesystem::create_directories(lock.parent_path());
   const std::function<void()> makers[] = {
@@ -192,12 +183,11 @@ TEST(FolderLock, LockThatIsALinkOrAPipe_IsRefused) {
   }
 }
 
-TEST(FolderLock, LinkAtAnyLevel_IsRefused) {
-  const TestFolder folder;
-  const std::filesystem::path out = folder.path() / "out", link = out / "a" / "b" / "link";
+TEST_F(FolderLockTest, LinkAtAnyLevel_IsRefused) {
+  const std::filesystem::path out = folder_.path() / "out", link = out / "a" / "b" / "link";
   { const FolderLock marks(out); }
   std::filesystem::create_directories(link.parent_path());
-  for (const auto& target : {folder.path(), std::filesystem::path("nowhere")}) {
+  for (const auto& target : {folder_.path(), std::filesystem::path("nowhere")}) {
     std::filesystem::create_directory_symlink(target, link);
     EXPECT_THAT(refusal_of(out), HasSubstr(link.string()));
     std::filesystem::remove(link);
@@ -205,7 +195,7 @@ TEST(FolderLock, LinkAtAnyLevel_IsRefused) {
   EXPECT_EQ(refusal_of(out), "");
 }
 
-TEST(FolderLock, FolderOfSomebodyElse_IsLeftAsItIs_UnlessItIsTold) {
+TEST_F(FolderLockTest, FolderOfSomebodyElse_IsLeftAsItIs_UnlessItIsTold) {
   for (const char* name : {"results.json", "index.html", "a.shadowbench-tmp-99999999.png", ".worker-99999999/a",
                            "cells/notes.json", "stress/notes.txt", "deep/er/a.txt"}) {
     const TestFolder folder;
@@ -218,57 +208,53 @@ TEST(FolderLock, FolderOfSomebodyElse_IsLeftAsItIs_UnlessItIsTold) {
 }
 
 /// A copy may have lost its mark.
-TEST(FolderLock, FolderOfThisProgram_IsTakenAgain) {
+TEST_F(FolderLockTest, FolderOfThisProgram_IsTakenAgain) {
   for (const char* name : {"results.json", "stress.json", ".shadowbench-folder"}) {
     const TestFolder folder;
     write_text_file(folder.path() / name, R"({"command": ["shadowbench"], "schema_version": 1})");
     write_text_file(folder.path() / "notes.txt", "of the user");
     EXPECT_EQ(refusal_of(folder.path()), "") << name;
   }
-  const TestFolder folder;
-  { const FolderLock inner(folder.path() / "out" / "stress"); }
-  EXPECT_EQ(refusal_of(folder.path() / "out"), "");
+  { const FolderLock inner(folder_.path() / "out" / "stress"); }
+  EXPECT_EQ(refusal_of(folder_.path() / "out"), "");
 }
 
 /// Only names of ours are removed, however alike others are.
-TEST(TemporaryFiles, AreRemoved_AndNothingElseIs) {
-  const TestFolder folder;
+TEST_F(TemporaryFiles, AreRemoved_AndNothingElseIs) {
   const char* others[] = {"a.json",      "a.tmp-12.png", "a.shadowbench-tmp-.png", "a.shadowbench-tmp-12x.png",
                           ".worker-x/a", ".worker-/a",   "cells/b.json",           "deep/er/a.shadowbench-tmp-12.png"};
   const char* ours[] = {"a.shadowbench-tmp-12.png",        "b.grid.shadowbench-tmp-12.json", "c.shadowbench-tmp-12",
                         "cells/d.shadowbench-tmp-12.json", ".worker-12/cells/e.json",        ".gpu-12/request.json"};
-  for (const char* name : others) write_text_file(folder.path() / name, "x");
-  for (const char* name : ours) write_text_file(folder.path() / name, "x");
-  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer.process == 13; });
-  for (const char* name : ours) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
-  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer.process == 12; });
-  for (const char* name : ours) EXPECT_FALSE(std::filesystem::exists(folder.path() / name)) << name;
-  for (const char* name : others) EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+  for (const char* name : others) write_text_file(folder_.path() / name, "x");
+  for (const char* name : ours) write_text_file(folder_.path() / name, "x");
+  remove_temporary_files(folder_.path(), [](const Writer& writer) { return writer.process == 13; });
+  for (const char* name : ours) EXPECT_TRUE(std::filesystem::exists(folder_.path() / name)) << name;
+  remove_temporary_files(folder_.path(), [](const Writer& writer) { return writer.process == 12; });
+  for (const char* name : ours) EXPECT_FALSE(std::filesystem::exists(folder_.path() / name)) << name;
+  for (const char* name : others) EXPECT_TRUE(std::filesystem::exists(folder_.path() / name)) << name;
   EXPECT_FALSE(is_gone(this_writer()));
   EXPECT_TRUE(is_gone({this_writer().host, 99999999}));
 }
 
 /// Machines that share a folder have processes of equal numbers.
-TEST(TemporaryFiles, OfAnotherMachine_AreItsOwn) {
-  const TestFolder folder;
+TEST_F(TemporaryFiles, OfAnotherMachine_AreItsOwn) {
   const std::string theirs = "a.shadowbench-tmp-99999999-elsewhere.json";
-  write_text_file(folder.path() / theirs, "x");
-  write_text_file(folder.path() / ("a.shadowbench-tmp-99999999-" + this_writer().host + ".json"), "x");
-  remove_temporary_files(folder.path(), is_gone);
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / theirs));
-  std::filesystem::remove(folder.path() / theirs);
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  write_text_file(folder_.path() / theirs, "x");
+  write_text_file(folder_.path() / ("a.shadowbench-tmp-99999999-" + this_writer().host + ".json"), "x");
+  remove_temporary_files(folder_.path(), is_gone);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / theirs));
+  std::filesystem::remove(folder_.path() / theirs);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
   const std::string own = make_temporary_path("a.json").string();
   EXPECT_TRUE(own.ends_with(this_writer().host + ".json")) << own;
 }
 
-TEST(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
-  const TestFolder folder;
-  { PendingFile(folder.path() / "x.png"); }
-  for (const char* name : {"x.png", "x", "x.y.exr"}) write_text_file(make_temporary_path(folder.path() / name), "x");
-  std::filesystem::create_directories(make_temporary_folder_path(folder.path(), "worker"));
-  remove_temporary_files(folder.path(), [](const Writer& writer) { return writer == this_writer(); });
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+TEST_F(TemporaryFiles, NamesOfThisProcess_AreRecognised) {
+  { PendingFile(folder_.path() / "x.png"); }
+  for (const char* name : {"x.png", "x", "x.y.exr"}) write_text_file(make_temporary_path(folder_.path() / name), "x");
+  std::filesystem::create_directories(make_temporary_folder_path(folder_.path(), "worker"));
+  remove_temporary_files(folder_.path(), [](const Writer& writer) { return writer == this_writer(); });
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
 }  // namespace

@@ -287,54 +287,54 @@ bool contains(const Rect& rect, int x, int y) {
   return x >= rect.x && x < rect.x + rect.width && y >= rect.y && y < rect.y + rect.height;
 }
 
-TEST(HardestEdge, TheEdgeThatFiltersDisagreeOn_IsFound) {
-  const Image reference = make_two_edges();
-  Image other = reference;
+/// A picture, and one in which a test changes something.
+class HardestEdge : public ::testing::Test {
+ protected:
+  const Image reference_ = make_two_edges();
+  Image other_ = reference_;
+};
+
+TEST_F(HardestEdge, TheEdgeThatFiltersDisagreeOn_IsFound) {
   for (int y = 25; y < 30; ++y) {
-    *other.at(60, y) = 0.4f;
-    *other.at(59, y) = 0.6f;
+    *other_.at(60, y) = 0.4f;
+    *other_.at(59, y) = 0.6f;
   }
-  const Rect crop = find_disputed_edge({&reference, &other}, 0, {12, 9});
+  const Rect crop = find_disputed_edge({&reference_, &other_}, 0, {12, 9});
   EXPECT_TRUE(contains(crop, 59, 25));
   EXPECT_TRUE(contains(crop, 60, 29));
   EXPECT_EQ(crop.width, 12);
   EXPECT_EQ(crop.height, 9);
 }
 
-TEST(HardestEdge, DisagreementWithoutAnEdge_AndATexelThatIsNotFinite_ArePassedOver) {
-  const Image reference = make_two_edges();
-  Image other = reference;
+TEST_F(HardestEdge, DisagreementWithoutAnEdge_AndATexelThatIsNotFinite_ArePassedOver) {
   for (int y = 0; y < 10; ++y)
-    for (int x = 66; x < 78; ++x) *other.at(x, y) = 0.0f;  // acne far from any edge
-  *other.at(2, 2) = std::numeric_limits<float>::quiet_NaN();
-  *other.at(20, 30) = 0.5f;
-  EXPECT_TRUE(contains(find_disputed_edge({&reference, &other}, 0, {5, 5}), 20, 30));
+    for (int x = 66; x < 78; ++x) *other_.at(x, y) = 0.0f;  // acne far from any edge
+  *other_.at(2, 2) = std::numeric_limits<float>::quiet_NaN();
+  *other_.at(20, 30) = 0.5f;
+  EXPECT_TRUE(contains(find_disputed_edge({&reference_, &other_}, 0, {5, 5}), 20, 30));
 }
 
-TEST(HardestEdge, WithoutAnyEdge_HoldsTheDisagreement) {
+TEST_F(HardestEdge, WithoutAnyEdge_HoldsTheDisagreement) {
   const Image lit = fill(Image(80, 40, 1), 1.0f);
   Image other = lit;
   *other.at(55, 20) = 0.0f;
   EXPECT_TRUE(contains(find_disputed_edge({&lit, &other}, 0, {5, 5}), 55, 20));
 }
 
-TEST(HardestEdge, FailedFilters_AreLeftOut) {
-  const Image reference = make_two_edges();
-  Image other = reference;
-  *other.at(20, 30) = 0.5f;
+TEST_F(HardestEdge, FailedFilters_AreLeftOut) {
+  *other_.at(20, 30) = 0.5f;
   const Image empty;
-  EXPECT_TRUE(contains(find_disputed_edge({&empty, nullptr, &reference, &other}, 0, {5, 5}), 20, 30));
+  EXPECT_TRUE(contains(find_disputed_edge({&empty, nullptr, &reference_, &other_}, 0, {5, 5}), 20, 30));
   EXPECT_EQ(find_disputed_edge({&empty}, 0, {5, 5}).width, 0);
 }
 
-TEST(HardestEdge, CropLargerThanTheImage_IsCutToIt) {
-  const Image reference = make_two_edges();
-  const Rect crop = find_disputed_edge({&reference}, 0, {500, 500});
+TEST_F(HardestEdge, CropLargerThanTheImage_IsCutToIt) {
+  const Rect crop = find_disputed_edge({&reference_}, 0, {500, 500});
   EXPECT_EQ(crop.width, 80);
   EXPECT_EQ(crop.height, 40);
 }
 
-TEST(HardestEdge, CropSize_FitsAnyPicture) {
+TEST_F(HardestEdge, CropSize_FitsAnyPicture) {
   for (const Size picture : {Size{1, 1}, Size{64, 36}, Size{960, 540}, Size{2000, 3}, Size{3, 2000}}) {
     const Size crop = choose_crop_size(picture);
     EXPECT_GE(crop.width, 1);

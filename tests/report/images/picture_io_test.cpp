@@ -17,6 +17,7 @@ namespace shadowbench::images {
 namespace {
 
 using namespace records;
+using PictureIo = FolderTest;
 
 Image make_noise(int width, int height, int channels) {
   Image image(width, height, channels);
@@ -36,7 +37,7 @@ std::vector<long> list_codes(const Image& image) {
       image.texels, [](float value) { return std::lround(value * 255.0f); });
 }
 
-TEST(PictureIo, Srgb_EqualsTheStandardsValues) {
+TEST_F(PictureIo, Srgb_EqualsTheStandardsValues) {
   EXPECT_EQ(encode_srgb(-1.0f), 0.0f);
   EXPECT_NEAR(encode_srgb(0.002f), 0.02584f, 1e-6f);
   EXPECT_NEAR(encode_srgb(0.5f), 0.735357f, 1e-5f);
@@ -44,7 +45,7 @@ TEST(PictureIo, Srgb_EqualsTheStandardsValues) {
   EXPECT_TRUE(std::isnan(encode_srgb(std::numeric_limits<float>::quiet_NaN())));
 }
 
-TEST(PictureIo, DecodingSrgb_UndoesEncodingIt) {
+TEST_F(PictureIo, DecodingSrgb_UndoesEncodingIt) {
   EXPECT_FLOAT_EQ(decode_srgb(0.04045f), 0.04045f / 12.92f);
   EXPECT_NEAR(decode_srgb(0.5f), 0.214041f, 1e-6f);
   for (int code = 0; code < 256; ++code) {
@@ -53,56 +54,51 @@ TEST(PictureIo, DecodingSrgb_UndoesEncodingIt) {
   }
 }
 
-TEST(PictureIo, PicturePng_IsEncodedForADisplay) {
-  const TestFolder folder;
+TEST_F(PictureIo, PicturePng_IsEncodedForADisplay) {
   Image picture(2, 1, 3);
   picture.texels = {0.0f, 0.5f, 1.0f, -1.0f, 2.0f, 0.2158605f};
-  write_picture_png(folder.path() / "a.png", picture);
-  const Image back = read_picture(folder.path() / "a.png");
+  write_picture_png(folder_.path() / "a.png", picture);
+  const Image back = read_picture(folder_.path() / "a.png");
   ASSERT_EQ(back.channels, 3);
   EXPECT_THAT(list_codes(back), ElementsAre(0, 188, 255, 0, 255, 128));
-  EXPECT_EQ(count_files(folder.path()), 1u);
+  EXPECT_EQ(count_files(folder_.path()), 1u);
 }
 
-TEST(PictureIo, GreyPng_IsLinearInTheValue) {
-  const TestFolder folder;
+TEST_F(PictureIo, GreyPng_IsLinearInTheValue) {
   Image image(4, 1, 1);
   image.texels = {0.0f, 0.5f, 1.0f, 2.0f};
-  write_grey_png(folder.path() / "a.png", image);
-  const Image back = read_picture(folder.path() / "a.png");
+  write_grey_png(folder_.path() / "a.png", image);
+  const Image back = read_picture(folder_.path() / "a.png");
   ASSERT_EQ(back.channels, 1);
   EXPECT_THAT(list_codes(back), ElementsAre(0, 128, 255, 255));
 }
 
-TEST(PictureIo, Png_KeepsEveryCode) {
-  const TestFolder folder;
+TEST_F(PictureIo, Png_KeepsEveryCode) {
   for (const int channels : {1, 3}) {
     Image image(257, 129, channels);  // more than one block of deflate
     for (std::size_t i = 0; i < image.texels.size(); ++i)
       image.texels[i] = static_cast<float>(i * i / 7 % 256) / 255.0f;
-    (channels == 1 ? write_grey_png : write_display_png)(folder.path() / "a.png", image);
-    const StoredPicture back = read_stored_picture(folder.path() / "a.png");
+    (channels == 1 ? write_grey_png : write_display_png)(folder_.path() / "a.png", image);
+    const StoredPicture back = read_stored_picture(folder_.path() / "a.png");
     ASSERT_EQ(back.image.texels.size(), image.texels.size());
     for (std::size_t i = 0; i < image.texels.size(); ++i)
       ASSERT_FLOAT_EQ(back.image.texels[i], image.texels[i]) << channels << " " << i;
     EXPECT_EQ(back.image.width, image.width);
-    const auto bytes = read_file_bytes(folder.path() / "a.png");
+    const auto bytes = read_file_bytes(folder_.path() / "a.png");
     EXPECT_THAT(std::string(bytes.begin(), bytes.end()), HasSubstr("sRGB"));
   }
 }
 
-TEST(PictureIo, TexelThatIsNotFinite_IsMagenta) {
-  const TestFolder folder;
+TEST_F(PictureIo, TexelThatIsNotFinite_IsMagenta) {
   Image image(2, 1, 1);
   image.texels = {0.25f, std::numeric_limits<float>::quiet_NaN()};
-  write_grey_png(folder.path() / "a.png", image);
-  const Image grey = read_picture(folder.path() / "a.png");
+  write_grey_png(folder_.path() / "a.png", image);
+  const Image grey = read_picture(folder_.path() / "a.png");
   ASSERT_EQ(grey.channels, 3);
   EXPECT_THAT(list_codes(grey), ElementsAre(64, 64, 64, 255, 0, 255));
 }
 
-TEST(PictureIo, Exr_ComesBackBitForBit) {
-  const TestFolder folder;
+TEST_F(PictureIo, Exr_ComesBackBitForBit) {
   Image special = make_noise(7, 5, 1);
   special.texels[3] = std::numeric_limits<float>::infinity();
   special.texels[4] = std::numeric_limits<float>::denorm_min();
@@ -114,8 +110,8 @@ TEST(PictureIo, Exr_ComesBackBitForBit) {
                                    {"vsm.picture", {"R", "G", "B"}, make_noise(7, 5, 3)}};
   const Metadata metadata = {{"shadowbench:seed", 7.0},
                              {"shadowbench:command", std::string("shadowbench run --seed 7")}};
-  write_exr(folder.path() / "a.exr", parts, metadata);
-  const ExrFile back = read_exr(folder.path() / "a.exr");
+  write_exr(folder_.path() / "a.exr", parts, metadata);
+  const ExrFile back = read_exr(folder_.path() / "a.exr");
   ASSERT_EQ(back.parts.size(), parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     EXPECT_EQ(back.parts[i].name, parts[i].name);
@@ -125,76 +121,71 @@ TEST(PictureIo, Exr_ComesBackBitForBit) {
   }
   EXPECT_EQ(back.metadata.at("shadowbench:seed"), metadata.at("shadowbench:seed"));
   EXPECT_EQ(back.metadata.at("shadowbench:command"), metadata.at("shadowbench:command"));
-  EXPECT_EQ(count_files(folder.path()), 1u);
+  EXPECT_EQ(count_files(folder_.path()), 1u);
 }
 
-TEST(PictureIo, ExrParts_MayDifferInSize) {
-  const TestFolder folder;
+TEST_F(PictureIo, ExrParts_MayDifferInSize) {
   const std::vector<Part> parts = {{"visibility", {"visibility"}, make_noise(8, 4, 1)},
                                    {"depth", {"Z"}, make_noise(32, 32, 1)}};
-  write_exr(folder.path() / "a.exr", parts, {});
-  const ExrFile back = read_exr(folder.path() / "a.exr");
+  write_exr(folder_.path() / "a.exr", parts, {});
+  const ExrFile back = read_exr(folder_.path() / "a.exr");
   ASSERT_EQ(back.parts.size(), 2u);
   EXPECT_TRUE(has_same_bits(back.parts[1].image, parts[1].image));
-  const ExrFile chosen = read_exr(folder.path() / "a.exr", [](const std::string& name) { return name == "depth"; });
+  const ExrFile chosen = read_exr(folder_.path() / "a.exr", [](const std::string& name) { return name == "depth"; });
   ASSERT_EQ(chosen.parts.size(), 1u);
   EXPECT_EQ(chosen.parts[0].name, "depth");
   EXPECT_TRUE(has_same_bits(chosen.parts[0].image, parts[1].image));
 }
 
-TEST(PictureIo, RoundingToHalf_GivesWhatAHalfPartKeeps) {
-  const TestFolder folder;
+TEST_F(PictureIo, RoundingToHalf_GivesWhatAHalfPartKeeps) {
   Image image = make_noise(31, 17, 3);
   image.texels[0] = 1e-7f;                  // below the smallest normal half
   image.texels[1] = 1e6f;                   // above the largest
   image.texels[2] = 1.0f + 1.0f / 2048.0f;  // halfway between two
   image.texels[3] = std::numeric_limits<float>::infinity();
   image.texels[4] = 0.1f;
-  write_exr(folder.path() / "a.exr", {{"picture", {"R", "G", "B"}, image, true}}, {});
-  EXPECT_TRUE(has_same_bits(round_to_half(image), read_exr(folder.path() / "a.exr").parts.at(0).image));
+  write_exr(folder_.path() / "a.exr", {{"picture", {"R", "G", "B"}, image, true}}, {});
+  EXPECT_TRUE(has_same_bits(round_to_half(image), read_exr(folder_.path() / "a.exr").parts.at(0).image));
   EXPECT_EQ(round_to_half(image).texels[4], 0.0999755859375f);
 }
 
-TEST(PictureIo, PartsOfOneName_AreAnOutputError) {
-  const TestFolder folder;
+TEST_F(PictureIo, PartsOfOneName_AreAnOutputError) {
   const Part part{"a", {"Y"}, make_noise(2, 2, 1)};
   const auto message_of = [&](const std::vector<Part>& parts) {
-    return error_of([&] { write_exr(folder.path() / "a.exr", parts, {}); }).message();
+    return error_of([&] { write_exr(folder_.path() / "a.exr", parts, {}); }).message();
   };
   EXPECT_THAT(message_of({part, part}), HasSubstr("two parts have one name"));
   EXPECT_THAT(message_of({{"a", {"Y", "Y"}, make_noise(2, 2, 2)}}),
               HasSubstr("two channels of part 'a' have one name"));
-  EXPECT_EQ(count_files(folder.path()), 0u);
+  EXPECT_EQ(count_files(folder_.path()), 0u);
 }
 
-TEST(PictureIo, DamagedFile_IsAnInputError) {
-  const TestFolder folder;
-  write_text_file(folder.path() / "a.exr", "not an image");
+TEST_F(PictureIo, DamagedFile_IsAnInputError) {
+  write_text_file(folder_.path() / "a.exr", "not an image");
   for (const char* name : {"a.exr", "missing.exr"}) {
-    const Error error = error_of([&] { read_exr(folder.path() / name); });
+    const Error error = error_of([&] { read_exr(folder_.path() / name); });
     EXPECT_EQ(error.kind(), ErrorKind::kInput);
     EXPECT_THAT(error.what(), HasSubstr(name));
   }
 }
 
 // The image libraries overlook a full disk.
-TEST(PictureIo, FullDisk_IsAnOutputErrorAndLeavesNothing) {
-  const TestFolder folder;
+TEST_F(PictureIo, FullDisk_IsAnOutputErrorAndLeavesNothing) {
   const Image grey = make_noise(64, 64, 1), colour = make_noise(64, 64, 3);
   const std::vector<std::function<void()>> actions = {
-      [&] { write_grey_png(folder.path() / "a.png", grey); },
-      [&] { write_picture_png(folder.path() / "b.png", colour); },
+      [&] { write_grey_png(folder_.path() / "a.png", grey); },
+      [&] { write_picture_png(folder_.path() / "b.png", colour); },
       [&] {
-        write_exr(folder.path() / "c.exr", {{"x", {"Y"}, grey, false}, {"y", {"R", "G", "B"}, colour, false}}, {});
+        write_exr(folder_.path() / "c.exr", {{"x", {"Y"}, grey, false}, {"y", {"R", "G", "B"}, colour, false}}, {});
       }};
   for (const rlim_t bytes : {rlim_t{0}, rlim_t{50}, rlim_t{150}}) {
     for (std::size_t i = 0; i < actions.size(); ++i) {
       const Error error = with_file_limit(bytes, [&] { return error_of(actions[i]); });
       EXPECT_EQ(error.kind(), ErrorKind::kOutput);
       EXPECT_THAT(error.what(),
-                  AllOf(HasSubstr(folder.path().string()), HasSubstr("File too large"), HasSubstr("--out")))
+                  AllOf(HasSubstr(folder_.path().string()), HasSubstr("File too large"), HasSubstr("--out")))
           << i << " " << bytes;
-      EXPECT_EQ(count_files(folder.path()), 0u) << i << " " << bytes;
+      EXPECT_EQ(count_files(folder_.path()), 0u) << i << " " << bytes;
     }
   }
 }
@@ -202,10 +193,8 @@ TEST(PictureIo, FullDisk_IsAnOutputErrorAndLeavesNothing) {
 Image make_grey(float value) { return fill(Image(2, 1, 1), value); }
 
 /// A folder with the file "a.exr" of two parts.
-class StoredPictureTest : public ::testing::Test {
+class StoredPictureTest : public FolderTest {
  protected:
-  TestFolder folder_;
-
   void SetUp() override {
     write_exr(folder_.path() / "a.exr",
               {{"none.visibility", {"Y"}, make_grey(0.25f), false}, {"truth.area", {"Y"}, make_grey(0.5f), false}}, {});

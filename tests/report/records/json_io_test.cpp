@@ -11,6 +11,7 @@ namespace shadowbench::records {
 namespace {
 
 using nlohmann::json;
+using JsonIo = FolderTest;
 
 // Says of each document whether the schema accepts it. Debian's python3-jsonschema is the judge; python is slow to
 // start, so one judges them all.
@@ -119,14 +120,14 @@ std::string message_of(const std::function<void()>& action) {
   return error.what();
 }
 
-TEST(JsonIo, Cell_ComesBackAsItWas) {
+TEST_F(JsonIo, Cell_ComesBackAsItWas) {
   for (const CellRecord& cell : {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()}) {
     const json written = to_json(cell);
     EXPECT_EQ(to_json(cell_from_json(written, "here")), written);
   }
 }
 
-TEST(JsonIo, FilesOfACell_AreAllThatItNames) {
+TEST_F(JsonIo, FilesOfACell_AreAllThatItNames) {
   CellRecord cell = make_full_cell();
   cell.accumulation.emplace().picture = "frames.png";
   const std::vector<std::string> files = list_files(cell);
@@ -136,7 +137,7 @@ TEST(JsonIo, FilesOfACell_AreAllThatItNames) {
   EXPECT_THAT(files, Not(Contains(cell.images.parts.value())));
 }
 
-TEST(JsonIo, FullCell_HasNoNull) { EXPECT_EQ(to_json(make_full_cell()).at("absent"), json::object()); }
+TEST_F(JsonIo, FullCell_HasNoNull) { EXPECT_EQ(to_json(make_full_cell()).at("absent"), json::object()); }
 
 // Expects that reading a cell refuses the lack of exactly what the schema requires of this object in it.
 void expect_required(const json& schema, const json::json_pointer& place) {
@@ -152,11 +153,11 @@ void expect_required(const json& schema, const json::json_pointer& place) {
   }
 }
 
-TEST(JsonIo, ReadingRequires_WhatTheSchemaDoes) {
+TEST_F(JsonIo, ReadingRequires_WhatTheSchemaDoes) {
   expect_required(json::parse(results_schema()).at("$defs").at("cell"), json::json_pointer());
 }
 
-TEST(JsonIo, NotFinite_IsNullWithItsReason) {
+TEST_F(JsonIo, NotFinite_IsNullWithItsReason) {
   CellRecord cell = make_cell("cubes", "vsm", 4.0);
   cell.cost.fetches = std::numeric_limits<double>::quiet_NaN();
   cell.time_ms.lookup->q3 = std::numeric_limits<double>::infinity();
@@ -177,7 +178,7 @@ void expect_explained(const json& value, const std::string& path, const json& ab
       expect_explained(child, path.empty() ? name : path + "." + name, absent);
 }
 
-TEST(JsonIo, EveryNull_HasAReason) {
+TEST_F(JsonIo, EveryNull_HasAReason) {
   for (const CellRecord& cell : {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), CellRecord{}}) {
     const json written = to_json(cell);
     expect_explained(written, "", written.at("absent"));
@@ -189,7 +190,7 @@ TEST(JsonIo, EveryNull_HasAReason) {
   EXPECT_FALSE(absent.contains("cost"));
 }
 
-TEST(JsonIo, WhatWasMeasuredAfterReadingAgain_IsNoLongerAbsent) {
+TEST_F(JsonIo, WhatWasMeasuredAfterReadingAgain_IsNoLongerAbsent) {
   CellRecord cell = make_full_cell();
   cell.error = {};
   cell.rmse_ci95.reset();
@@ -205,41 +206,37 @@ TEST(JsonIo, WhatWasMeasuredAfterReadingAgain_IsNoLongerAbsent) {
   EXPECT_EQ(absent.at("truth"), "not measured");
 }
 
-TEST(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
-  const TestFolder folder;
+TEST_F(JsonIo, TextThatIsNotUtf8_IsWrittenAllTheSame) {
   CellRecord cell = make_cell("bad\xff", "vsm", 4.0);
-  write_cell(folder.path(), cell);
-  EXPECT_EQ(read_cell(folder.path(), cell.key).scene, "bad\xEF\xBF\xBD");
+  write_cell(folder_.path(), cell);
+  EXPECT_EQ(read_cell(folder_.path(), cell.key).scene, "bad\xEF\xBF\xBD");
 }
 
-TEST(JsonIo, Results_AreValidAgainstTheirSchema) {
-  const TestFolder folder;
+TEST_F(JsonIo, Results_AreValidAgainstTheirSchema) {
   RunRecord run = make_run();
   run.warnings = {"a \"warning\""};
   run.machine.load_at_start = std::nullopt;
-  write_results(folder.path(), run, {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()});
-  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
-  EXPECT_EQ(read_text(folder.path() / "results.schema.json"), results_schema());
-  write_results(folder.path(), make_run(), {});
-  EXPECT_TRUE(is_valid(folder.path() / "results.json", folder.path() / "results.schema.json"));
-  EXPECT_TRUE(read_results(folder.path() / "results.json").cells.empty());
+  write_results(folder_.path(), run, {make_cell("cubes", "vsm", 4.5), make_timed_out_cell(), make_full_cell()});
+  EXPECT_TRUE(is_valid(folder_.path() / "results.json", folder_.path() / "results.schema.json"));
+  EXPECT_EQ(read_text(folder_.path() / "results.schema.json"), results_schema());
+  write_results(folder_.path(), make_run(), {});
+  EXPECT_TRUE(is_valid(folder_.path() / "results.json", folder_.path() / "results.schema.json"));
+  EXPECT_TRUE(read_results(folder_.path() / "results.json").cells.empty());
 }
 
-TEST(JsonIo, CellFile_IsValidAgainstItsPartOfTheSchema) {
-  const TestFolder folder;
+TEST_F(JsonIo, CellFile_IsValidAgainstItsPartOfTheSchema) {
   const CellRecord cell = make_cell("cubes", "vsm", 4.5);
-  write_cell(folder.path(), cell);
+  write_cell(folder_.path(), cell);
   json schema = json::parse(results_schema());
   schema = {{"$schema", schema["$schema"]}, {"$ref", "#/$defs/cell_file"}, {"$defs", schema["$defs"]}};
-  write_text_file(folder.path() / "schema.json", schema.dump());
-  EXPECT_TRUE(is_valid(cell_path(folder.path(), cell.key), folder.path() / "schema.json"));
+  write_text_file(folder_.path() / "schema.json", schema.dump());
+  EXPECT_TRUE(is_valid(cell_path(folder_.path(), cell.key), folder_.path() / "schema.json"));
 }
 
 // One broken results.json per line: each must be refused by the schema.
-TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
-  const TestFolder folder;
-  write_results(folder.path(), make_run(), {make_cell("cubes", "vsm", 4.5)});
-  const json good = json::parse(read_text(folder.path() / "results.json"));
+TEST_F(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
+  write_results(folder_.path(), make_run(), {make_cell("cubes", "vsm", 4.5)});
+  const json good = json::parse(read_text(folder_.path() / "results.json"));
   const std::vector<json> patches = {
       json::parse(R"([{"op": "remove", "path": "/cells/0/time_ms/map"}])"),
       json::parse(R"([{"op": "add", "path": "/cells/0/extra", "value": 1}])"),
@@ -271,47 +268,43 @@ TEST(JsonIo, BrokenRecords_AreRefusedByTheSchema) {
   };
   std::vector<json> documents = {good};
   for (const json& patch : patches) documents.push_back(good.patch(patch));
-  const std::vector<bool> verdicts = judge_all(documents, folder.path() / "results.schema.json");
+  const std::vector<bool> verdicts = judge_all(documents, folder_.path() / "results.schema.json");
   ASSERT_EQ(verdicts.size(), documents.size());
   EXPECT_TRUE(verdicts[0]);
   for (std::size_t i = 0; i < patches.size(); ++i) EXPECT_FALSE(verdicts[i + 1]) << patches[i];
 }
 
-TEST(JsonIo, Results_HoldTheCellsInTheGivenOrder) {
-  const TestFolder folder;
-  write_results(folder.path(), make_run(), {make_cell("cubes", "vsm", 5.0), make_cell("cubes", "none", 4.0)});
-  const Results results = read_results(folder.path() / "results.json");
+TEST_F(JsonIo, Results_HoldTheCellsInTheGivenOrder) {
+  write_results(folder_.path(), make_run(), {make_cell("cubes", "vsm", 5.0), make_cell("cubes", "none", 4.0)});
+  const Results results = read_results(folder_.path() / "results.json");
   ASSERT_EQ(results.cells.size(), 2u);
   EXPECT_EQ(results.cells[0].filter, "vsm");
   EXPECT_EQ(results.cells[1].filter, "none");
   EXPECT_EQ(to_json(results.run), to_json(make_run()));
 }
 
-TEST(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {
-  const TestFolder folder;
+TEST_F(JsonIo, CutOffFile_IsAnInputErrorThatNamesItAndSaysWhatToDo) {
   const CellRecord cell = make_cell("cubes", "vsm", 4.5);
-  write_cell(folder.path(), cell);
-  const std::string whole = read_text(cell_path(folder.path(), cell.key));
-  write_text_file(cell_path(folder.path(), cell.key), whole.substr(0, whole.size() / 2));
-  const std::string message = message_of([&] { read_cell(folder.path(), cell.key); });
-  EXPECT_THAT(message, HasSubstr(cell_path(folder.path(), cell.key).string()));
+  write_cell(folder_.path(), cell);
+  const std::string whole = read_text(cell_path(folder_.path(), cell.key));
+  write_text_file(cell_path(folder_.path(), cell.key), whole.substr(0, whole.size() / 2));
+  const std::string message = message_of([&] { read_cell(folder_.path(), cell.key); });
+  EXPECT_THAT(message, HasSubstr(cell_path(folder_.path(), cell.key).string()));
   EXPECT_THAT(message, HasSubstr("cut off"));
   EXPECT_THAT(message, HasSubstr("delete this file and run again"));
 }
 
-TEST(JsonIo, OtherSchemaVersion_IsAnInputError) {
-  const TestFolder folder;
-  write_text_file(folder.path() / "results.json", R"({"schema_version": 99})");
-  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
+TEST_F(JsonIo, OtherSchemaVersion_IsAnInputError) {
+  write_text_file(folder_.path() / "results.json", R"({"schema_version": 99})");
+  EXPECT_THAT(message_of([&] { read_results(folder_.path() / "results.json"); }),
               HasSubstr(fmt::format("schema_version is 99, and this program reads {}", kSchemaVersion)));
-  write_text_file(folder.path() / "results.json", "[]");
-  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr("is missing"));
+  write_text_file(folder_.path() / "results.json", "[]");
+  EXPECT_THAT(message_of([&] { read_results(folder_.path() / "results.json"); }), HasSubstr("is missing"));
 }
 
-TEST(JsonIo, CellsThatAreNone_AreRefused_OnceTheFileIsKnownToBeWhole) {
-  const TestFolder folder;
-  const std::filesystem::path file = folder.path() / "results.json";
-  write_results(folder.path(), make_run(), {make_cell("cubes", "vsm", 4.5)});
+TEST_F(JsonIo, CellsThatAreNone_AreRefused_OnceTheFileIsKnownToBeWhole) {
+  const std::filesystem::path file = folder_.path() / "results.json";
+  write_results(folder_.path(), make_run(), {make_cell("cubes", "vsm", 4.5)});
   const json good = json::parse(read_text(file));
   const auto refuse = [&](const std::string& text) {
     write_text_file(file, text);
@@ -329,29 +322,27 @@ TEST(JsonIo, CellsThatAreNone_AreRefused_OnceTheFileIsKnownToBeWhole) {
   EXPECT_THAT(refuse(bad.dump()), HasSubstr("the list 'cells' is missing"));
 }
 
-TEST(JsonIo, CellThatStandsTwice_IsRefused) {
-  const TestFolder folder;
+TEST_F(JsonIo, CellThatStandsTwice_IsRefused) {
   const CellRecord cell = make_cell("cubes", "vsm", 4.5);
-  write_results(folder.path(), make_run(), {cell, make_cell("cubes", "esm", 4.5), cell});
-  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }), HasSubstr(cell.key));
+  write_results(folder_.path(), make_run(), {cell, make_cell("cubes", "esm", 4.5), cell});
+  EXPECT_THAT(message_of([&] { read_results(folder_.path() / "results.json"); }), HasSubstr(cell.key));
 }
 
 /// Twice as many members took four times as long: these, half a minute.
-TEST(JsonIo, ManyMembers_TakeTimeInProportion) {
+TEST_F(JsonIo, ManyMembers_TakeTimeInProportion) {
   std::string text = "{";
   for (int i = 0; i < 60000; ++i) text += fmt::format("\"{}\": {{\"a\": {{}}}},", i);
-  const TestFolder folder;
-  write_text_file(folder.path() / "many.json", text + "\"last\": 0}");
+  write_text_file(folder_.path() / "many.json", text + "\"last\": 0}");
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(read_json_file(folder.path() / "many.json", kMebibyte * 64, "").size(), 60001u);
+  EXPECT_EQ(read_json_file(folder_.path() / "many.json", kMebibyte * 64, "").size(), 60001u);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
-TEST(JsonIo, MissingFile_IsAnInputError) {
+TEST_F(JsonIo, MissingFile_IsAnInputError) {
   EXPECT_THAT(message_of([] { read_results("/nowhere/results.json"); }), HasSubstr("/nowhere/results.json"));
 }
 
-TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
+TEST_F(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
   json written = to_json(make_cell("cubes", "vsm", 4.5));
   written["cost"]["passes"] = 1.5;
   EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("f.json: the field 'cost.passes'"));
@@ -363,19 +354,18 @@ TEST(JsonIo, FieldOfAnotherType_IsAnInputErrorThatNamesTheField) {
   EXPECT_THAT(message_of([&] { cell_from_json(json(), "f.json"); }), HasSubstr("is missing"));
 }
 
-TEST(JsonIo, NestedWithoutEnd_IsAnInputError) {
-  const TestFolder folder;
+TEST_F(JsonIo, NestedWithoutEnd_IsAnInputError) {
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
-  write_text_file(folder.path() / "results.json",
+  write_text_file(folder_.path() / "results.json",
                   fmt::format(R"({{"schema_version": {}, "commit": {}}})", kSchemaVersion, deep));
-  EXPECT_THAT(message_of([&] { read_results(folder.path() / "results.json"); }),
+  EXPECT_THAT(message_of([&] { read_results(folder_.path() / "results.json"); }),
               HasSubstr("nested more than 100 deep"));
-  write_text_file(folder.path() / "deep.json", deep);
-  EXPECT_THAT(message_of([&] { read_json_file(folder.path() / "deep.json", kMebibyte * 64, ""); }),
+  write_text_file(folder_.path() / "deep.json", deep);
+  EXPECT_THAT(message_of([&] { read_json_file(folder_.path() / "deep.json", kMebibyte * 64, ""); }),
               HasSubstr("nested more than 100 deep"));
 }
 
-TEST(JsonIo, PathsAndKeysThatLeaveTheFolder_AreRefused) {
+TEST_F(JsonIo, PathsAndKeysThatLeaveTheFolder_AreRefused) {
   for (const std::string& path :
        {std::string("../outside.png"), std::string("/etc/passwd"), std::string("images/../../x.png"), std::string(".."),
         std::string(), std::string("images/x.png\0/../..", 19)}) {
@@ -388,7 +378,7 @@ TEST(JsonIo, PathsAndKeysThatLeaveTheFolder_AreRefused) {
   EXPECT_THAT(message_of([&] { cell_from_json(written, "f.json"); }), HasSubstr("'key'"));
 }
 
-TEST(JsonIo, ShardThatCannotBe_IsRefused) {
+TEST_F(JsonIo, ShardThatCannotBe_IsRefused) {
   for (const auto& [field, value] : std::map<std::string, int>{{"shards", 0}, {"shard", 0}, {"cells", -1}}) {
     json written = to_json(make_run());
     written["experiment"][field] = value;

@@ -8,6 +8,12 @@
 
 namespace shadowbench::records {
 
+/// A test with a folder of its own.
+class FolderTest : public ::testing::Test {
+ protected:
+  const TestFolder folder_;
+};
+
 /// What a function or a member gives of each of some things, in their order.
 template <typename Things, typename Get>
 auto list_each(const Things& things, Get get) {
