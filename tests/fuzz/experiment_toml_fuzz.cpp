@@ -2,15 +2,14 @@
 
 #include "filters/catalogue.h"
 #include "harness/options/experiment_file.h"
-#include "tests/fuzz/scratch_folder.h"
+#include "tests/fuzz/input.h"
 
 namespace shadowbench::fuzz {
 namespace {
 
 void read_experiment(std::string_view text) {
-  static const ScratchFolder folder;
   static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const options::Experiment experiment = options::read_experiment(folder.write("input.toml", text));
+  const options::Experiment experiment = options::read_experiment(write_input("input.toml", text));
   options::expand_filters(experiment, catalogue);
 }
 

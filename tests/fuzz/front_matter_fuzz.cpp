@@ -2,7 +2,7 @@
 
 #include "filters/catalogue.h"
 #include "filters/front_matter.h"
-#include "tests/fuzz/scratch_folder.h"
+#include "tests/fuzz/input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace shadowbench;

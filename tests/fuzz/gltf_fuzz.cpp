@@ -5,7 +5,7 @@
 
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
-#include "tests/fuzz/scratch_folder.h"
+#include "tests/fuzz/input.h"
 
 namespace shadowbench::fuzz {
 namespace {
@@ -18,12 +18,11 @@ constexpr std::array<unsigned char, 69> kPng{
     0xef, 0x46, 0xb8, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
 void load_model(std::string_view bytes) {
-  static const ScratchFolder folder;
-  static const std::filesystem::path picture = folder.write("p.png", as_text(kPng.data(), kPng.size()));
-  static const std::filesystem::path buffer = folder.write("b.bin", std::string(256, '\x3f'));
+  static const std::filesystem::path picture = write_input("p.png", as_text(kPng.data(), kPng.size()));
+  static const std::filesystem::path buffer = write_input("b.bin", std::string(256, '\x3f'));
   scene::LoadOptions options;
   options.ground = true;
-  const scene::Scene scene = scene::load(folder.write("input.gltf", bytes).string(), options);
+  const scene::Scene scene = scene::load(write_input("input.gltf", bytes).string(), options);
   scene::fit_light(scene, scene::FitMode::kTight, 64, 2.0);
 }
 

@@ -1,10 +1,11 @@
 // A results.json. What was read is written and read again: it must then be the same.
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "report/records/json_io.h"
 #include "report/records/json_values.h"
-#include "tests/fuzz/scratch_folder.h"
+#include "tests/fuzz/input.h"
 
 namespace shadowbench::fuzz {
 namespace {
@@ -14,8 +15,7 @@ void require_same(const nlohmann::json& first, const nlohmann::json& second) {
 }
 
 void read_results(std::string_view text) {
-  static const ScratchFolder folder;
-  const records::Results results = records::read_results(folder.write("results.json", text));
+  const records::Results results = records::read_results(write_input("results.json", text));
   const nlohmann::json run = records::to_json(results.run);
   require_same(run, records::to_json(records::run_from_json(run, "written")));
   for (const records::CellRecord& cell : results.cells) {

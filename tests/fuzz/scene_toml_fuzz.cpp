@@ -2,7 +2,7 @@
 
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
-#include "tests/fuzz/scratch_folder.h"
+#include "tests/fuzz/input.h"
 
 namespace shadowbench::fuzz {
 namespace {
@@ -10,9 +10,8 @@ namespace {
 constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 void read_scene(std::string_view text) {
-  static const ScratchFolder folder;
-  static const std::filesystem::path model = folder.write("triangle.obj", kTriangle);
-  const scene::Scene scene = scene::load(folder.write("input.toml", text).string(), {});
+  static const std::filesystem::path model = write_input("triangle.obj", kTriangle);
+  const scene::Scene scene = scene::load(write_input("input.toml", text).string(), {});
   scene::fit_light(scene, scene::FitMode::kTight, 64, 2.0);
 }
 
