@@ -1,20 +1,14 @@
 #include "filters/catalogue.h"
 
-#include <unistd.h>
-
 #include "filters/kernel.h"
 #include "filters/model.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::filters {
 namespace {
 
 using ::testing::IsSupersetOf;
-
-const Catalogue& built_in() {
-  static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  return catalogue;
-}
 
 void expect_usage_error(const std::string& text, const std::string& words) {
   const Error error = error_of([&] { built_in().parse_requests(text); });
@@ -59,8 +53,8 @@ TEST(Requests, AWidth_IsItsRadius) {
 TEST(Requests, AWidth_CountsWithTheOtherParameters) {
   // Read with the nearest texel, a kernel is narrower: 0.54 texels with a radius of 1, 1.00 with 2.
   for (const char* text : {"esm:width=0.78,combine=log", "esm:combine=log,width=0.78"})
-    EXPECT_EQ(number(built_in().parse_requests(text).front().values, "radius"), 2.0) << text;
-  EXPECT_EQ(number(built_in().parse_requests("esm:width=0.78").front().values, "radius"), 1.0);
+    EXPECT_EQ(number(request_of(text).values, "radius"), 2.0) << text;
+  EXPECT_EQ(number(request_of("esm:width=0.78").values, "radius"), 1.0);
 }
 
 TEST(Requests, ParametersBelongToTheFilterBefore) {
@@ -96,9 +90,8 @@ TEST(Requests, Mistakes_AreNamed) {
 }
 
 TEST(SetWidths, ReachWhatWasToldNoneAndHasAChoice) {
-  const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
   const std::string text = "none,vsm,vsm:radius=6,esm:width=medium,@godot,pcss";
-  std::vector<FilterRequest> soft = catalogue.parse_requests(text), light = soft;
+  std::vector<FilterRequest> soft = built_in().parse_requests(text), light = soft;
   const FilterRequest preset = soft[4];
   set_widths(soft, "soft");
   EXPECT_EQ(number(soft[1].values, "radius"), 3.0);
@@ -122,8 +115,7 @@ TEST(SetWidths, ReachWhatWasToldNoneAndHasAChoice) {
 }
 
 TEST(SetWidths, OneByTheLight_IsNotTheFilterWithThatRadius) {
-  const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  const auto requests = catalogue.parse_requests("vsm,vsm:width=light");
+  const auto requests = built_in().parse_requests("vsm,vsm:width=light");
   EXPECT_EQ(requests[0].values, requests[1].values) << "the light is not asked yet";
   EXPECT_FALSE(is_same(requests[0], requests[1]));
 }
@@ -195,7 +187,7 @@ TEST(Presets, OfOneFilter_AreOneRequest) {
     EXPECT_THAT(presets_of(requests.front()), ElementsAre("playcanvas", "filament")) << text;
   }
   EXPECT_EQ(built_in().parse_requests("castano3,castano3").size(), 2u) << "what is named twice is told, as ever";
-  EXPECT_TRUE(built_in().parse_requests("castano3").front().presets.empty());
+  EXPECT_TRUE(request_of("castano3").presets.empty());
 }
 
 TEST(Presets, SayWhatTheyLack_AndTheEnginesBias) {

@@ -16,10 +16,12 @@ inline DepthMap make_edge(int size, int edge, float near, float far) {
   return map;
 }
 
-inline FilterRequest request_of(const std::string& text) {
+inline const Catalogue& built_in() {
   static const Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  return catalogue.parse_requests(text).front();
+  return catalogue;
 }
+
+inline FilterRequest request_of(const std::string& text) { return built_in().parse_requests(text).front(); }
 
 /// Looks receivers up by a filter.
 class Filtered {

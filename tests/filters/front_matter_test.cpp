@@ -1,16 +1,18 @@
 #include "filters/front_matter.h"
 
-#include "filters/catalogue.h"
 #include "filters/glsl_words.h"
 #include "filters/kernel.h"
-#include "filters/model.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::filters {
 namespace {
 
+const std::string kLit = "float visibility(Receiver r) { return 1.0; }\n";
+const std::string kStored = "vec4 encode(EncodeInput e) { return vec4(0); }\n" + kLit;
+
 /// Puts lines into the front matter of a filter that is otherwise right; they start at line 6.
-std::string with(const std::string& lines, const std::string& glsl = "float visibility(Receiver r) { return 1.0; }\n") {
+std::string with(const std::string& lines, const std::string& glsl = kLit) {
   return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = 2\n" + lines + "+++*/\n" + glsl;
 }
 
@@ -28,8 +30,8 @@ TEST(FrontMatter, GivesEveryField) {
       "true\nradius_texels = "
       "\"radius\"\n"
       "[param.radius]\ndefault = 3\nmin = 0\nmax = 9\nunit = \"texels\"\ntext = \"help\"\n"
-      "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nconst = true\n+++*/\n"
-      "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n",
+      "[param.amount]\ndefault = 0.5\nmin = 0.0\nmax = 1.0\ntext = \"help\"\nconst = true\n+++*/\n" +
+          kStored,
       "mine.glsl");
   EXPECT_EQ(spec.id, "mine");
   EXPECT_EQ(spec.title, "Title");
@@ -107,8 +109,7 @@ TEST(FrontMatter, WrongTypes_AreRefused) {
 
 TEST(FrontMatter, StoreAndEncode_ComeTogether) {
   expect_error(with("store = \"r32f\"\n"), 6, "lacks 'vec4 encode");
-  expect_error(with("", "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }"),
-               1, "lacks 'store'");
+  expect_error(with("", kStored), 1, "lacks 'store'");
   expect_error(with("combine = \"linear\"\n"), 6, "needs 'store'");
   expect_error(with("samples = 4\n"), 6, "'samples' says what is stored, and needs 'store'");
   for (const char* wrong : {"3", "0", "32", "4.0", "[1, 5]", "\"4\"", "[]"})
@@ -117,18 +118,17 @@ TEST(FrontMatter, StoreAndEncode_ComeTogether) {
 }
 
 TEST(FrontMatter, WhatTheMapHolds_IsDeclared) {
-  const std::string glsl =
-      "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }";
   const std::string param = "[param.c]\ndefault = 1.0\nmin = 0.0\nmax = 2.0\ntext = \"x\"\n";
   const FilterSpec spec = parse_filter(
-      with("store = \"rg32f\"\nmoments = true\nexponent = \"c\"\nvariance_floor = \"c\"\n" + param, glsl), "a.glsl");
+      with("store = \"rg32f\"\nmoments = true\nexponent = \"c\"\nvariance_floor = \"c\"\n" + param, kStored), "a.glsl");
   EXPECT_TRUE(spec.holds_moments);
   EXPECT_EQ(spec.exponent, "c");
   EXPECT_EQ(spec.variance_floor, "c");
-  EXPECT_FALSE(parse_filter(with("store = \"rg32f\"\n", glsl), "a.glsl").holds_moments);
-  expect_error(with("store = [\"rg32f\", \"r32f\"]\nmoments = true\n", glsl), 7, "'r32f' has one");
-  expect_error(with("store = \"r32f\"\nexponent = \"d\"\n" + param, glsl), 7, "'d', which is not a numeric parameter");
-  expect_error(with("store = \"rg32f\"\nvariance_floor = \"c\"\n" + param, glsl), 7, "needs 'moments = true'");
+  EXPECT_FALSE(parse_filter(with("store = \"rg32f\"\n", kStored), "a.glsl").holds_moments);
+  expect_error(with("store = [\"rg32f\", \"r32f\"]\nmoments = true\n", kStored), 7, "'r32f' has one");
+  expect_error(with("store = \"r32f\"\nexponent = \"d\"\n" + param, kStored), 7,
+               "'d', which is not a numeric parameter");
+  expect_error(with("store = \"rg32f\"\nvariance_floor = \"c\"\n" + param, kStored), 7, "needs 'moments = true'");
   expect_error(with("exponent = \"c\"\n" + param), 6, "needs 'store'");
   std::string bound = with("bound_at_zero = \"c\"\n" + param);
   expect_error(bound, 6, "needs 'kind = \"bound\"'");
@@ -141,12 +141,10 @@ TEST(FrontMatter, WhatTheMapHolds_IsDeclared) {
 TEST(FrontMatter, NoVisibility_IsRefused) { expect_error(with("", "float lit() { return 1.0; }"), 1, "visibility"); }
 
 TEST(FrontMatter, PrefilterRadius_MustBeWhole) {
-  const std::string glsl =
-      "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }";
   expect_error(
       "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = \"linear\"\nradius_texels = "
       "1.5\n+++*/\n" +
-          glsl,
+          kStored,
       6, "whole number");
 }
 
@@ -179,9 +177,7 @@ TEST(FrontMatter, ChoicesAreOfOneType_AndBoundWhatTheyDrive) {
   const auto with_radius = [](const std::string& choices) {
     return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = "
            "\"linear\"\nradius_texels = \"radius\"\n[param.radius]\ndefault = 1\nchoices = " +
-           choices +
-           "\ntext = \"x\"\n+++*/\nvec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { "
-           "return 1.0; }\n";
+           choices + "\ntext = \"x\"\n+++*/\n" + kStored;
   };
   EXPECT_TRUE(parse_filter(with_radius("[1, 2]"), "mine.glsl").has_prefilter);
   expect_error(with_radius("[1, 100000]"), 6, "radius_texels");
@@ -207,8 +203,7 @@ TEST(FrontMatter, PassesAreReadInTheirOrder) {
       with(
           "[pass.later]\nstore = \"rg32ui\"\nsteps = \"prefix\"\n[pass.earlier]\nstore = \"r16f\"\nsteps = \"levels\"\n"
           "size = \"half\"\nanisotropy = 8\n",
-          "uvec4 later(PassInput p) { return uvec4(0); }\nvec4 earlier(PassInput p) { return vec4(0); }\n"
-          "float visibility(Receiver r) { return 1.0; }\n"),
+          "uvec4 later(PassInput p) { return uvec4(0); }\nvec4 earlier(PassInput p) { return vec4(0); }\n" + kLit),
       "mine.glsl");
   ASSERT_EQ(spec.passes.size(), 2u);
   EXPECT_EQ(spec.passes[0].name, "later");
@@ -236,9 +231,8 @@ TEST(FrontMatter, BadPassesAreRefused) {
   expect_error(with("[param.p]\ndefault = 1\nmin = 0\nmax = 2\ntext = \"t\"\n[pass.p]\nstore = \"r32f\"\n"), 11,
                "'p' is the name of something else");
   expect_error(with("[pass.p]\nstore = \"r32f\"\n"), 6, "lacks 'vec4 p(PassInput p)'");
-  expect_error(with("[pass.p]\nstore = \"r32ui\"\n",
-                    "vec4 p(PassInput p) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n"),
-               6, "lacks 'uvec4 p(PassInput p)'");
+  expect_error(with("[pass.p]\nstore = \"r32ui\"\n", "vec4 p(PassInput p) { return vec4(0); }\n" + kLit), 6,
+               "lacks 'uvec4 p(PassInput p)'");
   for (const char* number : {"2.5", "0", "17"}) {
     expect_error(with(fmt::format("[pass.p]\nstore = \"r32f\"\nanisotropy = {}\n", number)), 8,
                  "'anisotropy' in [pass.p] must be a whole number from 1 to 16");
@@ -267,7 +261,7 @@ std::string with_kernel(const std::string& lines) {
          "3\n"
          "param.radius.min = 0\nparam.radius.max = 9\nparam.radius.text = \"help\"\nparam.taps.default = 3\n"
          "param.taps.min = 1\nparam.taps.max = 9\nparam.taps.text = \"help\"\n" +
-         lines + "\n+++*/\nfloat visibility(Receiver r) { return 1.0; }\n";
+         lines + "\n+++*/\n" + kLit;
 }
 
 FilterSpec parse_with(const std::string& lines) { return parse_filter(with_kernel(lines), "mine.glsl"); }
@@ -295,10 +289,9 @@ TEST(DeclaredKernel, CanBeThatOfEveryBuiltInFilter) {
       {"poisson", "kernel = 'disk:radius'"},
       {"vsm:radius=3", "kernel = 'gaussian:radius'"},
       {"esm:combine=log,radius=3", "kernel = { shape = 'gaussian:radius', read = 'nearest' }"}};
-  const Catalogue built_in(SHADOWBENCH_SOURCE_DIR "/filters");
   for (const auto& [text, lines] : pairs) {
     SCOPED_TRACE(text);
-    const FilterRequest request = built_in.parse_requests(text).front();
+    const FilterRequest request = request_of(text);
     EXPECT_EQ(declare(lines).name(), find_kernel(request.spec, request.values)->name());
   }
 }
@@ -346,7 +339,6 @@ class Copies : public ::testing::Test {
   }
 
   TestFolder folder_;
-  Catalogue built_in_{SHADOWBENCH_SOURCE_DIR "/filters"};
 };
 
 std::string replace(std::string text, const std::string& from, const std::string& to) {
@@ -356,7 +348,7 @@ std::string replace(std::string text, const std::string& from, const std::string
 }
 
 TEST_F(Copies, OfAnyBuiltInFilter_HaveItsModel_UnderAnotherTitle_WithOtherCommentsAndBlanks) {
-  for (const FilterSpec& spec : built_in_.filters()) {
+  for (const FilterSpec& spec : built_in().filters()) {
     std::string text = replace(read_text(spec.path), "title = \"", "title = \"My ");
     text = replace(text, "+++*/\n", "+++*/\n// My own lines.\n\n");
     text = replace(text, "float visibility(Receiver r) {", "float\t visibility(Receiver r) /* mine */  {") + "\n\n";
@@ -366,7 +358,7 @@ TEST_F(Copies, OfAnyBuiltInFilter_HaveItsModel_UnderAnotherTitle_WithOtherCommen
 }
 
 TEST_F(Copies, ThatComputeSomethingElse_AreNone) {
-  const std::string text = read_text(built_in_.find("poisson").path);
+  const std::string text = read_text(built_in().find("poisson").path);
   EXPECT_EQ(add(text).copy_of, "poisson");
   EXPECT_EQ(add(replace(text, "r.depth", "r.depth_unbiased")).copy_of, "");
   EXPECT_EQ(add(replace(text, "seed = ", "seed = 9")).copy_of, "");
@@ -375,12 +367,6 @@ TEST_F(Copies, ThatComputeSomethingElse_AreNone) {
 }
 
 // Names that filters may use.
-
-std::string read(const std::filesystem::path& file) {
-  std::stringstream text;
-  text << std::ifstream(std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / file).rdbuf();
-  return text.str();
-}
 
 /// The names before a parenthesis in the first column of a table: "| `float fetch_depth(Receiver r, ...)` | ...".
 std::vector<std::string> list_functions(const std::string& table) {
@@ -395,12 +381,14 @@ std::vector<std::string> list_functions(const std::string& table) {
 }
 
 TEST(MapNames, AreThoseOfTheDocuments_AndOfTheShaders) {
-  const std::string page = read("filters/README.md");
+  const std::filesystem::path root(SHADOWBENCH_SOURCE_DIR);
+  const std::string page = read_text(root / "filters/README.md");
   const std::size_t begin = page.find("## Map functions"), end = page.find("## Rules and faults");
   ASSERT_LT(begin, end);
   const std::string section = page.substr(begin, end - begin);
-  const std::string shaders =
-      read("shaders/lib/map_access.glsl") + read("shaders/lib/random.glsl") + read("shaders/lib/screen_input.glsl");
+  std::string shaders;
+  for (const char* file : {"map_access.glsl", "random.glsl", "screen_input.glsl"})
+    shaders += read_text(root / "shaders/lib" / file);
   const std::vector<std::string> documented = list_functions(section);
   EXPECT_GE(documented.size(), 12U);
   for (const std::string& name : documented) EXPECT_THAT(list_map_names(), Contains(name));

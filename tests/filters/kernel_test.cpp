@@ -1,10 +1,9 @@
 #include "filters/kernel.h"
 
-#include "filters/catalogue.h"
 #include "filters/front_matter.h"
-#include "filters/model.h"
 #include "filters/percentage_closer.h"
 #include "filters/screen.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::filters {
@@ -13,13 +12,8 @@ namespace {
 // Kernels: continuous shape and weights on the texel grid agree with each other, with the filters, and with closed
 // forms.
 
-const Catalogue& catalogue() {
-  static const Catalogue filters(SHADOWBENCH_SOURCE_DIR "/filters");
-  return filters;
-}
-
 Kernel kernel_of(const std::string& text) {
-  const FilterRequest request = catalogue().parse_requests(text).front();
+  const FilterRequest request = request_of(text);
   return find_kernel(request.spec, request.values).value();
 }
 
@@ -28,13 +22,6 @@ DepthMap make_random_map(int size, unsigned seed) {
   DepthMap map{size, {}};
   for (int i = 0; i < size * size; ++i) map.stored.push_back(static_cast<float>(random()) * 0x1p-32f);
   return map;
-}
-
-Receiver make_receiver(double x, double y, int size, float depth) {
-  Receiver r;
-  r.uv = {static_cast<float>(x / size), static_cast<float>(y / size)};
-  r.depth = depth;
-  return r;
 }
 
 TEST(KernelNames, TellKernelsApart) {
@@ -73,12 +60,12 @@ TEST(KernelWidths, AreTheShapeAndItsReconstruction) {
 
 // The front matter of every filter says as much as its kernel does: to the centre of the farthest texel that counts.
 TEST(KernelWidths, ReachIsThatOfTheFrontMatter) {
-  for (const FilterSpec& spec : catalogue().filters()) {
-    const FilterRequest request = catalogue().parse_requests(spec.id).front();
-    const std::optional<Kernel> kernel = find_kernel(spec, request.values);
+  for (const FilterSpec& spec : built_in().filters()) {
+    const ParamValues values = request_of(spec.id).values;
+    const std::optional<Kernel> kernel = find_kernel(spec, values);
     if (!kernel) continue;
     const double own_texel = kernel->reconstruction() == Reconstruction::kNearest ? 0.5 : 0.0;
-    EXPECT_EQ(reach_texels(spec, request.values), kernel->half_width() + own_texel) << spec.id;
+    EXPECT_EQ(reach_texels(spec, values), kernel->half_width() + own_texel) << spec.id;
   }
 }
 
@@ -134,7 +121,7 @@ TEST(LightWidth, IsThatOfADiskAsWideAsThePenumbra) {
 
 TEST(LightWidth, TakesTheNearestRadius_AndTheNarrowestWhereNoneIsSoNarrow) {
   const auto sigma_at = [](const char* filter, double wanted) {
-    FilterRequest request = catalogue().parse_requests(std::string(filter) + ":width=light").front();
+    FilterRequest request = request_of(std::string(filter) + ":width=light");
     request.take_light_width(wanted);
     EXPECT_EQ(request.light_sigma_texels, wanted);
     return *find_kernel_sigma(request.spec, request.values);
@@ -208,14 +195,12 @@ TEST(PercentageCloser, EqualsTheModelsThatCompare) {
        {"none", "pcf2x2", "box3x3", "tent3x3", "teach4x4", "box4x4", "tent4x4", "tent5x5", "tent7x7", "castano3",
         "castano5", "castano7", "gather_pcf:radius=1", "gather_pcf", "gather_pcf:radius=3",
         "gather_pcf:shape=castano,radius=1", "gather_pcf:shape=castano", "gather_pcf:shape=castano,radius=3"}) {
-    const FilterRequest request = catalogue().parse_requests(text).front();
-    const ModelInput input{request.spec, request.values, map, {}, 0};
-    const auto lookup = make_model(request.spec)->prepare(input, Precision::kDouble);
+    const Filtered filtered(text, map);
     const PercentageCloser closer(kernel_of(text), map);
     for (int i = 0; i < 2000; ++i) {
       const auto coordinate = [&] { return -2.0 + 36.0 * static_cast<double>(random()) * 0x1p-32; };
-      const Receiver r = make_receiver(coordinate(), coordinate(), 32, static_cast<float>(random()) * 0x1p-32f);
-      const ModelResult result = lookup->at(r);
+      const Receiver r = make_receiver_at(map, coordinate(), coordinate(), static_cast<float>(random()) * 0x1p-32f);
+      const ModelResult result = filtered.find(r);
       if (result.excused) continue;
       ASSERT_NEAR(closer.at(r), result.visibility, 1e-12) << text;
     }
@@ -228,15 +213,13 @@ TEST(PercentageCloser, HasTheWeightsOfThePrefilter) {
   for (float& depth : map.stored) depth = depth < 0.5f ? 0.0f : 1.0f;
   for (const char* text :
        {"esm:c=20,radius=3", "esm:c=20,radius=6", "esm:c=20,radius=0", "esm:c=20,radius=3,combine=log"}) {
-    const FilterRequest request = catalogue().parse_requests(text).front();
-    const ModelInput input{request.spec, request.values, map, {}, 0};
-    const auto lookup = make_model("esm")->prepare(input, Precision::kDouble);
+    const Filtered filtered(text, map);
     const PercentageCloser closer(kernel_of(text), map);
     for (int i = 0; i < 200; ++i) {
       const double x = 12.3 + 0.11 * i, y = 30.7 - 0.07 * i;
       // With the receiver at depth 1, ESM is the mean of exp(-c (1 - z)), which is w + (1 - w) e^-c.
-      ASSERT_NEAR(closer.at(make_receiver(x, y, 48, 1.0f)), lookup->at(make_receiver(x, y, 48, 1.0f)).visibility, 1e-6)
-          << text << i;
+      const Receiver r = make_receiver_at(map, x, y, 1.0f);
+      ASSERT_NEAR(closer.at(r), filtered.at(r), 1e-6) << text << i;
     }
   }
 }
@@ -246,8 +229,8 @@ TEST(PercentageCloser, OfADisk_IsExactlyLit_WhereNothingBlocks) {
   const PercentageCloser closer(kernel_of("poisson:radius=3"), map);
   for (int i = 0; i < 50; ++i) {
     const double x = 16.0 + 0.13 * i, y = 15.0 - 0.07 * i;
-    ASSERT_EQ(closer.at(make_receiver(x, y, 32, 0.5f)), 1.0) << "a tie is lit";
-    ASSERT_EQ(closer.at(make_receiver(x, y, 32, 0.75f)) > 0.0, x + 4.5 > 32.0) << "outside the map the depth is 1";
+    ASSERT_EQ(closer.at(make_receiver_at(map, x, y, 0.5f)), 1.0) << "a tie is lit";
+    ASSERT_EQ(closer.at(make_receiver_at(map, x, y, 0.75f)) > 0.0, x + 4.5 > 32.0) << "outside the map the depth is 1";
   }
 }
 
