@@ -8,7 +8,7 @@ namespace {
 
 // Rates of the faults that a person sees, over masks made by hand.
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 TEST(ArtefactMasks, FollowTheRays) {
   //                                     lit  lit, edge near  turned away  blocked  by a touching one  penumbra  edge of
@@ -18,7 +18,7 @@ TEST(ArtefactMasks, FollowTheRays) {
   const std::vector<std::uint8_t> area_settled = {1, 1, 1, 1, 0, 0, 0};
   const std::vector<float> around = {1, 0.9f, 1, 0, 0.5f, 0.5f, 0.2f};
   const std::vector<std::uint8_t> around_settled = {1, 0, 1, 1, 0, 0, 0};
-  const std::vector<float> blocker = {kFar, kFar, kFar, 30.0f, 1.0f, 1.0f, 30.0f};
+  const std::vector<float> blocker = {kInfinity, kInfinity, kInfinity, 30.0f, 1.0f, 1.0f, 30.0f};
   const ArtefactMasks masks = make_artefact_masks({counts, area, area, area_settled, around, around_settled, blocker});
   EXPECT_EQ(masks.acne, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(masks.leak, (std::vector<std::uint8_t>{0, 0, 0, 1, 0, 0, 0}));
@@ -29,7 +29,7 @@ TEST(ArtefactMasks, FollowTheRays) {
 /// Two receivers see 0.7 of the light: the horizon hides the rest from the first, a caster a part of it from the other.
 TEST(ArtefactMasks, WhatTheReceiversOwnPlaneHides_IsLit) {
   const std::vector<std::uint8_t> ones(2, 1);
-  const std::vector<float> area(2, 0.7f), ratio = {1.0f, 0.9f}, around(2, 1.0f), blocker(2, kFar);
+  const std::vector<float> area(2, 0.7f), ratio = {1.0f, 0.9f}, around(2, 1.0f), blocker(2, kInfinity);
   EXPECT_EQ(make_artefact_masks({ones, area, ratio, ones, around, ones, blocker}).acne,
             (std::vector<std::uint8_t>{1, 0}));
 }
@@ -211,7 +211,6 @@ TEST(Seam, IsAbsent_WhereNoLayerTakesOver) {
 // How the width of penumbrae grows, on ramps of known widths.
 
 constexpr int kColumns = 256, kEdge = 32;  // pixels; an edge in the middle of so many
-constexpr float kNone = std::numeric_limits<float>::infinity();
 
 /// Edges that are wider from row to row of tiles: of a light that rays trace, and of a filter.
 struct Ramps {
@@ -230,7 +229,7 @@ struct Ramps {
         const double seen = ramp(width_of(wide));
         truth.push_back(static_cast<float>(ramp(wide)));
         image.push_back(static_cast<float>(seen + sign * noise * 4.0 * seen * (1.0 - seen)));
-        width.push_back(past < 0.0 && truth.back() > 0.0f ? static_cast<float>(wide) : kNone);
+        width.push_back(past < 0.0 && truth.back() > 0.0f ? static_cast<float>(wide) : kInfinity);
       }
     }
   }
@@ -275,14 +274,13 @@ TEST(PenumbraGrowth, NeedsPenumbraeOfDifferentWidths_AboveThoseOfTexels) {
   EXPECT_FALSE(Ramps(3.0, same).measure(4.0))
       << "wide enough for the map's texels from 8 pixels on: less than a factor of 2";
   Ramps none(3.0, same);
-  std::ranges::fill(none.width, kNone);
+  std::ranges::fill(none.width, kInfinity);
   EXPECT_FALSE(none.measure());
   Ramps masked(3.0, same);
   std::ranges::fill(masked.mask, std::uint8_t{0});
   EXPECT_FALSE(masked.measure());
 }
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(TexelHealth, CountsTexels_NotChannels) {

@@ -254,27 +254,24 @@ TEST_F(Tracer, ASecondRun_DoesNotTraceAgain_AndSeesTheSame) {
 TEST_F(Tracer, WhatTheTruthFollowsFrom_TracesAgain) {
   const auto view = [](CachedTracer& t) { t.trace_view(make_receivers(), make_light()); };
   ASSERT_EQ(count_traced(make_meshes(), view), 1);
-  Meshes changed = make_meshes();
-  changed[0].positions[3].y = std::nextafter(1.0f, 2.0f);
-  EXPECT_EQ(count_traced(changed, view), 1) << "a vertex moved by one step";
-  changed = make_meshes();
-  changed[0].indices = {0, 1, 2};
-  EXPECT_EQ(count_traced(changed, view), 1) << "a triangle less";
-  changed = make_meshes();
-  changed[0].cut_out = make_holes();
-  EXPECT_EQ(count_traced(changed, view), 1) << "holes";
-  changed[0].cut_out->cutoff = 0.25f;
-  EXPECT_EQ(count_traced(changed, view), 1) << "other holes";
-  changed[0].cut_out->base_alpha = 0.75f;
-  EXPECT_EQ(count_traced(changed, view), 1) << "another factor";
-  changed[0].cut_out->alpha[1] = 1;
-  EXPECT_EQ(count_traced(changed, view), 1) << "another alpha";
-  changed[0].cut_out->uvs[3].x += 0.25f;
-  EXPECT_EQ(count_traced(changed, view), 1) << "the texture elsewhere";
-  changed[0].cut_out->dims = true;
-  EXPECT_EQ(count_traced(changed, view), 1) << "dimmed by the same texture";
-  changed[0].cut_out->base_alpha = 0.5f;
-  EXPECT_EQ(count_traced(changed, view), 1) << "dimmed otherwise";
+  OccluderMesh roof = make_meshes()[0];
+  const std::pair<const char*, std::function<void()>> changes[] = {
+      {"a vertex moved by one step", [&] { roof.positions[3].y = std::nextafter(1.0f, 2.0f); }},
+      {"a triangle less",
+       [&] {
+         roof.indices = {0, 1, 2};
+       }},
+      {"holes", [&] { roof.cut_out = make_holes(); }},
+      {"other holes", [&] { roof.cut_out->cutoff = 0.25f; }},
+      {"another factor", [&] { roof.cut_out->base_alpha = 0.75f; }},
+      {"another alpha", [&] { roof.cut_out->alpha[1] = 1; }},
+      {"the texture elsewhere", [&] { roof.cut_out->uvs[3].x += 0.25f; }},
+      {"dimmed by the same texture", [&] { roof.cut_out->dims = true; }},
+      {"dimmed otherwise", [&] { roof.cut_out->base_alpha = 0.5f; }}};
+  for (const auto& [what, change] : changes) {
+    change();
+    EXPECT_EQ(count_traced({roof}, view), 1) << what;
+  }
   EXPECT_EQ(count_traced({}, view), 1) << "no caster";
   ReceiverImage other = make_receivers();
   other.content = "other receivers";

@@ -91,46 +91,48 @@ using filters::Reconstruction;
 constexpr double kOccluderHeight = 2.0;
 constexpr double kLightHeight = 10.0;
 
-/// Half-plane filling x < 0 over a disk light: V = (acos t - t sqrt(1 - t^2)) / pi, t = x (1 - H/h) / R.
-double half_plane_over_disk(double x, double radius) {
-  const double t = std::clamp(x * (1.0 - kLightHeight / kOccluderHeight) / radius, -1.0, 1.0);
+/// What a light of an area shows of receivers behind meshes, against what it should.
+ZScores score_area(const std::vector<OccluderMesh>& meshes, const AreaLight& light, const ReceiverImage& image,
+                   const std::function<double(const glm::dvec3&)>& exact) {
+  const Occluders occluders(meshes);
+  return score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
+                     exact);
+}
+
+/// The share of a disk of radius 1 that lies beyond a chord at this distance from its centre.
+double beyond_chord(double distance) {
+  const double t = std::clamp(distance, -1.0, 1.0);
   return (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
 }
 
-std::vector<OccluderMesh> half_plane() { return {make_sheet(-40.0, 0.0, -40.0, 40.0, kOccluderHeight)}; }
+/// A disk light of radius 1, whose centre is above x = 0.
+const AreaLight kDisk = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
+
+/// What a half-plane that fills x < 0 leaves of it.
+double half_plane_over_disk(double x) { return beyond_chord(x * (1.0 - kLightHeight / kOccluderHeight)); }
 
 TEST(AreaTruth, HalfPlaneOverDisk_FollowsTheClosedForm) {
-  const Occluders occluders(half_plane());
-  const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
-  const ReceiverImage image = make_line(-0.35, 0.35, 240);
-  // The light's centre is above x = 0, so the edge's shadow is centred there for every row.
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); },
-                               image, [](const glm::dvec3& p) { return half_plane_over_disk(p.x, 1.0); }));
+  // The edge's shadow is centred at x = 0 for every row.
+  expect_agreement(score_area(make_half_plane(kOccluderHeight), kDisk, make_line(-0.35, 0.35, 240),
+                              [](const glm::dvec3& p) { return half_plane_over_disk(p.x); }));
 }
 
 TEST(AreaTruth, HalfPlaneOverRectangle_IsALinearRamp) {
-  const Occluders occluders(half_plane());
   const AreaLight light = AreaLight::make_rectangle({0.0, kLightHeight, 0.0}, {0.7, 0.0, 0.0}, {0.0, 0.0, 0.5});
-  const ReceiverImage image = make_line(-0.25, 0.25, 240);
   const double width = 1.4 * kOccluderHeight / (kLightHeight - kOccluderHeight);
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); },
-                               image, [&](const glm::dvec3& p) { return std::clamp(0.5 + p.x / width, 0.0, 1.0); }));
+  expect_agreement(score_area(make_half_plane(kOccluderHeight), light, make_line(-0.25, 0.25, 240),
+                              [&](const glm::dvec3& p) { return std::clamp(0.5 + p.x / width, 0.0, 1.0); }));
 }
 
 TEST(AreaTruth, Slit_AddsUp) {
   // Edges at -0.1 and 0.1: what one half-plane lets through and the other lets through, less one.
-  std::vector<OccluderMesh> slit = {make_sheet(-40.0, -0.1, -40.0, 40.0, kOccluderHeight),
-                                    make_sheet(0.1, 40.0, -40.0, 40.0, kOccluderHeight)};
-  const Occluders occluders(slit);
-  const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
-  const ReceiverImage image = make_line(-0.45, 0.45, 240);
+  const std::vector<OccluderMesh> slit = {make_sheet(-40.0, -0.1, -40.0, 40.0, kOccluderHeight),
+                                          make_sheet(0.1, 40.0, -40.0, 40.0, kOccluderHeight)};
   // An edge at e shifts the shadow's centre to e H / (H - h) on the ground below a light above x = 0.
   const double shift = 0.1 * kLightHeight / (kLightHeight - kOccluderHeight);
-  expect_agreement(score_seeds(
-      [&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
-      [&](const glm::dvec3& p) {
-        return std::max(0.0, half_plane_over_disk(p.x + shift, 1.0) + half_plane_over_disk(shift - p.x, 1.0) - 1.0);
-      }));
+  expect_agreement(score_area(slit, kDisk, make_line(-0.45, 0.45, 240), [&](const glm::dvec3& p) {
+    return std::max(0.0, half_plane_over_disk(p.x + shift) + half_plane_over_disk(shift - p.x) - 1.0);
+  }));
 }
 
 /// Bars that cut the light into strips: many edges, so that a pixel traces much before it stops. A standard error with
@@ -142,20 +144,15 @@ TEST(AreaTruth, Comb_StatesItsStandardErrorsRight) {
   std::vector<OccluderMesh> comb;
   for (int i = -kBars; i <= kBars; ++i)
     comb.push_back(make_sheet(i * kPeriod, i * kPeriod + kBar, -40.0, 40.0, kOccluderHeight));
-  const Occluders occluders(comb);
-  const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
   const double scale = kLightHeight / (kLightHeight - kOccluderHeight);
-  const ReceiverImage image = make_line(-0.35, 0.35, 240);
-  const ZScores scores =
-      score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
-                  [&](const glm::dvec3& p) {
-                    double lit = 1.0;
-                    for (int i = -kBars; i <= kBars; ++i) {
-                      const double left = i * kPeriod * scale, right = (i * kPeriod + kBar) * scale;
-                      lit -= half_plane_over_disk(p.x - left, 1.0) - half_plane_over_disk(p.x - right, 1.0);
-                    }
-                    return lit;
-                  });
+  const ZScores scores = score_area(comb, kDisk, make_line(-0.35, 0.35, 240), [&](const glm::dvec3& p) {
+    double lit = 1.0;
+    for (int i = -kBars; i <= kBars; ++i) {
+      const double left = i * kPeriod * scale, right = (i * kPeriod + kBar) * scale;
+      lit -= half_plane_over_disk(p.x - left) - half_plane_over_disk(p.x - right);
+    }
+    return lit;
+  });
   expect_agreement(scores);
   std::printf("errors are %.3f of what is stated\n", scores.understatement());
   EXPECT_NEAR(scores.rms, std::sqrt(15.0 / 13.0), 0.05);
@@ -173,49 +170,33 @@ double lens_area(double r1, double r2, double d) {
 }
 
 TEST(AreaTruth, DiskOverDisk_IsALens) {
-  const std::vector<OccluderMesh> disk = {make_disk_sheet(0.3, kOccluderHeight)};
-  const Occluders occluders(disk);
-  const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, 1.0);
-  const ReceiverImage image = make_line(-0.7, 0.7, 240);
   // Seen from the ground, the occluder covers a disk of radius r H/h around p + (c - p) H/h in the light's plane.
   const double scale = kLightHeight / kOccluderHeight;
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); },
-                               image,
-                               [&](const glm::dvec3& p) {
-                                 const double distance = std::hypot(p.x, p.z) * std::abs(1.0 - scale);
-                                 return 1.0 - lens_area(1.0, 0.3 * scale, distance) / std::numbers::pi;
-                               }));
+  expect_agreement(
+      score_area({make_disk_sheet(0.3, kOccluderHeight)}, kDisk, make_line(-0.7, 0.7, 240), [&](const glm::dvec3& p) {
+        const double distance = std::hypot(p.x, p.z) * std::abs(1.0 - scale);
+        return 1.0 - lens_area(1.0, 0.3 * scale, distance) / std::numbers::pi;
+      }));
 }
 
 TEST(AreaTruth, SunOverHalfPlane_FollowsTheClosedForm) {
-  const Occluders occluders(half_plane());
-  const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
   const double radius = kOccluderHeight * std::tan(glm::radians(1.5));
-  const ReceiverImage image = make_line(-0.06, 0.06, 240);
-  expect_agreement(score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); },
-                               image,
-                               [&](const glm::dvec3& p) {
-                                 const double t = std::clamp(-p.x / radius, -1.0, 1.0);
-                                 return (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
-                               }));
+  expect_agreement(score_area(make_half_plane(kOccluderHeight), AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0),
+                              make_line(-0.06, 0.06, 240),
+                              [&](const glm::dvec3& p) { return beyond_chord(-p.x / radius); }));
 }
 
 TEST(AreaTruth, SphereOnItsAxis_CoversADisk) {
   // Receivers on the axis from the sphere to the light's centre, from far below, where the light is wider than the
   // sphere, to where it is wholly covered. Off the axis the sphere's projection is an ellipse.
-  constexpr double kRadius = 0.5, kCentre = 6.0, kLightRadius = 1.0;
-  const std::vector<OccluderMesh> sphere = {make_sphere({0.0, kCentre, 0.0}, kRadius)};
-  const Occluders occluders(sphere);
-  const AreaLight light = AreaLight::make_disk({0.0, kLightHeight, 0.0}, {0.0, -1.0, 0.0}, kLightRadius);
+  constexpr double kRadius = 0.5, kCentre = 6.0;
   ReceiverImage image{120, 8, {}};
   for (int i = 0; i < 120 * 8; ++i)
     image.points.push_back({{0.0f, 4.0f - 0.03f * static_cast<float>(i), 0.0f}, {0.0f, 1.0f, 0.0f}, true});
-  expect_agreement(
-      score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
-                  [](const glm::dvec3& p) {
-                    const double tangent = std::tan(std::asin(kRadius / (kCentre - p.y)));
-                    return 1.0 - std::min(1.0, std::pow((kLightHeight - p.y) * tangent / kLightRadius, 2.0));
-                  }));
+  expect_agreement(score_area({make_sphere({0.0, kCentre, 0.0}, kRadius)}, kDisk, image, [](const glm::dvec3& p) {
+    const double tangent = std::tan(std::asin(kRadius / (kCentre - p.y)));
+    return 1.0 - std::min(1.0, std::pow((kLightHeight - p.y) * tangent, 2.0));
+  }));
 }
 
 // Ray-traced visibility of a sphere that shines: shares of the solid angle that it fills, and where its rays end.
@@ -238,13 +219,6 @@ double sphere_above_plane(const glm::dvec3& centre, double radius, const glm::dv
   return cone_above_plane(std::asin(radius / distance), std::asin(glm::dot(way, glm::normalize(normal)) / distance));
 }
 
-ZScores score_sphere(const std::vector<OccluderMesh>& meshes, const AreaLight& light, const ReceiverImage& image,
-                     const std::function<double(const glm::dvec3&)>& exact) {
-  const Occluders occluders(meshes);
-  return score_seeds([&](std::uint32_t seed) { return trace_area(occluders, image, light, {.seed = seed}); }, image,
-                     exact);
-}
-
 TEST(ClosedForm, ConeAbovePlane_HasItsLimits) {
   for (const double half : {0.01, 0.3, 1.0, 1.5}) {
     EXPECT_NEAR(cone_above_plane(half, 0.0), 0.5, 1e-9);
@@ -253,7 +227,7 @@ TEST(ClosedForm, ConeAbovePlane_HasItsLimits) {
   }
   // Of a hemisphere a plane cuts off a lune, of a narrow cone what a chord cuts off its disk.
   EXPECT_NEAR(cone_above_plane(0.5 * std::numbers::pi, 0.3), 0.5 + 0.3 / std::numbers::pi, 1e-9);
-  EXPECT_NEAR(cone_above_plane(1e-3, 0.4e-3), (std::acos(-0.4) + 0.4 * std::sqrt(1.0 - 0.16)) / std::numbers::pi, 1e-6);
+  EXPECT_NEAR(cone_above_plane(1e-3, 0.4e-3), beyond_chord(-0.4), 1e-6);
 }
 
 /// A half-plane that fills x < 0, under a sphere over its edge. A wide sphere tells solid angles from the areas of a
@@ -265,34 +239,30 @@ TEST(SphereTruth, OverHalfPlane_FollowsTheClosedForm) {
   for (const Case& c : {Case{1.0, 10.0, 2.0, 0.35}, Case{2.5, 4.0, 1.0, 1.2}, Case{3.6, 4.0, 0.2, 0.6}}) {
     const glm::dvec3 centre(0.0, c.light_height, 0.0);
     // The plane through a receiver and the edge: the edge runs along z.
-    expect_agreement(score_sphere({make_sheet(-40.0, 0.0, -40.0, 40.0, c.edge_height)},
-                                  AreaLight::make_sphere(centre, c.radius), make_line(-c.reach, c.reach, 240),
-                                  [&](const glm::dvec3& p) {
-                                    return sphere_above_plane(centre, c.radius, p, {c.edge_height, p.x, 0.0});
-                                  }));
+    expect_agreement(score_area(make_half_plane(c.edge_height), AreaLight::make_sphere(centre, c.radius),
+                                make_line(-c.reach, c.reach, 240), [&](const glm::dvec3& p) {
+                                  return sphere_above_plane(centre, c.radius, p, {c.edge_height, p.x, 0.0});
+                                }));
   }
 }
 
 TEST(SphereTruth, ItsPartBelowTheReceiversPlane_IsBlocked) {
   const glm::dvec3 centre(0.0, 0.3, 0.0);
   expect_agreement(
-      score_sphere({}, AreaLight::make_sphere(centre, 1.0), make_line(1.0, 3.0, 240), [&](const glm::dvec3& p) {
+      score_area({}, AreaLight::make_sphere(centre, 1.0), make_line(1.0, 3.0, 240), [&](const glm::dvec3& p) {
         return sphere_above_plane(centre, 1.0, p, {0.0, 1.0, 0.0});
       }));
 }
 
 TEST(SphereTruth, OfASmallSphere_IsThatOfAFacingDisk) {
   constexpr double kRadius = 0.2, kCentre = 10.0, kEdge = 2.0, kPenumbra = kRadius * kEdge / (kCentre - kEdge);
-  expect_agreement(score_sphere({make_sheet(-40.0, 0.0, -40.0, 40.0, kEdge)},
-                                AreaLight::make_sphere({0.0, kCentre, 0.0}, kRadius),
-                                make_line(-1.2 * kPenumbra, 1.2 * kPenumbra, 240), [&](const glm::dvec3& p) {
-                                  const double t = std::clamp(-p.x / kPenumbra, -1.0, 1.0);
-                                  return (std::acos(t) - t * std::sqrt(1.0 - t * t)) / std::numbers::pi;
-                                }));
+  expect_agreement(score_area(make_half_plane(kEdge), AreaLight::make_sphere({0.0, kCentre, 0.0}, kRadius),
+                              make_line(-1.2 * kPenumbra, 1.2 * kPenumbra, 240),
+                              [&](const glm::dvec3& p) { return beyond_chord(-p.x / kPenumbra); }));
 }
 
 TEST(SphereTruth, IsAllOrNothing_AwayFromTheEdge_AndHalfOnIt) {
-  const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-40.0, 0.0, -40.0, 40.0, 1.0)});
+  const Occluders occluders(make_half_plane(1.0));
   const AreaLight light = AreaLight::make_sphere({0.0, 4.0, 0.0}, 2.5);
   ReceiverImage image{3, 64, {}};
   for (int i = 0; i < 3 * 64; ++i)
@@ -321,7 +291,7 @@ TEST(SphereTruth, RaysEndAtItsSurface) {
 }
 
 TEST(SphereTruth, OfRadiusZero_IsTheHardShadow) {
-  const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-40.0, 0.0, -40.0, 40.0, 1.0)});
+  const Occluders occluders(make_half_plane(1.0));
   const AreaLight light = AreaLight::make_sphere({0.3, 4.0, 0.1}, 0.0);
   const ReceiverImage image = make_line(-1.0, 1.0, 64);
   EXPECT_EQ(trace_area(occluders, image, light, {}).visibility, trace_hard(occluders, image, light));
@@ -386,18 +356,25 @@ ReceiverImage make_receivers(double reach) {
   return make_line(edge - half, edge + half, 160, 8);
 }
 
-template <class Exact>
-void expect_kernel(const Kernel& kernel, Exact exact) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight),
-                                            make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
-  const Occluders occluders(meshes);
-  const ReceiverImage image = make_receivers(0.9 * kernel.half_width());
+const Kernel kTent = Kernel::make_point(Reconstruction::kBilinear);
+
+/// Expects what a kernel in a map shows of receivers on a floor, under a sheet that ends at an edge.
+void expect_kernel(const Kernel& kernel, const MapGrid& grid, const ReceiverImage& image,
+                   const std::function<double(const glm::dvec3&)>& exact, double sheet_edge = 0.0) {
+  const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-40.0, sheet_edge, -40.0, 40.0, kHeight),
+                                                      make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)});
   expect_agreement(score_seeds(
-      [&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, tilted_grid(), {.seed = seed}); }, image,
-      [&](const glm::dvec3& p) { return exact(texels_from_edge(p)); }));
+      [&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, grid, {.seed = seed}); }, image, exact));
 }
 
-TEST(KernelTruth, OfATent) { expect_kernel(Kernel::make_point(Reconstruction::kBilinear), tent_below); }
+/// The same in the tilted map, from the distance to the edge in texels.
+void expect_kernel(const Kernel& kernel, const std::function<double(double)>& exact) {
+  expect_kernel(
+      kernel, tilted_grid(), make_receivers(0.9 * kernel.half_width()),
+      [&](const glm::dvec3& p) { return exact(texels_from_edge(p)); });
+}
+
+TEST(KernelTruth, OfATent) { expect_kernel(kTent, tent_below); }
 
 TEST(KernelTruth, OfATrapezoid) {
   expect_kernel(
@@ -418,32 +395,22 @@ TEST(KernelTruth, OfAGaussian) {
 /// A lamp that looks straight down: on the floor, parallel to its map, all texels are of one size.
 TEST(KernelTruth, OfATent_UnderALamp) {
   constexpr double kLampHeight = 4.0, kSheetEdge = 0.5, kReference = 2.0;
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, kSheetEdge, -40.0, 40.0, kHeight),
-                                            make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
-  const Occluders occluders(meshes);
   const double edge = kSheetEdge * kLampHeight / (kLampHeight - kHeight), texel = kTexel * kLampHeight / kReference;
   const MapGrid grid{
       {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, kTexel, MapGrid::Lamp{{0.0, kLampHeight, 0.0}, kReference}};
-  const Kernel kernel = Kernel::make_point(Reconstruction::kBilinear);
-  const ReceiverImage image = make_line(edge - 0.9 * texel, edge + 0.9 * texel, 160, 8);
-  expect_agreement(
-      score_seeds([&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, grid, {.seed = seed}); },
-                  image, [&](const glm::dvec3& p) { return tent_below((p.x - edge) / texel); }));
+  expect_kernel(
+      kTent, grid, make_line(edge - 0.9 * texel, edge + 0.9 * texel, 160, 8),
+      [&](const glm::dvec3& p) { return tent_below((p.x - edge) / texel); }, kSheetEdge);
 }
 
 /// Texels that are sheared, and grow along z: a step along v goes half a texel back along u.
 TEST(KernelTruth, OfATent_InAWarpedMap) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight),
-                                            make_sheet(-40.0, 40.0, -40.0, 40.0, 0.0)};
-  const Occluders occluders(meshes);
   MapGrid grid = tilted_grid();
   const auto texel_at = [](const glm::dvec3& p) { return kTexel * (1.0 + 0.2 * p.z); };
   grid.curved = MapGrid::Curved{[&texel_at, right = grid.right, up = grid.up](const glm::dvec3& p) {
                                   return TexelGradients{(right + 0.5 * up) / texel_at(p), up / texel_at(p)};
                                 },
                                 "sheared"};
-  const ReceiverImage image = make_receivers(1.0);
-  const Kernel kernel = Kernel::make_point(Reconstruction::kBilinear);
   const auto exact = [&](const glm::dvec3& p) {
     const double t = texels_from_edge(p) * kTexel / texel_at(p);
     constexpr int kSteps = 400;
@@ -454,8 +421,7 @@ TEST(KernelTruth, OfATent_InAWarpedMap) {
     }
     return sum;
   };
-  expect_agreement(score_seeds(
-      [&](std::uint32_t seed) { return trace_kernel(occluders, image, kernel, grid, {.seed = seed}); }, image, exact));
+  expect_kernel(kTent, grid, make_receivers(1.0), exact);
 }
 
 /// A disk's share below an edge: its chords, each blurred by the tent.
@@ -475,8 +441,7 @@ TEST(KernelTruth, OfADisk) {
 }
 
 TEST(KernelTruth, OfDisks_IsThatOfEachReceiversOwn) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
-  const Occluders occluders(meshes);
+  const Occluders occluders(make_half_plane(kHeight));
   const ReceiverImage image = make_receivers(2.7);
   const auto radius_at = [](const glm::dvec3& p) { return p.z > 0.0 ? 1.0f : 4.0f; };
   std::vector<float> radii;
@@ -488,8 +453,7 @@ TEST(KernelTruth, OfDisks_IsThatOfEachReceiversOwn) {
 }
 
 TEST(KernelTruth, OfDisksWithoutSize_IsThatOfAFetch) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
-  const Occluders occluders(meshes);
+  const Occluders occluders(make_half_plane(kHeight));
   const ReceiverImage image = make_receivers(1.5);
   const std::vector<float> radii(image.points.size(), 0.0f);
   EXPECT_EQ(trace_disks(occluders, image, radii, tilted_grid(), {}).visibility,
@@ -497,8 +461,7 @@ TEST(KernelTruth, OfDisksWithoutSize_IsThatOfAFetch) {
 }
 
 TEST(KernelTruth, OfAPoint_IsTheHardShadow) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
-  const Occluders occluders(meshes);
+  const Occluders occluders(make_half_plane(kHeight));
   const ReceiverImage image = make_receivers(3.0);
   const MapGrid grid = tilted_grid();
   EXPECT_EQ(trace_kernel(occluders, image, Kernel::make_point(Reconstruction::kNearest), grid, {}).visibility,
@@ -510,8 +473,7 @@ TEST(KernelTruth, AnEmptySlantedPlane_IsLit_AtEveryAngle) {
     const double angle = glm::radians(tilt);
     const MapGrid grid = {
         {std::sin(angle), std::cos(angle), 0.0}, {std::cos(angle), -std::sin(angle), 0.0}, {0.0, 0.0, 1.0}, kTexel};
-    const std::vector<OccluderMesh> meshes = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.1, 40)};
-    const Occluders occluders(meshes);
+    const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-5.0, 5.0, -5.0, 5.0, 0.1, 40)});
     ReceiverImage image = make_line(-4.0, 4.0, 200);
     for (ReceiverPoint& point : image.points) point.position_ws.y = 0.1f;
     for (const float v : trace_kernel(occluders, image, Kernel::make_disk(16.0), grid, {}).visibility)
@@ -520,16 +482,10 @@ TEST(KernelTruth, AnEmptySlantedPlane_IsLit_AtEveryAngle) {
 }
 
 TEST(KernelTruth, IsAsWideAsTheTexelsAre) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
-  const Occluders occluders(meshes);
   MapGrid grid = tilted_grid();
   grid.texel_size_ws = 3.0 * kTexel;
-  const ReceiverImage image = make_receivers(2.7);
-  expect_agreement(score_seeds(
-      [&](std::uint32_t seed) {
-        return trace_kernel(occluders, image, Kernel::make_point(Reconstruction::kBilinear), grid, {.seed = seed});
-      },
-      image, [](const glm::dvec3& p) { return tent_below(texels_from_edge(p) / 3.0); }));
+  expect_kernel(kTent, grid, make_receivers(2.7),
+                [](const glm::dvec3& p) { return tent_below(texels_from_edge(p) / 3.0); });
 }
 
 TEST(KernelTruth, AnEmptyPlane_IsLit_UnderALargeKernelOfGrazingLight) {
@@ -552,8 +508,7 @@ TEST(KernelTruth, AnEmptyPlane_IsLit_UnderALargeKernelOfGrazingLight) {
 }
 
 TEST(SquareTruth, IsALinearRamp) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
-  const Occluders occluders(meshes);
+  const Occluders occluders(make_half_plane(kHeight));
   const ReceiverImage image = make_receivers(2.5);
   expect_agreement(score_seeds(
       [&](std::uint32_t seed) { return trace_square(occluders, image, 2.5, tilted_grid(), {.seed = seed}); }, image,
@@ -561,8 +516,7 @@ TEST(SquareTruth, IsALinearRamp) {
 }
 
 TEST(SquareTruth, OfFirstPointsAlone_SettlesThePixelsThatMoreOfThemSettle) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
-  const Occluders occluders(meshes);
+  const Occluders occluders(make_half_plane(kHeight));
   const ReceiverImage image = make_receivers(5.0);
   std::atomic<int> packets = 0;
   const TraceSettings first{
@@ -589,10 +543,8 @@ struct MeanSquares {
 };
 
 MeanSquares measure_squares(double standard_error) {
-  const std::vector<OccluderMesh> meshes = {make_sheet(-40.0, 0.0, -40.0, 40.0, kHeight)};
-  const Occluders occluders(meshes);
-  const Kernel kernel = Kernel::make_point(Reconstruction::kBilinear);
-  const ReceiverImage image = make_receivers(0.9 * kernel.half_width());
+  const Occluders occluders(make_half_plane(kHeight));
+  const ReceiverImage image = make_receivers(0.9 * kTent.half_width());
   const std::vector<std::uint8_t> mask(image.points.size(), 1);
   std::vector<float> shifted;
   for (const ReceiverPoint& point : image.points)
@@ -601,7 +553,7 @@ MeanSquares measure_squares(double standard_error) {
   constexpr int kSeeds = 64;
   for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
     const TracedVisibility traced =
-        trace_kernel(occluders, image, kernel, tilted_grid(), {.standard_error = standard_error, .seed = seed});
+        trace_kernel(occluders, image, kTent, tilted_grid(), {.standard_error = standard_error, .seed = seed});
     const double plain = metrics::measure_error(shifted, traced.visibility, mask)->rmse;
     const double unbiased = metrics::measure_error(shifted, traced.visibility, mask, traced.variance)->rmse;
     squares.plain += plain * plain / kSeeds;

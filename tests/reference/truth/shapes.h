@@ -23,6 +23,9 @@ inline OccluderMesh make_sheet(double x0, double x1, double z0, double z1, doubl
   return mesh;
 }
 
+/// A sheet at height h that fills x < 0.
+inline std::vector<OccluderMesh> make_half_plane(double h) { return {make_sheet(-40.0, 0.0, -40.0, 40.0, h)}; }
+
 inline OccluderMesh make_disk_sheet(double radius, double h, int segments = 2048) {
   OccluderMesh mesh;
   mesh.positions.emplace_back(0.0f, static_cast<float>(h), 0.0f);

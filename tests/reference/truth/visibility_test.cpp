@@ -14,8 +14,6 @@ namespace {
 
 // What tracing does besides following closed forms: order, threads, offsets, holes, odd lights.
 
-std::vector<OccluderMesh> half_plane_at_height() { return {make_sheet(-40.0, 0.0, -40.0, 40.0, 2.0)}; }
-
 /// Ends the process by exit code 0 where occluders that memory is too small for are refused.
 [[noreturn]] void build_in_little_memory() {
   OccluderMesh mesh = make_sheet(-1.0, 1.0, -1.0, 1.0, 1.0, 4);
@@ -44,7 +42,7 @@ TEST(OccludersDeathTest, MemoryThatIsTooSmall_IsBadAlloc) {
 }
 
 TEST(AreaTruth, DoesNotDependOnThreads) {
-  const Occluders occluders(half_plane_at_height());
+  const Occluders occluders(make_half_plane(2.0));
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
   const ReceiverImage image = make_line(-0.06, 0.06, 100);
   const TracedVisibility many = trace_area(occluders, image, light, {});
@@ -54,7 +52,7 @@ TEST(AreaTruth, DoesNotDependOnThreads) {
 
 TEST(AreaTruth, DoesNotDependOnTheOrderOfPixels) {
   // A pixel's random numbers follow its place in the image; its truth does not.
-  const Occluders occluders(half_plane_at_height());
+  const Occluders occluders(make_half_plane(2.0));
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 3.0);
   const ReceiverImage image = make_line(-0.06, 0.06, 100);
   ReceiverImage reversed = image;
@@ -70,7 +68,7 @@ TEST(AreaTruth, DoesNotDependOnTheOrderOfPixels) {
 }
 
 TEST(AreaTruth, SettledPixels_GetFewRays_WhateverDoesNotCountBesideThem) {
-  const Occluders occluders(half_plane_at_height());
+  const Occluders occluders(make_half_plane(2.0));
   ReceiverImage image = make_line(-1.0, 1.0, 64);
   for (std::size_t i = 0; i < image.points.size(); i += 4) image.points[i].counts = false;
   const TracedVisibility truth = trace_area(occluders, image, AreaLight::make_sun({0.0, 1.0, 0.0}, 0.1), {});
@@ -100,8 +98,7 @@ std::vector<float> trace_through(const CutOut& cut_out) {
   OccluderMesh sheet = make_sheet(-1.0, 1.0, -1.0, 1.0, 1.0, 4);
   sheet.cut_out = cut_out;
   for (const glm::vec3& p : sheet.positions) sheet.cut_out->uvs.emplace_back(0.5f * (p.x + 1.0f), 0.5f * (p.z + 1.0f));
-  const std::vector<OccluderMesh> meshes = {sheet};
-  const Occluders occluders(meshes);
+  const Occluders occluders(std::vector<OccluderMesh>{sheet});
   return trace_hard(occluders, make_line(-0.99, 0.99, 400, 1), AreaLight::make_sun({0.0, 1.0, 0.0}, 0.0));
 }
 
@@ -137,8 +134,7 @@ TEST(CutOut, BaseAlphaIsAFactor_AndCutoffTheLimit) {
 TEST(CutOut, HolesLetLightReachTheNextSurface) {
   OccluderMesh open = make_sheet(-1.0, 1.0, -1.0, 1.0, 2.0, 4);
   open.cut_out = CutOut{std::vector<glm::vec2>(open.positions.size()), 0, 0, {}, 0.0f, 0.5f};
-  const std::vector<OccluderMesh> meshes = {open, make_sheet(-1.0, 0.0, -1.0, 1.0, 1.0, 4)};
-  const Occluders occluders(meshes);
+  const Occluders occluders(std::vector<OccluderMesh>{open, make_sheet(-1.0, 0.0, -1.0, 1.0, 1.0, 4)});
   const std::vector<float> distances =
       trace_first_blockers(occluders, make_line(-0.9, 0.9, 10, 1), AreaLight::make_sun({0.0, 1.0, 0.0}, 0.0));
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(distances[i], 1.0f, 1e-5f);
@@ -146,18 +142,16 @@ TEST(CutOut, HolesLetLightReachTheNextSurface) {
 }
 
 TEST(FirstBlockers, GiveTheSurfaceThatLightMeetsFirst) {
-  const std::vector<OccluderMesh> stacked = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.5),
-                                             make_sheet(-1.0, 1.0, -5.0, 5.0, 2.0)};
-  const Occluders occluders(stacked);
+  const Occluders occluders(
+      std::vector<OccluderMesh>{make_sheet(-5.0, 5.0, -5.0, 5.0, 0.5), make_sheet(-1.0, 1.0, -5.0, 5.0, 2.0)});
   const std::vector<float> distances =
       trace_first_blockers(occluders, make_line(-3.0, 3.0, 60, 1), AreaLight::make_sun({0.0, 2.0, 0.0}, 0.0));
   for (std::size_t i = 0; i < 60; ++i) EXPECT_NEAR(distances[i], i < 20 || i >= 40 ? 0.5f : 2.0f, 1e-5f) << i;
 }
 
 TEST(FirstBlockers, OfALamp_LieBetweenItAndTheReceiver) {
-  const std::vector<OccluderMesh> sheets = {make_sheet(-0.5, 0.5, -5.0, 5.0, 2.0),
-                                            make_sheet(-5.0, 5.0, -5.0, 5.0, 3.5)};
-  const Occluders occluders(sheets);
+  const Occluders occluders(
+      std::vector<OccluderMesh>{make_sheet(-0.5, 0.5, -5.0, 5.0, 2.0), make_sheet(-5.0, 5.0, -5.0, 5.0, 3.5)});
   const ReceiverImage image = make_line(-3.0, 3.0, 60, 1);
   const auto lamp = AreaLight::make_disk({0.0, 3.0, 0.0}, {0.0, -1.0, 0.0}, 0.1);
   const std::vector<float> distances = trace_first_blockers(occluders, image, lamp);
@@ -173,8 +167,7 @@ TEST(FirstBlockers, OfALamp_LieBetweenItAndTheReceiver) {
 TEST(Occluders, CountTrianglesAndBounds_WithoutTheDegenerate) {
   OccluderMesh mesh = make_sheet(-1.0, 2.0, -3.0, 4.0, 0.5, 3);
   mesh.indices.insert(mesh.indices.end(), {0, 0, 1, 2, 2, 2});
-  const std::vector<OccluderMesh> meshes = {mesh};
-  const Occluders occluders(meshes);
+  const Occluders occluders(std::vector<OccluderMesh>{mesh});
   EXPECT_EQ(occluders.triangle_count(), 18);
   EXPECT_EQ(occluders.degenerate_count(), 2);
   EXPECT_EQ(occluders.bounds().min, glm::vec3(-1.0f, 0.5f, -3.0f));
@@ -193,7 +186,7 @@ TEST(OddLights, GiveFiniteVisibility) {
 }
 
 TEST(HardTruth, OfAPointLight_IsAStep) {
-  const Occluders occluders(half_plane_at_height());
+  const Occluders occluders(make_half_plane(2.0));
   const AreaLight light = AreaLight::make_sun({0.0, 1.0, 0.0}, 0.0);
   const ReceiverImage image = make_line(-1.0, 1.0, 64);
   const std::vector<float> visibility = trace_hard(occluders, image, light);
@@ -203,8 +196,7 @@ TEST(HardTruth, OfAPointLight_IsAStep) {
 
 TEST(Occluders, APlaneAtCoordinateZero_DoesNotShadowItself) {
   for (const double elevation : {90.0, 60.0, 5.0}) {
-    const std::vector<OccluderMesh> floor = {make_sheet(-5.0, 5.0, -5.0, 5.0, 0.0, 20)};
-    const Occluders occluders(floor);
+    const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-5.0, 5.0, -5.0, 5.0, 0.0, 20)});
     const double angle = glm::radians(elevation);
     const AreaLight light = AreaLight::make_sun({std::cos(angle), std::sin(angle), 0.0}, 0.53);
     for (const float v : trace_hard(occluders, make_line(-4.0, 4.0, 200), light)) ASSERT_EQ(v, 1.0f) << elevation;
@@ -313,7 +305,7 @@ double integrate_sphere(const ReceiverPoint& point, double radius) {
 /// Traces one pixel that is repeated, so that errors can be held against their own standard errors.
 void expect_ratio(const AreaLight& light, const ReceiverPoint& point,
                   const std::function<double(const ReceiverPoint&)>& integrate) {
-  const Occluders occluders(std::vector<OccluderMesh>{make_sheet(-40.0, 0.0, -40.0, 40.0, kEdgeHeight)});
+  const Occluders occluders(make_half_plane(kEdgeHeight));
   ReceiverImage image{16, 4, std::vector<ReceiverPoint>(64, point)};
   const TracedVisibility traced = trace_area(occluders, image, light, {.standard_error = 0.002});
   const double expected = integrate(point);
