@@ -26,8 +26,7 @@ class Diff : public ProgramTest {
                        {"nothing", {"Y"}, make_grey({kNan, kNan, kNan, kNan}), false},
                        {"mask", {"Y"}, make_grey({1.0f, 1.0f, 0.0f, 0.0f}), false},
                        {"empty", {"Y"}, make_grey({0.0f, 0.0f, 0.0f, 0.0f}), false},
-                       {"two", {"U", "V"}, images::Image(4, 1, 2), false},
-                       {"rgb", {"R", "G", "B"}, images::Image(4, 1, 3), false}},
+                       {"two", {"U", "V"}, images::Image(4, 1, 2), false}},
                       {});
     write("a.pgm", "P2\n2 1\n255\n51 255\n");
   }
@@ -87,20 +86,15 @@ TEST_F(Diff, NothingToCompare_IsAnInputError) {
 }
 
 TEST_F(Diff, BadPictures_AreInputErrors) {
-  write("text.png", "not a picture");
   expect_refusals({{"diff no/such.png a.exr", 3, {"no/such.png", "no such file"}},
-                   {"diff a.exr no/such.exr#part", 3, {"no/such.exr", "no such file"}},
-                   {"diff a.exr text.png", 3, {"text.png", "cannot be read"}},
                    {"diff a.exr .", 3, {"folder"}},
-                   {"diff a.exr ''", 2, {"a value is missing"}},
-                   {"diff a.exr 'a.exr#trut'", 3, {"'trut'", "did you mean 'truth'", "parts: image, truth, broken"}}});
+                   {"diff a.exr ''", 2, {"a value is missing"}}});
 }
 
 TEST_F(Diff, BadMasks_AreInputErrors) {
   const std::string pair = "diff 'a.exr#image' 'a.exr#truth' --mask ";
-  expect_refusals({{pair + "'a.exr#rgb'", 3, {"the mask", "3 channels"}},
-                   {pair + "no/such.exr", 3, {"no/such.exr", "no such file"}},
-                   {pair + "''", 2, {"--mask", "a value is missing"}}});
+  expect_refusals(
+      {{pair + "no/such.exr", 3, {"no/such.exr", "no such file"}}, {pair + "''", 2, {"--mask", "a value is missing"}}});
 }
 
 TEST_F(Diff, BadOptions_AreUsageErrors) {
@@ -122,9 +116,7 @@ TEST_F(Diff, Out_DrawsDifferenceAndFlip) {
   const images::Image two = images::read_picture(folder() / "new" / "d.png");
   ASSERT_EQ(run("diff 'a.exr#two' 'a.exr#two' --out one.png").exit_code, 0) << "two channels have no FLIP";
   EXPECT_GT(two.width, images::read_picture(folder() / "one.png").width);
-  const Outcome refused = run("diff 'a.exr#image' 'a.exr#truth' --out d.exr");
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("--out: 'd.exr' must end in .png"));
+  expect_refusal("diff 'a.exr#image' 'a.exr#truth' --out d.exr", 2, {"--out: 'd.exr' must end in .png"});
   EXPECT_EQ(run("diff 'a.exr#image' 'a.exr#truth' --out a.pgm/d.png").exit_code, 6) << "no folder";
 }
 

@@ -14,15 +14,6 @@ class FaultFolder : public FaultTest {
  protected:
   void run_whole() const { succeed("run " + std::string(kSmallFolderRun) + "--no-grids --out whole"); }
 
-  /// Starts a run that stays in the folder `out` until it is killed.
-  pid_t start_endless() const {
-    return start(
-        "run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out "
-        "--filter-file " +
-            user_filter("endless.glsl"),
-        "first.txt");
-  }
-
   bool is_taken() const { return exists("out/.shadowbench-lock"); }
 };
 
@@ -39,7 +30,7 @@ std::vector<std::string> list_commands() {
 TEST_F(FaultFolder, OfARunThatGoesOn_IsRefusedToAllOthers_AndFreeOnceItIsKilled) {
   run_whole();
   const pid_t first = start_endless();
-  ASSERT_TRUE(wait_until([&] { return is_taken(); })) << read("first.txt");
+  ASSERT_TRUE(wait_until([&] { return is_taken(); })) << read("started.txt");
   for (const std::string& command : list_commands()) {
     const Outcome outcome = run(command + " --out out");
     EXPECT_EQ(outcome.exit_code, 6) << command << "\n" << outcome.err;
@@ -68,9 +59,7 @@ TEST_F(FaultFolder, OfAMergeThatWasStopped_IsGoneOnWith_AndThatOfAnotherIsNot) {
   std::filesystem::create_directories(folder() / "other" / "cells");
   write("other/cells/0123456789abcdef.json", "{}");
   write("other/.shadowbench-folder", "");
-  const Outcome refused = run("merge whole --out other");
-  EXPECT_EQ(refused.exit_code, 2) << refused.err;
-  expect_one_message(refused.err, {"other", "there is a report in this folder already"});
+  expect_refusal("merge whole --out other", 2, {"other", "there is a report in this folder already"});
 }
 
 TEST_F(FaultFolder, SharedCache_ServesManyAtOnce) {
@@ -236,10 +225,7 @@ TEST_F(FaultSignal, ManyTimesAtRandomMoments_NothingIsLost) {
 /// The worker of a user's filter has a process group of its own, and must not outlive the run.
 TEST_F(FaultSignal, WhileAUsersFilterIsMeasured_NoChildStays) {
   for (const int signal : {SIGINT, SIGTERM, SIGKILL}) {
-    const pid_t pid = start(
-        "run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out "
-        "--filter-file " +
-        user_filter("endless.glsl"));
+    const pid_t pid = start_endless();
     const std::filesystem::path worker =
         folder() / "out" / (".worker-" + std::to_string(pid) + "-" + this_writer().host);
     ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(worker); })) << read("started.txt");
@@ -364,14 +350,15 @@ TEST_F(FaultDisk, FullStandardOutput_IsAnOutputError) {
   expect_one_message(read("script.txt"), {"standard output", "No space left"});
 }
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kIsSanitized = true;  // its shadow memory alone is beyond any limit
-#else
-constexpr bool kIsSanitized = false;
-#endif
-
 class FaultLimits : public FaultTest {
  protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__)
+    GTEST_SKIP() << "address sanitizer's shadow memory alone is beyond any limit";
+#endif
+    FaultTest::SetUp();
+  }
+
   /// Writes a model of one mesh with so many vertices, whose buffer is a hole in the file system.
   void write_large_model(std::uintmax_t vertices) const {
     const std::uintmax_t bytes = vertices * 12;
@@ -393,7 +380,6 @@ class FaultLimits : public FaultTest {
 };
 
 TEST_F(FaultLimits, MemoryThatALargeModelDoesNotFitInto_IsAnInputErrorThatNamesTheModel) {
-  if (kIsSanitized) GTEST_SKIP() << "address sanitizer needs more memory than a limit leaves";
   constexpr std::uintmax_t kVertices = 60'000'000;
   write_large_model(kVertices);
   constexpr const char* kRest =
@@ -409,7 +395,6 @@ TEST_F(FaultLimits, MemoryThatALargeModelDoesNotFitInto_IsAnInputErrorThatNamesT
 }
 
 TEST_F(FaultLimits, MemoryThatOtherThingsDoNotFitInto_IsSaidToo) {
-  if (kIsSanitized) GTEST_SKIP() << "address sanitizer needs more memory than a limit leaves";
   write("large.pgm", "P5\n30000 30000\n255\n");
   std::filesystem::resize_file(folder() / "large.pgm", 900'000'020);
   EXPECT_EQ(run_limited(1200, "diff large.pgm large.pgm"), 3);
@@ -419,7 +404,6 @@ TEST_F(FaultLimits, MemoryThatOtherThingsDoNotFitInto_IsSaidToo) {
 /// The loader itself fails below 600 MB on Debian 12, and below 700 MB on Debian 13, before anything of the program
 /// runs.
 TEST_F(FaultLimits, MemoryThatIsTooSmallToStartIn_IsOneMessage) {
-  if (kIsSanitized) GTEST_SKIP() << "address sanitizer needs more memory than a limit leaves";
   for (const std::size_t mebibytes : {600, 700, 800, 920, 1000}) {
     const int code =
         run_limited(mebibytes, "run --scene cubes --gl software --size 2048x2048 --filters none,vsm --out out");
@@ -432,7 +416,9 @@ TEST_F(FaultLimits, MemoryThatIsTooSmallToStartIn_IsOneMessage) {
   }
 }
 
-TEST_F(FaultLimits, RefusedContext_IsOneMessage) {
+using FaultContext = FaultTest;
+
+TEST_F(FaultContext, Refused_IsOneMessage) {
   struct Context {
     const char* environment;
     const char* backend;

@@ -33,6 +33,14 @@ class FaultTest : public ProgramTest {
     return pid;
   }
 
+  /// Starts a run that stays in the folder `out` until it is killed.
+  pid_t start_endless() const {
+    return start(
+        "run --size 320x180 --map-size 64 --rounds 1 --scene cubes --filters none,endless --cell-timeout 600 --out out "
+        "--filter-file " +
+        user_filter("endless.glsl"));
+  }
+
   static Ending wait_for(pid_t pid) {
     int status = 0;
     waitpid(pid, &status, 0);

