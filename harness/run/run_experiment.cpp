@@ -35,6 +35,7 @@
 #include "harness/spirv/spirv.h"
 #include "reference/truth/cached_tracer.h"
 #include "report/analysis/findings.h"
+#include "report/images/text.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
@@ -381,6 +382,7 @@ class Experiment {
       progress_.note("nothing is left to do");
       return records::write_filter_mistakes(options_.out, {});
     }
+    if (options_.grids) images::font_file();  // labels are drawn after all was measured: too late to find none
     std::ranges::for_each(plan.scenes, [&](const PlannedScene& each) { note_scene(each); });
     try {
       if (options_.part.product == options::Product::kReport) {
