@@ -148,19 +148,23 @@ CellRecord measure(const std::string& scene, const std::string& filter, double m
   return cell;
 }
 
-std::vector<CellRecord> make_cells() {
-  return {measure("cubes", "none", 1.0, 0.04), measure("stack", "none", 1.0, 0.06),
-          measure("cubes", "wide", 4.0, 0.02), measure("stack", "wide", 6.0, 0.0295),
-          measure("cubes", "huge", 9.0, 0.01), measure("stack", "huge", 9.0, 0.01)};
-}
+/// Cells, and what is said of them in words and as JSON.
+class AdvisedCells : public ::testing::Test {
+ protected:
+  std::vector<CellRecord> cells_ = {measure("cubes", "none", 1.0, 0.04), measure("stack", "none", 1.0, 0.06),
+                                    measure("cubes", "wide", 4.0, 0.02), measure("stack", "wide", 6.0, 0.0295),
+                                    measure("cubes", "huge", 9.0, 0.01), measure("stack", "huge", 9.0, 0.01)};
 
-Advice advise_on(const std::vector<CellRecord>& cells, std::vector<Demand> demands) {
-  return advise(cells, {.demands = std::move(demands)});
-}
-
-std::string write_advice(const std::vector<CellRecord>& cells, std::vector<Demand> demands) {
-  return make_advice_text(make_run(), advise_on(cells, std::move(demands)));
-}
+  std::string write(std::vector<Demand> demands) const {
+    return make_advice_text(make_run(), advise(cells_, {.demands = std::move(demands)}));
+  }
+  nlohmann::json write_json(std::vector<Demand> demands) const {
+    return make_advice_json(make_run(), advise(cells_, {.demands = std::move(demands)}));
+  }
+};
+using AdviceText = AdvisedCells;
+using AdviceJson = AdvisedCells;
+using Configurations = AdvisedCells;
 
 std::vector<std::string> list_names(const nlohmann::json& json) {
   std::vector<std::string> names;
@@ -168,13 +172,12 @@ std::vector<std::string> list_names(const nlohmann::json& json) {
   return names;
 }
 
-TEST(Configurations, CellsOfOneChoice_AreTogetherWhateverTheScene) {
-  std::vector<CellRecord> cells = make_cells();
-  cells[5].view = "top";
-  const auto pointers = point_to(cells);
+TEST_F(Configurations, CellsOfOneChoice_AreTogetherWhateverTheScene) {
+  cells_[5].view = "top";
+  const auto pointers = point_to(cells_);
   const auto configurations = list_configurations(pointers);
   ASSERT_EQ(configurations.size(), 3U);
-  EXPECT_THAT(configurations[1].cells, ElementsAre(&cells[2], &cells[3]));
+  EXPECT_THAT(configurations[1].cells, ElementsAre(&cells_[2], &cells_[3]));
   EXPECT_EQ(configurations[0].surroundings, configurations[1].surroundings);
   const auto places = list_places(pointers);
   ASSERT_EQ(places.size(), 3U);
@@ -182,30 +185,26 @@ TEST(Configurations, CellsOfOneChoice_AreTogetherWhateverTheScene) {
   EXPECT_EQ(describe_place(places[2], places), "stack (top)");
 }
 
-TEST(AdviceText, BeginsWithThePicks_ThenTheFastOne_OrWhatIsNearest) {
-  const auto cells = make_cells();
-  EXPECT_THAT(write_advice(cells, {max_rmse(0.03)}),
+TEST_F(AdviceText, BeginsWithThePicks_ThenTheFastOne_OrWhatIsNearest) {
+  EXPECT_THAT(write({max_rmse(0.03)}),
               HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 on the front that keep the "
                         "limits\nwith a kernel of 0.65 texels (medium), radius 4, store rg32f\n"));
-  EXPECT_THAT(write_advice(cells, {}),
-              HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 on the front\n"));
+  EXPECT_THAT(write({}), HasSubstr("\nwide: 8.5 ms (CPU) a frame, moving light; cheapest of 2 on the front\n"));
   EXPECT_THAT(
-      write_advice(cells, {max_rmse(0.001)}),
+      write({max_rmse(0.001)}),
       AllOf(StartsWith("Nothing fits.\n"),
             HasSubstr("Nearest to the limits:\n  huge  12.5 ms (CPU)  RMSE 0.01    breaks --max-rmse 0.001 with "
                       "0.01\n")));
 }
 
-TEST(AdviceText, ALimitKeptWithinTheIntervalOverPhases_SaysSo) {
-  auto cells = make_cells();
-  for (CellRecord& cell : cells) cell.rmse_ci95 = Interval{*cell.error.rmse - 0.002, *cell.error.rmse + 0.002};
-  EXPECT_THAT(write_advice(cells, {max_rmse(0.03)}),
+TEST_F(AdviceText, ALimitKeptWithinTheIntervalOverPhases_SaysSo) {
+  for (CellRecord& cell : cells_) cell.rmse_ci95 = Interval{*cell.error.rmse - 0.002, *cell.error.rmse + 0.002};
+  EXPECT_THAT(write({max_rmse(0.03)}),
               HasSubstr("0.0295  stack  kept by less than its interval over the phases of the map reaches, 0.002\n"));
 }
 
-TEST(AdviceText, Evidence_IsQuoted) {
-  const auto cells = make_cells();
-  const std::string text = write_advice(cells, {max_rmse(0.03)});
+TEST_F(AdviceText, Evidence_IsQuoted) {
+  const std::string text = write({max_rmse(0.03)});
   EXPECT_THAT(text,
               HasSubstr("  --max-rmse 0.03  0.0295  stack  kept by less than the truth's own standard error, 0.001\n"));
   EXPECT_THAT(text, HasSubstr("ms (CPU)"));
@@ -217,29 +216,26 @@ TEST(AdviceText, Evidence_IsQuoted) {
   EXPECT_THAT(text, HasSubstr("Times are CPU time"));
 }
 
-TEST(AdviceText, LimitOnTimeWithinTheSpread_IsSaid) {
-  const auto cells = make_cells();
+TEST_F(AdviceText, LimitOnTimeWithinTheSpread_IsSaid) {
   const Demand limit{&cost_spec(CostKind::kTime), 4.51};
-  const std::string text = write_advice(cells, {limit});
+  const std::string text = write({limit});
   EXPECT_THAT(text, HasSubstr("  --max-ms 4.51  4.5 ms (CPU)  cubes  its upper quartile, 4.59, is over it\n"));
 }
 
-TEST(AdviceText, WhatWasNotJudged_IsSaid) {
-  auto cells = make_cells();
-  cells[0].error.rmse.reset();
-  cells[0].absent["error.rmse"] = "the cat slept on it";
+TEST_F(AdviceText, WhatWasNotJudged_IsSaid) {
+  cells_[0].error.rmse.reset();
+  cells_[0].absent["error.rmse"] = "the cat slept on it";
   EXPECT_THAT(
-      write_advice(cells, {max_rmse(0.03)}),
+      write({max_rmse(0.03)}),
       HasSubstr("2 of 3 configurations judged, on cubes, stack.\nNot judged, 1: no error.rmse on cubes: the cat slept "
                 "on it.\n"));
 }
 
-TEST(AdviceText, Lines_FitATerminal) {
-  auto cells = make_cells();
-  cells[0].error.rmse.reset();
-  cells[0].absent["error.rmse"] = std::string(40, 'x') + " " + std::string(40, 'y') + " and more of the same";
+TEST_F(AdviceText, Lines_FitATerminal) {
+  cells_[0].error.rmse.reset();
+  cells_[0].absent["error.rmse"] = std::string(40, 'x') + " " + std::string(40, 'y') + " and more of the same";
   for (const double most : {0.03, 0.001}) {
-    std::istringstream text(write_advice(cells, {max_rmse(most)}));
+    std::istringstream text(write({max_rmse(most)}));
     for (std::string line; std::getline(text, line);) {
       const auto width = std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; });
       EXPECT_LE(static_cast<std::size_t>(width), kLongestLine) << line;
@@ -247,10 +243,9 @@ TEST(AdviceText, Lines_FitATerminal) {
   }
 }
 
-TEST(AdviceJson, Fields_AreTheSameWhateverTheAnswer) {
-  const auto cells = make_cells();
-  const auto fits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03)}));
-  const auto nothing = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.001)}));
+TEST_F(AdviceJson, Fields_AreTheSameWhateverTheAnswer) {
+  const auto fits = write_json({max_rmse(0.03)});
+  const auto nothing = write_json({max_rmse(0.001)});
   EXPECT_EQ(list_names(fits), list_names(nothing));
   EXPECT_EQ(fits["fits"], true);
   EXPECT_EQ(nothing["fits"], false);
@@ -258,41 +253,38 @@ TEST(AdviceJson, Fields_AreTheSameWhateverTheAnswer) {
   EXPECT_EQ(list_names(fits["keeping"][0]), list_names(nothing["failing"][0]));
 }
 
-TEST(AdviceJson, Claims_HaveNoSize) {
-  auto cells = make_cells();
-  for (CellRecord& cell : cells) {
+TEST_F(AdviceJson, Claims_HaveNoSize) {
+  for (CellRecord& cell : cells_) {
     cell.penumbra.growth = 1.0;
     if (cell.filter == "none") cell.claims = {"contact-hardening"};
   }
-  const auto json = make_advice_json(make_run(), advise_on(cells, {Demand()}));
+  const auto json = write_json({Demand()});
   EXPECT_EQ(json["keeping"][0]["limits"].dump(),
             R"([{"claim":"contact-hardening","kept":true,"option":"--requires"}])");
   EXPECT_EQ(json["failing"][0]["limits"][0]["kept"], false);
 }
 
-TEST(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
-  auto cells = make_cells();
-  for (std::size_t i = 0; i < cells.size(); ++i)
+TEST_F(AdviceJson, LimitThatHasNothingToSeeInAScene_NamesIt) {
+  for (std::size_t i = 0; i < cells_.size(); ++i)
     if (i % 2 == 0)
-      cells[i].artefact.leak = 0.0;
+      cells_[i].artefact.leak = 0.0;
     else
-      explain(cells[i], "artefact.leak", {"too few", true});
+      explain(cells_[i], "artefact.leak", {"too few", true});
   const Demand leak{&limit_of("artefact.leak"), 0.1};
-  const auto limits = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03), leak}))["keeping"][0]["limits"];
+  const auto limits = write_json({max_rmse(0.03), leak})["keeping"][0]["limits"];
   EXPECT_TRUE(limits[0]["nothing_to_see"].empty());
   EXPECT_EQ(limits[1]["nothing_to_see"].dump(), R"([{"reason":"too few","scene":"stack","view":"main"}])");
 }
 
-TEST(AdviceJson, Numbers_AreThoseOfTheCells) {
-  const auto cells = make_cells();
-  const auto json = make_advice_json(make_run(), advise_on(cells, {max_rmse(0.03)}));
+TEST_F(AdviceJson, Numbers_AreThoseOfTheCells) {
+  const auto json = write_json({max_rmse(0.03)});
   EXPECT_EQ(json["software"], true);
   EXPECT_EQ(json["clock"], "CPU time (software rasteriser)");
   EXPECT_EQ(json["asked"]["limits"]["--max-rmse"], 0.03);
   EXPECT_EQ(json["keeping"][0]["settings"]["filter"], "wide");
   EXPECT_EQ(json["keeping"][0]["cost"]["mean"], 8.5);
   EXPECT_EQ(json["keeping"][0]["limits"][0]["worst"], 0.0295);
-  EXPECT_EQ(json["keeping"][0]["limits"][0]["key"], cells[3].key);
+  EXPECT_EQ(json["keeping"][0]["limits"][0]["key"], cells_[3].key);
   EXPECT_EQ(json["keeping"][0]["limits"][0]["within_uncertainty"], true);
   EXPECT_EQ(json["keeping"][0]["cells"][1]["cost"], 9.5);
   EXPECT_EQ(json["failing"][0]["label"], "none");
