@@ -1,5 +1,5 @@
-// Functions of the pages' scripts that need no page: titles of GPUs from what browsers say of them, axes of charts, and what times
-// a browser's GPU.
+// Functions of the pages' scripts that need no page: titles of GPUs from what browsers say of them, axes of charts, and the
+// timing of a GPU.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
@@ -57,7 +57,6 @@ test("HiddenCurves_TakeNoRoom", () => {
   assert.deepEqual(fitAxis(axis, []), axis, "nothing is shown");
 });
 
-// What times a GPU leaves the page alive meanwhile.
 const kTiming = new URL("../../report/document/live/timing.js", import.meta.url);
 const makeTimer = new Function("makeTarget", "document", `${readFileSync(kTiming, "utf8")}; return makeTimer;`)(() => ({ framebuffer: 0 }), { hidden: false });
 const draw = (count) => {

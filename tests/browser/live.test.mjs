@@ -25,7 +25,7 @@ for (const [title, args, mostScenes] of [["OnTheRunsOwnRasteriser", kMesa, 9], [
       assert.deepEqual(requests.filter((url) => !url.startsWith("file://")), []);
     });
 
-// What the check says of each filter of a run whose shaders a function has changed.
+// Checks a run whose shaders `edit` has changed; `act` gets the result of each filter.
 const testShaders = (name, edit, act) => testPage(name, () => openLive(changeFrames("untrue", name, edit)), async ({ page }) => {
   await press(page, "Check against the run");
   act(Object.fromEntries((await readTable(page)).map(([filter, text]) => [filter, text])));

@@ -63,7 +63,7 @@ const breakLookups = ({ programs }) => {
 testPage("WhereNothingAgreesWithTheRun_MeasuringSaysSo", () => openDrawing(changeFrames("single", "disagrees", breakLookups)), ({ page }) =>
   measureInVain(page, "Nothing that is drawn here agrees with the run"));
 
-// In a page before its scripts: the browser draws into no floats.
+// Runs in a page before its scripts: the browser cannot draw into floats.
 const lackFloats = () => {
   const { getExtension } = WebGL2RenderingContext.prototype;
   WebGL2RenderingContext.prototype.getExtension = function (name) { return name === "EXT_color_buffer_float" ? null : getExtension.call(this, name); };

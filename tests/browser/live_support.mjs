@@ -8,7 +8,7 @@ import { folderOf, open, readPng, runProgram } from "./support.mjs";
 
 // Mesa's llvmpipe draws the runs too; Chromium's own rasteriser is another implementation.
 export const kMesa = ["--use-gl=angle", "--use-angle=gl", "--ignore-gpu-blocklist"], kOwn = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-// Opens a page where WebGL draws, and its section Live too.
+// Opens a page in a browser with WebGL; openLive() scrolls to its section Live, too.
 export const openDrawing = (file, options) => open(file, { args: kMesa, ...options });
 export const openLive = async (file, options) => {
   const opened = await openDrawing(file, options);
@@ -21,7 +21,7 @@ export const press = async (page, name) => {
   await page.waitForFunction(() => [...document.querySelectorAll(".live button")].find((each) => each.textContent === "Stop").hidden, null, { timeout: 240000 });
 };
 export const readTable = (page) => page.locator(".live table tbody tr").evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
-// A folder that goes with a test.
+// Makes a folder that is removed after the test.
 export const makeFolder = (context) => {
   const folder = mkdtempSync(join(tmpdir(), "shadowbench-"));
   context.after(() => rmSync(folder, { recursive: true }));

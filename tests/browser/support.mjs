@@ -13,7 +13,7 @@ const require = createRequire(join(kFolder, "package.json"));
 const { PNG } = require("pngjs"), kAxe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 export const kWide = { width: 1400, height: 900 }, kNarrow = { width: 400, height: 800 };
 
-// One browser for each list of arguments serves all tests of a file.
+// One browser per list of arguments serves all tests of a file.
 const browsers = new Map();
 const launch = (args) => {
   const key = args.join(" ");
@@ -30,8 +30,8 @@ export const runProgram = (words, options = {}) => spawnSync(kProgram, words, { 
 // The words of a command of the program as a shell reads them.
 export const splitWords = (command) => execFileSync("sh", ["-c", command.replace("shadowbench", "printf '%s\\n'")], { encoding: "utf8" }).trimEnd().split("\n");
 
-// Opens a page from disk in a profile of its own, and keeps every word that the console gets, and what a run's page has of
-// the run; `init` runs in it before its own scripts.
+// Opens a page from disk in a profile of its own; gives the console's messages, and the data of a run's page. `init` runs in
+// the page before its own scripts.
 export const open = async (file, { hash = "", waits = true, args = ["--disable-gpu"], init, ...options } = {}) => {
   const context = await (await launch(args)).newContext({ viewport: kWide, ...options }), page = await context.newPage(), messages = [];
   page.setDefaultTimeout(60000);  // a busy machine opens pages slowly
@@ -47,7 +47,7 @@ export const open = async (file, { hash = "", waits = true, args = ["--disable-g
   return { page, messages, data, shoot, close: () => context.close() };
 };
 export const openRun = (run, options) => open(pageOf(run), options);
-// Tests a page that a function opens. Its console stays empty, but for what `allows` matches.
+// Tests a page: `opens` opens it, `act` uses it. Its console must stay empty, except for messages that match `allows`.
 export const testPage = (name, opens, act, allows = /$^/) => test(name, async (context) => {
   const opened = await opens();
   try {
@@ -131,7 +131,7 @@ export const changePage = (run, edit) => {
   writeFileSync(file, html.replace(pattern, (_, begin, old, end) => begin + text + end));
   return file;
 };
-// Texts of a chart that lie over one another.
+// Lists the texts of a chart that overlap.
 export const listOverlaps = (svg) => svg.evaluate((chart) => {
   const boxes = [...chart.querySelectorAll("text")].map((text) => [text.textContent, text.getBBox()]);
   const isOver = (p, q) => p.x + 1 < q.x + q.width && q.x + 1 < p.x + p.width && p.y + 4 < q.y + q.height && q.y + 4 < p.y + p.height;

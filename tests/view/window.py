@@ -74,7 +74,7 @@ class Window:
         self.poll()
 
     def after(self, act, what, holds=lambda frame: frame["drawn"]):
-        """The first frame after an action for which `holds` is true."""
+        """Acts, and waits for the first frame since for which `holds` is true."""
         self.poll()
         since = len(self.frames)
         act()
@@ -139,7 +139,7 @@ class Window:
         return self.wait_event(f"saved {what}")
 
     def picture(self, part):
-        """Width, height and the first channel of a part of the picture that it saves now."""
+        """Saves a picture; gives width, height and first channel of one of its parts."""
         ((width, height, channels, values),) = ExrFile(Path(self.save("ctrl+p", "picture") + ".exr"), self.folder).unpack(part)
         return width, height, list(values)[::channels]
 

@@ -39,7 +39,7 @@ Advice advise_on(const std::vector<CellRecord>& cells, std::vector<Demand> deman
   return advise(cells, {.demands = std::move(demands)});
 }
 
-/// All in their order: those that are beaten or gain nothing, too.
+/// Ranks all of them: those that are beaten or gain nothing, too.
 Advice rank(const std::vector<CellRecord>& cells, LightMotion light = LightMotion::kMoving) {
   return advise(cells, {.light = light, .whole = true});
 }
@@ -156,7 +156,7 @@ TEST(Advice, NeededValueThatIsNull_IsNotJudgedAndSaysWhy) {
       << "nobody asked for fetches, and others have an RMSE";
 }
 
-/// Whether the cheapest two cost the same.
+/// Whether the costs of the two cheapest are tied.
 bool is_tied(const std::vector<CellRecord>& cells) {
   const std::vector<Candidate> ranked = rank(cells).keeping;
   return are_costs_tied(ranked.at(0), ranked.at(1), CostKind::kTime);
@@ -280,7 +280,7 @@ TEST(Advice, AClaimThatIsNotShown_IsNoAdvice) {
               ElementsAre(claimed + least("ball", "-1"), claimed + least("cubes", "0.1"), claimed + "all are narrow"));
 }
 
-/// A filter's cells: a leak rate on "cubes", and none on "fence", where too little is blocked.
+/// The cells of a filter with a leak rate on "cubes", and none on "fence", where too few receivers are blocked.
 std::vector<CellRecord> measure_leak_on_one(const std::string& filter, double ms, double leak) {
   std::vector<CellRecord> cells = {measure("cubes", filter, ms, 0.01), measure("fence", filter, ms, 0.01)};
   cells[0].artefact.leak = leak;

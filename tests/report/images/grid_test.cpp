@@ -50,7 +50,7 @@ void expect_sound(const Figure& figure) {
 
 void expect_sound(const Grid& grid) { expect_sound(make_figure(grid)); }
 
-// Everything that is said, spaces left out, so that wrapping does not matter.
+// All texts of a layout, without spaces, so that wrapping does not matter.
 std::string all_text(const Layout& layout) {
   std::string text;
   for (const PlacedText& line : layout.texts) text += line.text;
@@ -281,7 +281,7 @@ Sheet make_sheet(std::size_t filters, const std::string& name = "pcf2x2") {
   return sheet;
 }
 
-/// Images may lie over one another, and a bar over its ground; texts over nothing.
+/// Images may overlap, and a bar lies on its background; no text overlaps anything.
 void expect_legible(const Sheet& sheet, SheetWidth width = {}) {
   const Layout layout = layout_sheet(sheet, width);
   expect_sound(layout, list_each(layout.texts, &PlacedText::box));

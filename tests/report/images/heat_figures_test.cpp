@@ -287,7 +287,7 @@ bool contains(const Rect& rect, int x, int y) {
   return x >= rect.x && x < rect.x + rect.width && y >= rect.y && y < rect.y + rect.height;
 }
 
-/// A picture, and one in which a test changes something.
+/// Visibility with two edges, and a copy that each test changes.
 class HardestEdge : public ::testing::Test {
  protected:
   const Image reference_ = make_two_edges();

@@ -15,15 +15,15 @@ namespace shadowbench::document {
 /// What a page says first.
 inline std::string answer_of(const Page& page) { return std::get<Paragraph>(page.sections.at(0).blocks.at(0)).text; }
 
-/// The first block of a kind that `is_it`, folded ones included; null where there is none.
+/// The first block of a kind for which `matches` holds, folded ones included; null where there is none.
 template <typename Kind>
 const Kind* find_block(
     const std::vector<Block>& blocks,
-    const std::function<bool(const Kind&)>& is_it = [](const Kind&) { return true; }) {
+    const std::function<bool(const Kind&)>& matches = [](const Kind&) { return true; }) {
   for (const Block& block : blocks) {
-    if (const auto* own = std::get_if<Kind>(&block); own && is_it(*own)) return own;
+    if (const auto* own = std::get_if<Kind>(&block); own && matches(*own)) return own;
     const auto* details = std::get_if<Details>(&block);
-    if (const Kind* inside = details ? find_block<Kind>(details->blocks, is_it) : nullptr) return inside;
+    if (const Kind* inside = details ? find_block<Kind>(details->blocks, matches) : nullptr) return inside;
   }
   return nullptr;
 }
@@ -52,7 +52,7 @@ inline std::vector<std::string> list_shown(const Chart& chart) {
 
 namespace shadowbench::pages {
 
-/// The JSON in a page's script of that id.
+/// The text of the script element with this id.
 inline std::string read_script(const std::string& page, const std::string& id) {
   const std::size_t begin = page.find('>', page.find("id=\"" + id + "\"")) + 1;
   return page.substr(begin, page.find("</script>", begin) - begin);

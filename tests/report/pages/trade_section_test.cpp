@@ -148,7 +148,7 @@ CellRecord measure(const std::string& scene, const std::string& filter, double m
   return cell;
 }
 
-/// Cells, and what is said of them in words and as JSON.
+/// Three filters on two scenes, and the advice on them as text and as JSON.
 class AdvisedCells : public ::testing::Test {
  protected:
   std::vector<CellRecord> cells_ = {measure("cubes", "none", 1.0, 0.04), measure("stack", "none", 1.0, 0.06),

@@ -13,8 +13,8 @@ namespace {
 using nlohmann::json;
 using JsonIo = FolderTest;
 
-// Says of each document whether the schema accepts it. Debian's python3-jsonschema is the judge; python is slow to
-// start, so one judges them all.
+// Says of each document whether the schema accepts it. Debian's python3-jsonschema decides; Python starts
+// slowly, so one process judges all.
 std::vector<bool> judge_all(const std::vector<json>& documents, const std::filesystem::path& schema) {
   const std::filesystem::path dir = schema.parent_path();
   constexpr const char* kJudge =

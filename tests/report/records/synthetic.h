@@ -8,13 +8,13 @@
 
 namespace shadowbench::records {
 
-/// A test with a folder of its own.
+/// A test with a temporary folder.
 class FolderTest : public ::testing::Test {
  protected:
   const TestFolder folder_;
 };
 
-/// What a function or a member gives of each of some things, in their order.
+/// Lists what a function or member returns for each element, in order.
 template <typename Things, typename Get>
 auto list_each(const Things& things, Get get) {
   std::vector<std::decay_t<decltype(std::invoke(get, *std::begin(things)))>> list;
@@ -112,7 +112,7 @@ inline CellRecord make_cell(const std::string& scene, const std::string& filter,
   return cell;
 }
 
-/// That cell of a filter without a prefilter, with its RMSE to a truth whose standard error is 0.001.
+/// A cell without a prefilter, with an RMSE to a truth whose standard error is 0.001.
 inline CellRecord make_scored_cell(const std::string& scene, const std::string& filter, double lookup_ms, double rmse) {
   CellRecord cell = make_cell(scene, filter, lookup_ms);
   cell.absent.erase("error");
@@ -122,7 +122,7 @@ inline CellRecord make_scored_cell(const std::string& scene, const std::string& 
   return cell;
 }
 
-/// That cell with further errors, and with the shares of its parts.
+/// The same with further errors, and with the shares of their parts.
 inline CellRecord make_attributed_cell(const std::string& filter, double rmse, const PartValues& shares) {
   CellRecord cell = make_scored_cell("cubes", filter, 4.0, rmse);
   cell.error.mae = rmse / 4.0;

@@ -119,19 +119,19 @@ TEST(Comparison, BrokenBoundOfTheBaseline_ExcusesNothing) {
 
 TEST(Comparison, DamagedImages_AreUnreadable) {
   using UncertaintyMember = images::Image images::UncertaintyImages::*;
-  /// Both have all images, the baseline's or the run's `damaged` one another size.
-  const auto compare_damaged = [](UncertaintyMember damaged, bool is_baselines, const images::Image& by) {
+  // Replaces one image of the baseline, or of the run, and compares the two.
+  const auto compare_damaged = [](UncertaintyMember member, bool in_baseline, const images::Image& image) {
     ActualCell cell = make_cell();
     for (const images::UncertaintyImage& each : images::list_uncertainty_images())
       cell.images.uncertainty.*each.image = make_image(0.0f);
     CellImages expected = cell.images;
-    (is_baselines ? expected : cell.images).uncertainty.*damaged = by;
+    (in_baseline ? expected : cell.images).uncertainty.*member = image;
     return compare_cell(cell, expect(cell), expected, Tolerances()).outcome;
   };
   for (const images::UncertaintyImage& each : images::list_uncertainty_images())
-    for (const bool is_baselines : {false, true}) {
-      EXPECT_EQ(compare_damaged(each.image, is_baselines, make_image(0.0f)), Outcome::kSame) << each.id;
-      EXPECT_EQ(compare_damaged(each.image, is_baselines, images::Image(4, 4, 1)), Outcome::kUnreadable) << each.id;
+    for (const bool in_baseline : {false, true}) {
+      EXPECT_EQ(compare_damaged(each.image, in_baseline, make_image(0.0f)), Outcome::kSame) << each.id;
+      EXPECT_EQ(compare_damaged(each.image, in_baseline, images::Image(4, 4, 1)), Outcome::kUnreadable) << each.id;
     }
   EXPECT_EQ(compare_damaged(&images::UncertaintyImages::seed_deviation, true, {}), Outcome::kUnreadable);
 }
