@@ -186,13 +186,15 @@ TEST_F(GlTest, FullscreenTriangle_CoversEveryPixelOnce_WhateverStateIsSet) {
   EXPECT_THAT(probe.run(), ::testing::Each(3.0f));
 }
 
-// Samples two texels, 0 and 1, half way between them.
-float sample_halfway(const Texture& map, const Sampler* sampler = nullptr) {
+// Places across a map of two texels: half way between them, and beyond the right edge.
+constexpr float kHalfway = 0.5f, kOutside = 4.0f;
+
+float sample(float place, const Texture& map, const Sampler* sampler = nullptr) {
   SurveyShader probe("survey_filter.frag", {1, 1});
   map.bind(0);
   if (sampler) sampler->bind(0);
   probe.program().set("u_map", 0);
-  probe.program().set("u_first", 0.5f);
+  probe.program().set("u_first", place);
   probe.program().set("u_step", 0.0f);
   return probe.run().front();
 }
@@ -202,36 +204,25 @@ TEST_F(GlTest, Sampler_OverridesTheTexturesFilter_UntilATextureIsBound) {
   map.upload_floats(std::array{0.0f, 1.0f}, 1);
   Sampler linear("linear");
   linear.set_filter(GL_LINEAR, GL_LINEAR);
-  EXPECT_NE(sample_halfway(map), 0.5f);
-  EXPECT_EQ(sample_halfway(map, &linear), 0.5f);
-  EXPECT_NE(sample_halfway(map), 0.5f);
+  EXPECT_NE(sample(kHalfway, map), 0.5f);
+  EXPECT_EQ(sample(kHalfway, map, &linear), 0.5f);
+  EXPECT_NE(sample(kHalfway, map), 0.5f);
   map.set_filter(GL_LINEAR, GL_LINEAR);
-  EXPECT_EQ(sample_halfway(map), 0.5f);
+  EXPECT_EQ(sample(kHalfway, map), 0.5f);
   Sampler nearest("nearest, as new ones are");
-  EXPECT_NE(sample_halfway(map, &nearest), 0.5f);
-}
-
-// Samples beyond the right edge of a 2x1 map.
-float sample_outside(const Texture& map, const Sampler* sampler = nullptr) {
-  SurveyShader probe("survey_filter.frag", {1, 1});
-  map.bind(0);
-  if (sampler) sampler->bind(0);
-  probe.program().set("u_map", 0);
-  probe.program().set("u_first", 4.0f);
-  probe.program().set("u_step", 0.0f);
-  return probe.run().front();
+  EXPECT_NE(sample(kHalfway, map, &nearest), 0.5f);
 }
 
 TEST_F(GlTest, Outside_IsTheEdge_OfNewTexturesAndSamplers) {
   Texture map("edge", GL_R32F, 2, 1);
   map.upload_floats(std::array{0.25f, 1.0f}, 1);
-  EXPECT_EQ(sample_outside(map), 1.0f);
+  EXPECT_EQ(sample(kOutside, map), 1.0f);
   map.set_wrap(GL_REPEAT);
-  EXPECT_EQ(sample_outside(map), 0.25f);
+  EXPECT_EQ(sample(kOutside, map), 0.25f);
   Sampler sampler("edge");
-  EXPECT_EQ(sample_outside(map, &sampler), 1.0f);
+  EXPECT_EQ(sample(kOutside, map, &sampler), 1.0f);
   sampler.set_wrap(GL_REPEAT);
-  EXPECT_EQ(sample_outside(map, &sampler), 0.25f);
+  EXPECT_EQ(sample(kOutside, map, &sampler), 0.25f);
 }
 
 TEST_F(GlTest, Border_IsWhatLiesOutside_OfSampler) {
@@ -240,7 +231,7 @@ TEST_F(GlTest, Border_IsWhatLiesOutside_OfSampler) {
   Sampler sampler("border");
   sampler.set_wrap(GL_CLAMP_TO_BORDER);
   sampler.set_border({0.75f, 0.0f, 0.0f, 0.0f});
-  EXPECT_EQ(sample_outside(map, &sampler), 0.75f);
+  EXPECT_EQ(sample(kOutside, map, &sampler), 0.75f);
 }
 
 TEST_F(GlTest, Mipmaps_AverageTheLevelAbove) {

@@ -34,13 +34,15 @@ Program make_filter_program(const std::string& filter) {
   return Program("soft", FullscreenTriangle::vertex_source(), make_filter_source(filter), ErrorKind::kFilter);
 }
 
-std::vector<float> draw(Program& program) {
+/// What a program draws into one pixel.
+std::vector<float> draw(
+    const Program& program, const std::function<void()>& draw_shape = [] { FullscreenTriangle().draw(); }) {
   Texture target("target", GL_RGBA32F, 1, 1);
   Framebuffer framebuffer("target");
   framebuffer.attach_color(0, target);
   framebuffer.bind();
   program.use();
-  FullscreenTriangle().draw();
+  draw_shape();
   return target.read_floats(4);
 }
 
@@ -149,15 +151,11 @@ TEST_F(GlTest, VertexArray_FeedsInterleavedAttributes) {
   array.set_vertices(vertex_buffer, sizeof(Vertex));
   array.set_attribute(0, 2, offsetof(Vertex, position));
   array.set_attribute(3, 3, offsetof(Vertex, color));
-  const Program program = make_vertex_program();
-  Texture target("target", GL_RGBA32F, 1, 1);
-  Framebuffer framebuffer("target");
-  framebuffer.attach_color(0, target);
-  framebuffer.bind();
-  program.use();
-  array.bind();
-  glDrawArrays(GL_TRIANGLES, 1, 3);
-  EXPECT_THAT(target.read_floats(4), ElementsAre(4, 5, 6, 1));
+  const auto draw_triangle = [&] {
+    array.bind();
+    glDrawArrays(GL_TRIANGLES, 1, 3);
+  };
+  EXPECT_THAT(draw(make_vertex_program(), draw_triangle), ElementsAre(4, 5, 6, 1));
 }
 
 // What is drawn, written down: programs, inputs, targets, and what was there before.
@@ -203,15 +201,17 @@ struct Bench {
 
 const DrawStep& as_draw(const StepPointer& step) { return std::get<DrawStep>(step->what); }
 
-class RecorderTest : public GlTest {};
+class RecorderTest : public GlTest {
+ protected:
+  Recorder recorder_;
+  Bench bench_;
+};
 
 TEST_F(RecorderTest, ADrawHasItsProgramItsUniformsAndWhatItReads) {
-  Recorder recorder;
-  Bench bench;
-  bench.draw_first({0.5f, 0.25f});
-  const StepPointer filled = recorder.newest_draw();
-  bench.draw_second();
-  const DrawStep& copy = as_draw(recorder.newest_draw());
+  bench_.draw_first({0.5f, 0.25f});
+  const StepPointer filled = recorder_.newest_draw();
+  bench_.draw_second();
+  const DrawStep& copy = as_draw(recorder_.newest_draw());
   EXPECT_EQ(copy.program->label, "copy");
   EXPECT_TRUE(copy.program->sources.at(GL_FRAGMENT_SHADER).starts_with("#version 450"));
   ASSERT_EQ(copy.inputs.size(), 1u);
@@ -220,71 +220,63 @@ TEST_F(RecorderTest, ADrawHasItsProgramItsUniformsAndWhatItReads) {
   EXPECT_THAT(copy.inputs[0].levels, ElementsAre(filled));
   EXPECT_EQ(copy.viewport, glm::ivec4(0, 0, 2, 3));
   EXPECT_THAT(as_draw(filled).uniforms.at("color"), ElementsAre(0.5, 0.25));
-  EXPECT_EQ(recorder.newest_draw()->targets[0].texture->format, GLenum{GL_R32F});
-  EXPECT_EQ(recorder.content_of(bench.first).step, filled);
+  EXPECT_EQ(recorder_.newest_draw()->targets[0].texture->format, GLenum{GL_R32F});
+  EXPECT_EQ(recorder_.content_of(bench_.first).step, filled);
 }
 
 TEST_F(RecorderTest, WhatCoversAllForgetsWhatWasThere_AndWhatAddsDoesNot) {
-  Recorder recorder;
-  Bench bench;
-  bench.to_first.clear_color(0, glm::vec4(0.125f));
-  const StepPointer cleared = recorder.content_of(bench.first).step;
+  bench_.to_first.clear_color(0, glm::vec4(0.125f));
+  const StepPointer cleared = recorder_.content_of(bench_.first).step;
   ASSERT_TRUE(cleared);
   EXPECT_FLOAT_EQ(std::get<ClearStep>(cleared->what).value.x, 0.125f);
-  bench.draw_first({1.0f, 1.0f});
-  EXPECT_EQ(recorder.newest_draw()->targets[0].before, nullptr);
+  bench_.draw_first({1.0f, 1.0f});
+  EXPECT_EQ(recorder_.newest_draw()->targets[0].before, nullptr);
   const Texture depth("depth", GL_DEPTH_COMPONENT32F, 2, 3);
-  bench.to_first.attach_depth(depth);
-  bench.to_first.clear_depth(0.0f);
-  const StepPointer below = recorder.content_of(bench.first).step, masked = recorder.content_of(depth).step;
-  bench.draw_first({0.5f, 0.5f}, true);
-  const std::vector<StepTarget>& targets = recorder.newest_draw()->targets;
+  bench_.to_first.attach_depth(depth);
+  bench_.to_first.clear_depth(0.0f);
+  const StepPointer below = recorder_.content_of(bench_.first).step, masked = recorder_.content_of(depth).step;
+  bench_.draw_first({0.5f, 0.5f}, true);
+  const std::vector<StepTarget>& targets = recorder_.newest_draw()->targets;
   ASSERT_EQ(targets.size(), 2u);
   EXPECT_EQ(targets[0].before, below);
   EXPECT_EQ(targets[1].place, StepTarget::kDepth);
   EXPECT_EQ(targets[1].before, masked);
-  EXPECT_TRUE(as_draw(recorder.newest_draw()).adds);
-  EXPECT_EQ(recorder.content_of(depth).step, masked);  // depth was looked at, and not written
+  EXPECT_TRUE(as_draw(recorder_.newest_draw()).adds);
+  EXPECT_EQ(recorder_.content_of(depth).step, masked);  // depth was looked at, and not written
 }
 
 TEST_F(RecorderTest, WhatIsDrawnInAPauseIsNotWrittenDown) {
-  Recorder recorder;
-  Bench bench;
-  bench.draw_first({0.5f, 0.25f});
-  const StepPointer filled = recorder.newest_draw();
+  bench_.draw_first({0.5f, 0.25f});
+  const StepPointer filled = recorder_.newest_draw();
   {
-    const Recorder::Pause pause(&recorder);
-    bench.draw_second();
+    const Recorder::Pause pause(&recorder_);
+    bench_.draw_second();
   }
-  EXPECT_EQ(recorder.newest_draw(), filled);
+  EXPECT_EQ(recorder_.newest_draw(), filled);
   const Recorder::Pause nothing(nullptr);  // where there is no recorder
 }
 
 TEST_F(RecorderTest, ATargetThatIsBoundAsAnInputIsNoInput) {
-  Recorder recorder;
-  Bench bench;
-  bench.draw_first({0.5f, 0.25f});
-  bench.to_first.bind();
-  bench.first.bind(5);
-  bench.copy.use();
-  bench.triangle.draw();
-  EXPECT_TRUE(as_draw(recorder.newest_draw()).inputs.empty());
+  bench_.draw_first({0.5f, 0.25f});
+  bench_.to_first.bind();
+  bench_.first.bind(5);
+  bench_.copy.use();
+  bench_.triangle.draw();
+  EXPECT_TRUE(as_draw(recorder_.newest_draw()).inputs.empty());
 }
 
 TEST_F(RecorderTest, UploadsKeepTheirTexels_AndATextureThatIsGoneIsForgotten) {
-  Recorder recorder;
-  Bench bench;
   const std::array<float, 6> values = {1, 2, 3, 4, 5, 6};
-  bench.second.upload_floats(values, 1);
-  const StepPointer upload = recorder.content_of(bench.second).step;
+  bench_.second.upload_floats(values, 1);
+  const StepPointer upload = recorder_.content_of(bench_.second).step;
   ASSERT_TRUE(upload);
   EXPECT_EQ(std::get<UploadStep>(upload->what).texels.size(), sizeof(values));
-  bench.second = Texture("another", GL_R32F, 4, 4);
-  EXPECT_EQ(recorder.content_of(bench.second).step, nullptr);
-  EXPECT_EQ(recorder.content_of(bench.second).texture->width, 4);
+  bench_.second = Texture("another", GL_R32F, 4, 4);
+  EXPECT_EQ(recorder_.content_of(bench_.second).step, nullptr);
+  EXPECT_EQ(recorder_.content_of(bench_.second).texture->width, 4);
 }
 
-TEST_F(RecorderTest, WithoutOneOpenGlIsAsBefore) {
+TEST_F(GlTest, OpenGl_AfterARecorder_IsAsBefore) {
   const auto before = glad_glDrawArrays;
   { Recorder recorder; }
   EXPECT_EQ(glad_glDrawArrays, before);

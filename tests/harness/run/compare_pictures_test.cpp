@@ -45,53 +45,45 @@ class ComparePictures : public ::testing::Test {
     return compare_pictures(options(image, truth, mask));
   }
 
+  /// Compares pictures that are written for it; an empty mask is none.
+  Comparison compare(const Image& image, const Image& truth, const Image& mask = {}) const {
+    write("a.exr", image);
+    write("b.exr", truth);
+    if (!mask.empty()) write("mask.exr", mask);
+    return compare("a.exr", "b.exr", mask.empty() ? "" : "mask.exr");
+  }
+
   void expect_refusal(const ComparisonOptions& options, const std::vector<std::string>& words) const {
     const Error error = error_of([&] { compare_pictures(options); });
     EXPECT_EQ(error.kind(), ErrorKind::kInput);
     for (const std::string& word : words) EXPECT_THAT(error.what(), HasSubstr(word));
   }
 
+  /// Shadows of two widths.
+  const Image narrow_ = make_visibility(48, 32, 3.0f), wide_ = make_visibility(48, 32, 12.0f);
+
  private:
   TestFolder folder_;
 };
 
-TEST_F(ComparePictures, Values_AreWhatTheirDefinitionsGive) {
-  write("a.exr", make_image(4, 1, 1, {0.5f, 1.0f, 0.0f, 0.25f}));
-  write("b.exr", make_image(4, 1, 1, {0.0f, 1.0f, 0.5f, 0.0f}));
-  const Comparison result = compare("a.exr", "b.exr");
-  EXPECT_EQ(result.compared, 4);
-  EXPECT_EQ(result.not_finite, 0);
-  EXPECT_DOUBLE_EQ(result.values.at("mean"), 0.0625);
-  EXPECT_DOUBLE_EQ(result.values.at("mae"), 0.3125);
-  EXPECT_DOUBLE_EQ(result.values.at("rmse"), std::sqrt((0.25 + 0.25 + 0.0625) / 4.0));
-  EXPECT_DOUBLE_EQ(result.values.at("max"), 0.5);
-  EXPECT_DOUBLE_EQ(result.values.at("p95"), 0.5);
-  EXPECT_TRUE(result.absent.empty());
-  EXPECT_DOUBLE_EQ(compare("b.exr", "a.exr").values.at("mean"), -0.0625);
-}
-
 TEST_F(ComparePictures, SamePicture_HasNoError) {
-  write("a.exr", shade(make_visibility(32, 16, 8.0f)));
-  for (const auto& [name, value] : compare("a.exr", "a.exr").values) EXPECT_EQ(value, 0.0) << name;
+  for (const auto& [name, value] : compare(shade(narrow_), shade(narrow_)).values) EXPECT_EQ(value, 0.0) << name;
 }
 
 TEST_F(ComparePictures, AllChannelsCount_AndAlphaDoesNot) {
-  write("a.exr", make_image(1, 1, 4, {0.5f, 0.0f, 0.0f, 1.0f}));
-  write("b.exr", make_image(1, 1, 4, {0.0f, 0.0f, 0.25f, 0.0f}));
-  write("c.exr", make_image(1, 1, 3, {0.0f, 0.0f, 0.25f}));
-  for (const char* truth : {"b.exr", "c.exr"}) {
-    const Comparison result = compare("a.exr", truth);
+  for (const Image& truth :
+       {make_image(1, 1, 4, {0.0f, 0.0f, 0.25f, 0.0f}), make_image(1, 1, 3, {0.0f, 0.0f, 0.25f})}) {
+    const Comparison result = compare(make_image(1, 1, 4, {0.5f, 0.0f, 0.0f, 1.0f}), truth);
     EXPECT_EQ(result.channels, 3);
     EXPECT_EQ(result.compared, 1);
-    EXPECT_DOUBLE_EQ(result.values.at("mae"), 0.25) << truth;
-    EXPECT_DOUBLE_EQ(result.values.at("max"), 0.5) << truth;
+    EXPECT_DOUBLE_EQ(result.values.at("mae"), 0.25) << truth.channels;
+    EXPECT_DOUBLE_EQ(result.values.at("max"), 0.5) << truth.channels;
   }
 }
 
 TEST_F(ComparePictures, PixelsThatAreNotFinite_AreCountedAndLeftOut) {
-  write("a.exr", make_image(4, 1, 1, {0.5f, kNan, kInfinity, 0.0f}));
-  write("b.exr", make_image(4, 1, 1, {0.0f, 0.0f, kInfinity, -kInfinity}));
-  const Comparison result = compare("a.exr", "b.exr");
+  const Comparison result = compare(make_image(4, 1, 1, {0.5f, kNan, kInfinity, 0.0f}),
+                                    make_image(4, 1, 1, {0.0f, 0.0f, kInfinity, -kInfinity}));
   EXPECT_EQ(result.compared, 1);
   EXPECT_EQ(result.not_finite, 3);
   EXPECT_DOUBLE_EQ(result.values.at("rmse"), 0.5);
@@ -100,28 +92,23 @@ TEST_F(ComparePictures, PixelsThatAreNotFinite_AreCountedAndLeftOut) {
 }
 
 TEST_F(ComparePictures, PixelWithOneChannelNotFinite_IsLeftOutWhole) {
-  write("a.exr", make_image(2, 1, 3, {1.0f, kNan, 1.0f, 0.5f, 0.5f, 0.5f}));
-  write("b.exr", make_image(2, 1, 3, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}));
-  const Comparison result = compare("a.exr", "b.exr");
+  const Comparison result = compare(make_image(2, 1, 3, {1.0f, kNan, 1.0f, 0.5f, 0.5f, 0.5f}),
+                                    make_image(2, 1, 3, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}));
   EXPECT_EQ(result.compared, 1);
   EXPECT_EQ(result.not_finite, 1);
   EXPECT_DOUBLE_EQ(result.values.at("max"), 0.5);
 }
 
 TEST_F(ComparePictures, NothingFinite_HasNoValueAndSaysWhy) {
-  write("a.exr", make_image(1, 1, 1, {kNan}));
-  write("b.exr", make_image(1, 1, 1, {0.0f}));
-  const Comparison result = compare("a.exr", "b.exr");
+  const Comparison result = compare(make_image(1, 1, 1, {kNan}), make_image(1, 1, 1, {0.0f}));
   EXPECT_TRUE(result.values.empty());
   EXPECT_EQ(result.absent.size(), metrics::picture_metrics().size());
   for (const auto& [name, reason] : result.absent) EXPECT_THAT(reason, HasSubstr("finite")) << name;
 }
 
 TEST_F(ComparePictures, Mask_ChoosesThePixels) {
-  write("a.exr", make_image(3, 1, 1, {0.5f, 0.25f, kNan}));
-  write("b.exr", make_image(3, 1, 1, {0.0f, 0.0f, 0.0f}));
-  write("mask.exr", make_image(3, 1, 1, {0.0f, -0.125f, 0.0f}));
-  const Comparison result = compare("a.exr", "b.exr", "mask.exr");
+  const Comparison result =
+      compare(make_image(3, 1, 1, {0.5f, 0.25f, kNan}), Image(3, 1, 1), make_image(3, 1, 1, {0.0f, -0.125f, 0.0f}));
   EXPECT_EQ(result.compared, 1);
   EXPECT_EQ(result.not_finite, 0);
   EXPECT_DOUBLE_EQ(result.values.at("rmse"), 0.25);
@@ -129,46 +116,36 @@ TEST_F(ComparePictures, Mask_ChoosesThePixels) {
 }
 
 TEST_F(ComparePictures, EmptyMask_HasNoValueAndSaysWhy) {
-  write("a.exr", make_image(2, 1, 1, {0.5f, 0.25f}));
-  write("mask.exr", make_image(2, 1, 1, {0.0f, 0.0f}));
-  const Comparison result = compare("a.exr", "a.exr", "mask.exr");
+  const Image any = make_image(2, 1, 1, {0.5f, 0.25f});
+  const Comparison result = compare(any, any, Image(2, 1, 1));
   EXPECT_TRUE(result.values.empty());
   EXPECT_EQ(result.absent.at("rmse"), "the mask is 0 everywhere");
   EXPECT_EQ(result.absent.at("flip"), "the mask is 0 everywhere");
 }
 
 TEST_F(ComparePictures, Flip_IsTheOneOfARun) {
-  const Image a = shade(make_visibility(48, 32, 3.0f));
-  const Image b = shade(make_visibility(48, 32, 12.0f));
-  write("a.exr", a);
-  write("b.exr", b);
-  EXPECT_DOUBLE_EQ(compare("a.exr", "b.exr").values.at("flip"), *measure::measure_mean_flip(a, b));
+  const Image a = shade(narrow_), b = shade(wide_);
+  const double flip = compare(a, b).values.at("flip");
+  EXPECT_DOUBLE_EQ(flip, *measure::measure_mean_flip(a, b));
   ComparisonOptions near = options("a.exr", "b.exr");
   near.pixels_per_degree = 10.0;
   EXPECT_DOUBLE_EQ(compare_pictures(near).values.at("flip"), *measure::measure_mean_flip(a, b, {}, 10.0));
-  EXPECT_NE(compare_pictures(near).values.at("flip"), compare("a.exr", "b.exr").values.at("flip"));
+  EXPECT_NE(compare_pictures(near).values.at("flip"), flip);
 }
 
 TEST_F(ComparePictures, FlipOverAMask_SeesTheWholePictureAndAveragesTheMask) {
-  const Image a = shade(make_visibility(48, 32, 3.0f));
-  const Image b = shade(make_visibility(48, 32, 12.0f));
+  const Image a = shade(narrow_), b = shade(wide_);
   Image left(48, 32, 1), right(48, 32, 1);
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 48; ++x) *(x < 20 ? left : right).at(x, y) = 1.0f;
-  write("a.exr", a);
-  write("b.exr", b);
-  write("left.exr", left);
-  write("right.exr", right);
-  const double all = compare("a.exr", "b.exr").values.at("flip");
-  const double of_left = compare("a.exr", "b.exr", "left.exr").values.at("flip");
-  const double of_right = compare("a.exr", "b.exr", "right.exr").values.at("flip");
+  const double all = compare(a, b).values.at("flip"), of_left = compare(a, b, left).values.at("flip"),
+               of_right = compare(a, b, right).values.at("flip");
   EXPECT_NE(of_left, of_right);
   EXPECT_NEAR((20.0 * of_left + 28.0 * of_right) / 48.0, all, 1e-12);
 }
 
 TEST_F(ComparePictures, FlipOfSrgbCodes_IsThatOfTheLinearPicture) {
-  const Image a = shade(make_visibility(48, 32, 3.0f));
-  const Image b = shade(make_visibility(48, 32, 12.0f));
+  const Image a = shade(narrow_), b = shade(wide_);
   images::write_picture_png(path("a.png"), a);
   images::write_picture_png(path("b.png"), b);
   EXPECT_NEAR(compare("a.png", "b.png").values.at("flip"), *measure::measure_mean_flip(a, b), 2e-3) << "8 bits";
@@ -176,7 +153,7 @@ TEST_F(ComparePictures, FlipOfSrgbCodes_IsThatOfTheLinearPicture) {
 }
 
 TEST_F(ComparePictures, SrgbCodesAgainstLinearValues_AreWarnedOf) {
-  const Image a = shade(make_visibility(48, 32, 3.0f));
+  const Image a = shade(narrow_);
   write("a.exr", a);
   images::write_picture_png(path("a.png"), a);
   const Comparison result = compare("a.exr", "a.png");
@@ -187,21 +164,18 @@ TEST_F(ComparePictures, SrgbCodesAgainstLinearValues_AreWarnedOf) {
 }
 
 TEST_F(ComparePictures, OneChannel_IsGreyForFlip) {
-  const Image a = make_visibility(48, 32, 3.0f), b = make_visibility(48, 32, 12.0f);
   const auto to_rgb = [](const Image& grey) {
     Image rgb(grey.width, grey.height, 3);
     for (std::size_t i = 0; i < rgb.texels.size(); ++i) rgb.texels[i] = grey.texels[i / 3];
     return rgb;
   };
-  write("a.exr", a);
-  write("b.exr", b);
-  EXPECT_DOUBLE_EQ(compare("a.exr", "b.exr").values.at("flip"), *measure::measure_mean_flip(to_rgb(a), to_rgb(b)));
+  EXPECT_DOUBLE_EQ(compare(narrow_, wide_).values.at("flip"),
+                   *measure::measure_mean_flip(to_rgb(narrow_), to_rgb(wide_)));
 }
 
 TEST_F(ComparePictures, OtherChannelCounts_HaveNoFlip) {
-  write("a.exr", make_image(1, 1, 5, {0.0f, 0.0f, 0.0f, 0.0f, 0.5f}));
-  write("b.exr", make_image(1, 1, 5, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f}));
-  const Comparison result = compare("a.exr", "b.exr");
+  const Comparison result =
+      compare(make_image(1, 1, 5, {0.0f, 0.0f, 0.0f, 0.0f, 0.5f}), make_image(1, 1, 5, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f}));
   EXPECT_DOUBLE_EQ(result.values.at("max"), 0.5);
   EXPECT_THAT(result.absent.at("flip"), HasSubstr("these have 4"));
 }

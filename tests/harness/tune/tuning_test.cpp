@@ -339,6 +339,11 @@ class TunedParameters : public ::testing::Test {
     return write(R"({"schema_version": 2, "metric": "rmse", "map_size": 1024, "filters": [)" + filters + "]}");
   }
 
+  /// A file with what was found of one filter.
+  std::filesystem::path write_found(const std::string& params, const std::string& id = "vsm") const {
+    return write_filters(fmt::format(R"({{"id": "{}", "fit": "tight", "params": {}}})", id, params));
+  }
+
   /// The values of the first request after the file was applied.
   filters::FilterRequest apply(const std::string& requests, const std::filesystem::path& file) {
     auto parsed = catalogue_.parse_requests(requests);
@@ -358,8 +363,7 @@ class TunedParameters : public ::testing::Test {
 };
 
 TEST_F(TunedParameters, AreTaken_AndShownByTheLabel) {
-  const auto file = write_filters(
-      R"({"id": "vsm", "fit": "tight", "params": {"radius": 2, "min_variance": 1e-6, "store": "rg32f"}})");
+  const auto file = write_found(R"({"radius": 2, "min_variance": 1e-6, "store": "rg32f"})");
   const filters::FilterRequest request = apply("vsm", file);
   EXPECT_EQ(filters::number(request.values, "radius"), 2.0);
   EXPECT_EQ(filters::number(request.values, "min_variance"), 1e-6);
@@ -369,29 +373,26 @@ TEST_F(TunedParameters, AreTaken_AndShownByTheLabel) {
 }
 
 TEST_F(TunedParameters, YieldToTheCommandLine) {
-  const filters::FilterRequest request = apply(
-      "vsm:radius=9", write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2, "min_variance": 1e-6}})"));
+  const filters::FilterRequest request = apply("vsm:radius=9", write_found(R"({"radius": 2, "min_variance": 1e-6})"));
   EXPECT_EQ(filters::number(request.values, "radius"), 9.0);
   EXPECT_EQ(filters::number(request.values, "min_variance"), 1e-6);
 }
 
 TEST_F(TunedParameters, TakeThePlaceOfAWidthsRadius) {
-  const filters::FilterRequest request =
-      apply("vsm:width=medium", write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2}})"));
+  const filters::FilterRequest request = apply("vsm:width=medium", write_found(R"({"radius": 2})"));
   EXPECT_EQ(filters::number(request.values, "radius"), 2.0);
   EXPECT_EQ(request.label(), "vsm (radius=2)");
 }
 
 TEST_F(TunedParameters, LeaveAPresetTheParametersOfItsEngine) {
-  const auto file = write_filters(R"({"id": "poisson", "fit": "tight", "params": {"bail": "agree"}})");
+  const auto file = write_found(R"({"bail": "agree"})", "poisson");
   EXPECT_EQ(apply("@godot", file).values, catalogue_.parse_requests("@godot").front().values);
   EXPECT_TRUE(notes_.empty());
   EXPECT_EQ(filters::text_or(apply("poisson", file).values, "bail", ""), "agree");
 }
 
 TEST_F(TunedParameters, OfOtherFilters_LeaveTheDefaults_WithANote) {
-  const filters::FilterRequest request =
-      apply("esm,none", write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2}})"));
+  const filters::FilterRequest request = apply("esm,none", write_found(R"({"radius": 2})"));
   EXPECT_EQ(request.values, filters::default_values(request.spec));
   ASSERT_EQ(notes_.size(), 1u);  // 'none' has no parameters: nothing to say
   EXPECT_THAT(notes_.front(), HasSubstr("no parameters for esm"));
@@ -399,9 +400,7 @@ TEST_F(TunedParameters, OfOtherFilters_LeaveTheDefaults_WithANote) {
 
 TEST_F(TunedParameters, OfAnotherMapSize_AreTakenWithANote) {
   auto requests = catalogue_.parse_requests("vsm");
-  const auto notes =
-      apply_tuned(requests, catalogue_, write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2}})"),
-                  {512, 1024}, {{}});
+  const auto notes = apply_tuned(requests, catalogue_, write_found(R"({"radius": 2})"), {512, 1024}, {{}});
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_THAT(notes.front(), HasSubstr("1024 texels, this run draws 512"));
 }
@@ -425,21 +424,16 @@ TEST_F(TunedParameters, BadFiles_AreRefusedWithTheField) {
                  "'map_size' holds \"big\"");
   expect_refusal(write(R"({"schema_version": 2, "metric": "rmse", "map_size": 64, "filters": {}})"),
                  "'filters' must be a list");
-  expect_refusal(write_filters(R"({"id": "vsn", "fit": "tight", "params": {}})"),
-                 "filters[0].id: unknown filter 'vsn'; did you mean 'vsm'?");
+  expect_refusal(write_found(R"({})", "vsn"), "filters[0].id: unknown filter 'vsn'; did you mean 'vsm'?");
   expect_refusal(write_filters(R"({"id": "vsm"})"), "'filters[0].params' is missing");
-  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radios": 2}})"),
+  expect_refusal(write_found(R"({"radios": 2})"),
                  "filters[0].params.radios: filter 'vsm' has no parameter 'radios'; did you mean 'radius'?");
-  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 65}})"),
-                 "filters[0].params.radius: vsm:radius=65 is out of range");
-  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": 2.5}})"),
-                 "must be a whole number");
-  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": "wide"}})"),
+  expect_refusal(write_found(R"({"radius": 65})"), "filters[0].params.radius: vsm:radius=65 is out of range");
+  expect_refusal(write_found(R"({"radius": 2.5})"), "must be a whole number");
+  expect_refusal(write_found(R"({"radius": "wide"})"),
                  "filters[0].params.radius: vsm:radius='wide' is not a finite number");
-  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"radius": [2]}})"),
-                 "'filters[0].params' holds {\"radius\":[2]}");
-  expect_refusal(write_filters(R"({"id": "vsm", "fit": "tight", "params": {"store": "rgb"}})"),
-                 "filters[0].params.store");
+  expect_refusal(write_found(R"({"radius": [2]})"), "'filters[0].params' holds {\"radius\":[2]}");
+  expect_refusal(write_found(R"({"store": "rgb"})"), "filters[0].params.store");
   expect_refusal(
       write_filters(R"({"id": "vsm", "fit": "tight", "params": {}}, {"id": "vsm", "fit": "tight", "params": {}})"),
       "filters[1].id names 'vsm' a second time");

@@ -196,7 +196,6 @@ TEST(GltfFileTest, SparseAccessor_ReplacesItsElements) {
 }
 
 struct Damage {
-  const char* what;
   std::string GltfParts::*part;
   const char* from;
   const char* to;
@@ -205,44 +204,38 @@ struct Damage {
 
 TEST(GltfFileTest, DamagedReferences_AreToldAndNeverRead) {
   const std::vector<Damage> damages{
-      {"count too large", &GltfParts::accessors, R"("count": 4)", R"("count": 5)", "accessor 0 is out of range"},
-      {"count huge", &GltfParts::accessors, R"("count": 4)", R"("count": 4000000000)", "at most"},
-      {"index count", &GltfParts::accessors, R"("count": 6)", R"("count": 7)", "accessor 1 is out of range"},
-      {"offset", &GltfParts::accessors, R"("count": 4)", R"("byteOffset": 4, "count": 4)",
-       "accessor 0 is out of range"},
-      {"offset past end", &GltfParts::accessors, R"("count": 4)", R"("byteOffset": 400, "count": 4)", "out of range"},
-      {"no such view", &GltfParts::accessors, R"("bufferView": 0)", R"("bufferView": 7)", "no buffer view 7"},
-      {"component type", &GltfParts::accessors, "5126", "5124", "component type 5124"},
-      {"double components", &GltfParts::accessors, "5126", "5130", "component type 5130"},
-      {"signed indices", &GltfParts::accessors, "5123", "5122", "unsigned"},
-      {"float indices", &GltfParts::accessors, "5123", "5126", "out of range"},
-      {"wrong type", &GltfParts::accessors, R"("VEC3")", R"("VEC2")", "must have 3 component"},
-      {"view too long", &GltfParts::views, R"("byteLength": 48)", R"("byteLength": 480)", "runs past its buffer"},
-      {"view offset", &GltfParts::views, R"("byteOffset": 48)", R"("byteOffset": 4800)", "runs past its buffer"},
-      {"no such buffer", &GltfParts::views, R"({"buffer": 0, "byteLength": 48)", R"({"buffer": 3, "byteLength": 48)",
-       "names buffer 3"},
-      {"stride too short", &GltfParts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 4)",
-       "stride of 4"},
-      {"stride too long", &GltfParts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 16)",
-       "out of range"},
-      {"no such accessor", &GltfParts::primitive, R"("POSITION": 0)", R"("POSITION": 9)", "no accessor 9"},
-      {"negative accessor", &GltfParts::primitive, R"("POSITION": 0)", R"("POSITION": -1)", "accessor -1"},
-      {"no such material", &GltfParts::primitive, R"("indices": 1)", R"("indices": 1, "material": 3)", "no material 3"},
-      {"no such mesh", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 5)", "no mesh 5"},
-      {"no such node", &GltfParts::scenes, "[0]", "[4]", "no node 4"},
-      {"no such child", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "children": [8])", "no node 8"},
-      {"matrix length", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "matrix": [1, 0])", ""},
-      {"rotation length", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 1])", ""},
-      {"zero rotation", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 0, 0, 0])",
-       "rotation of node 0 is zero"},
-      {"number overflow", &GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "translation": [1e999, 0, 0])",
-       "not valid glTF"},
-      {"not JSON", &GltfParts::nodes, "[{", "[{{", "not valid glTF"},
-      {"no view", &GltfParts::accessors, R"("bufferView": 0, "componentType": 5126, "count": 4)",
+      {&GltfParts::accessors, R"("count": 4)", R"("count": 5)", "accessor 0 is out of range"},
+      {&GltfParts::accessors, R"("count": 4)", R"("count": 4000000000)", "at most"},
+      {&GltfParts::accessors, R"("count": 6)", R"("count": 7)", "accessor 1 is out of range"},
+      {&GltfParts::accessors, R"("count": 4)", R"("byteOffset": 4, "count": 4)", "accessor 0 is out of range"},
+      {&GltfParts::accessors, R"("count": 4)", R"("byteOffset": 400, "count": 4)", "out of range"},
+      {&GltfParts::accessors, R"("bufferView": 0)", R"("bufferView": 7)", "no buffer view 7"},
+      {&GltfParts::accessors, "5126", "5124", "component type 5124"},
+      {&GltfParts::accessors, "5126", "5130", "component type 5130"},
+      {&GltfParts::accessors, "5123", "5122", "unsigned"},
+      {&GltfParts::accessors, "5123", "5126", "out of range"},
+      {&GltfParts::accessors, R"("VEC3")", R"("VEC2")", "must have 3 component"},
+      {&GltfParts::views, R"("byteLength": 48)", R"("byteLength": 480)", "runs past its buffer"},
+      {&GltfParts::views, R"("byteOffset": 48)", R"("byteOffset": 4800)", "runs past its buffer"},
+      {&GltfParts::views, R"({"buffer": 0, "byteLength": 48)", R"({"buffer": 3, "byteLength": 48)", "names buffer 3"},
+      {&GltfParts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 4)", "stride of 4"},
+      {&GltfParts::views, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 16)", "out of range"},
+      {&GltfParts::primitive, R"("POSITION": 0)", R"("POSITION": 9)", "no accessor 9"},
+      {&GltfParts::primitive, R"("POSITION": 0)", R"("POSITION": -1)", "accessor -1"},
+      {&GltfParts::primitive, R"("indices": 1)", R"("indices": 1, "material": 3)", "no material 3"},
+      {&GltfParts::nodes, R"("mesh": 0)", R"("mesh": 5)", "no mesh 5"},
+      {&GltfParts::scenes, "[0]", "[4]", "no node 4"},
+      {&GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "children": [8])", "no node 8"},
+      {&GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "matrix": [1, 0])", ""},
+      {&GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 1])", ""},
+      {&GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "rotation": [0, 0, 0, 0])", "rotation of node 0 is zero"},
+      {&GltfParts::nodes, R"("mesh": 0)", R"("mesh": 0, "translation": [1e999, 0, 0])", "not valid glTF"},
+      {&GltfParts::nodes, "[{", "[{{", "not valid glTF"},
+      {&GltfParts::accessors, R"("bufferView": 0, "componentType": 5126, "count": 4)",
        R"("componentType": 5126, "count": 65537)", "65537"},
-      {"index", &GltfParts::buffer, "\2", "\4", "index 2 of 'quad' is 4, but there are 4 vertices"}};
+      {&GltfParts::buffer, "\2", "\4", "index 2 of 'quad' is 4, but there are 4 vertices"}};
   for (const Damage& damage : damages) {
-    SCOPED_TRACE(damage.what);
+    SCOPED_TRACE(damage.to);
     GltfParts parts;
     std::string& text = parts.*damage.part;
     const std::size_t at = text.find(damage.from);

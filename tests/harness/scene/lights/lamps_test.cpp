@@ -125,13 +125,20 @@ TEST(Spot, WithASize_IsARectangleAlongItsMap) {
   EXPECT_NEAR(std::numbers::pi * std::pow(0.5 * light_size(scene.light), 2.0), 0.6 * 0.2, 1e-7) << "a disk of its area";
 }
 
-TEST(Spot, GoesRoundItsTarget) {
-  Light light;
-  light.kind = Spot{{3.0f, 4.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 50.0f, 40.0f, 0.1f};
-  const Light quarter = turn_about_vertical(light, glm::radians(90.0));
-  EXPECT_NEAR(glm::distance(std::get<Spot>(quarter.kind).position_ws, glm::vec3(0.0f, 4.0f, -3.0f)), 0.0f, 1e-5f);
-  const auto high = std::get<Spot>(place_in_sky(light, {90.0, 90.0}).kind);
-  EXPECT_NEAR(glm::distance(high.position_ws, glm::vec3(0.0f, 5.0f, 0.0f)), 0.0f, 1e-5f);
+/// A spot goes round its target, a lamp round the origin.
+TEST(Lamps, GoRoundWhatTheyStandOver) {
+  const auto place_of = [](const Light& light) {
+    const auto* spot = std::get_if<Spot>(&light.kind);
+    return spot ? spot->position_ws : std::get<PointLight>(light.kind).position_ws;
+  };
+  for (const LightKind& kind : {LightKind(Spot{{3.0f, 4.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 50.0f, 40.0f, 0.1f}),
+                                LightKind(PointLight{.position_ws = {3.0f, 4.0f, 0.0f}})}) {
+    Light light;
+    light.kind = kind;
+    const Light quarter = turn_about_vertical(light, glm::radians(90.0)), high = place_in_sky(light, {90.0, 90.0});
+    EXPECT_NEAR(glm::distance(place_of(quarter), glm::vec3(0.0f, 4.0f, -3.0f)), 0.0f, 1e-5f);
+    EXPECT_NEAR(glm::distance(place_of(high), glm::vec3(0.0f, 5.0f, 0.0f)), 0.0f, 1e-5f);
+  }
 }
 
 /// The face that a direction belongs to: its longest axis, x before y before z.
@@ -193,17 +200,6 @@ TEST(PointLight, IsTracedAsASphere_FromEverySide) {
     }
   }
 }
-
-TEST(PointLight, GoesRoundTheOrigin) {
-  Light light;
-  light.kind = PointLight{.position_ws = {3.0f, 4.0f, 0.0f}};
-  const Light quarter = turn_about_vertical(light, glm::radians(90.0));
-  EXPECT_NEAR(glm::distance(std::get<PointLight>(quarter.kind).position_ws, glm::vec3(0.0f, 4.0f, -3.0f)), 0.0f, 1e-5f);
-  const auto high = std::get<PointLight>(place_in_sky(light, {90.0, 90.0}).kind);
-  EXPECT_NEAR(glm::distance(high.position_ws, glm::vec3(0.0f, 5.0f, 0.0f)), 0.0f, 1e-5f);
-}
-
-// The picture that a spot shines through: how a scene file names it, and what is refused.
 
 // Warped maps of the sun: they hold what the camera sees, and each spends its texels as its method says.
 
