@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Llvmpipe, Portable,
 
 /// The standard deviation of a built-in filter's kernel at its defaults, in texels; 0 where pixels do not share one.
 double find_sigma(const std::string& id) {
-  const filters::FilterRequest request = catalogue().parse_requests(id).front();
+  const filters::FilterRequest request = request_of(id);
   return filters::find_kernel_sigma(request.spec, request.values).value_or(0.0);
 }
 

@@ -83,22 +83,14 @@ glm::dvec3 on_floor(const Stage& stage, const glm::vec3& p) {
 
 class Shadow : public ::testing::TestWithParam<Kind> {};
 
-/// Rows bottom to top.
-std::vector<truth::ReceiverPoint> flip_rows(const truth::ReceiverImage& image) {
-  std::vector<truth::ReceiverPoint> points;
-  for (int y = image.height - 1; y >= 0; --y)
-    points.insert(points.end(), image.points.begin() + y * image.width, image.points.begin() + (y + 1) * image.width);
-  return points;
-}
-
 void expect_edge(Kind kind, const Stage& stage) {
   const scene::Scene scene = make_stage(kind, stage);
-  Bench bench(shared_context(), scene, kShadowMap, 320, 180);
-  const std::vector<float> drawn = bench.draw(catalogue().parse_requests("none").front());
+  Bench bench(scene, kShadowMap, 320, 180);
+  const std::vector<float> drawn = bench.draw(request_of("none"));
   const auto receivers = measure::read_view_receivers(bench.gbuffer(), scene.light);
   const truth::Occluders occluders(scene::list_occluders(scene));
   const std::vector<float> traced = truth::trace_hard(occluders, receivers.image, scene::make_area_light(scene.light));
-  const auto points = flip_rows(receivers.image);
+  const std::vector<truth::ReceiverPoint>& points = receivers.image.points;
   const double edge = edge_on_floor(kind, stage);
   int lit = 0, blocked = 0, wrong_map = 0, wrong_rays = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -111,9 +103,9 @@ void expect_edge(Kind kind, const Stage& stage) {
       texel = std::max(texel, layer.texel_size_at(glm::dvec3(points[i].position_ws)));
     // The texel is seen along the light: on the floor it is longer.
     const double steepest = 1.5 * texel * glm::length(stage.place) / stage.place.y;
-    wrong_map += std::abs(past) > steepest && drawn[i] != expected;
-    const std::size_t row = i / 320, rows_down = (179 - row) * 320 + i % 320;
-    wrong_rays += std::abs(past) > 1e-4 && traced[rows_down] != expected;
+    const std::size_t row_up = 179 - i / 320;
+    wrong_map += std::abs(past) > steepest && drawn[row_up * 320 + i % 320] != expected;
+    wrong_rays += std::abs(past) > 1e-4 && traced[i] != expected;
   }
   EXPECT_GT(lit, 3000) << name_of(kind);
   EXPECT_GT(blocked, 3000) << name_of(kind);
@@ -167,7 +159,7 @@ TEST_P(Shadow, HasThePenumbraOfItsLight_FromEverySide) {
   for (const bool on_its_side : {false, true}) {
     const Stage stage{.on_its_side = on_its_side};
     const scene::Scene scene = make_stage(GetParam(), stage);
-    Bench bench(shared_context(), scene, 256, 80, 45);
+    Bench bench(scene, 256, 80, 45);
     const auto receivers = measure::read_view_receivers(bench.gbuffer(), scene.light);
     const truth::Occluders occluders(scene::list_occluders(scene));
     const truth::TracedVisibility traced =
@@ -200,7 +192,7 @@ constexpr int kLayersWidth = 320, kLayersHeight = 180, kLayersMap = 512;
 
 std::vector<std::vector<float>> list_shares(Bench& bench) {
   std::vector<std::vector<float>> shares;
-  for (const render::LightSetup& layer : bench.light(catalogue().parse_requests("none").front()))
+  for (const render::LightSetup& layer : bench.light(request_of("none")))
     shares.push_back(render::read_layer_shares(bench.shaders(), bench.gbuffer(), layer));
   return shares;
 }
@@ -224,7 +216,7 @@ class Layers : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Layers, ShareEveryReceiver) {
   const scene::Scene scene = load_builtin(GetParam());
-  Bench bench(shared_context(), scene, kLayersMap, kLayersWidth, kLayersHeight);
+  Bench bench(scene, kLayersMap, kLayersWidth, kLayersHeight);
   const auto shares = list_shares(bench);
   ASSERT_GE(shares.size(), 2u);
   const auto receivers = measure::read_view_receivers(bench.gbuffer(), scene.light);
@@ -265,13 +257,8 @@ scene::Scene make_floor(const std::optional<Caster>& caster) {
   for (scene::Mesh& mesh : scene.meshes) mesh.material = 0;
   scene.materials.emplace_back();
   scene.light.kind = scene::PointLight{{0.0f, 0.5f, 0.0f}, 0.02f, 0.5f};
-  scene::Camera camera;
-  camera.name = "main";
-  camera.position_ws = {0.0f, 2.0f, 0.0f};
-  camera.forward_ws = {0.0f, -1.0f, 0.0f};
-  camera.up_ws = {0.0f, 0.0f, -1.0f};
-  camera.orthographic_height_m = 1.8f;
-  scene.cameras.push_back(camera);
+  scene.cameras = {look_down({0.0f, 2.0f, 0.0f})};
+  scene.cameras.front().orthographic_height_m = 1.8f;
   return scene;
 }
 
@@ -295,7 +282,7 @@ std::vector<std::uint8_t> mark_borders(const std::vector<std::vector<float>>& sh
 
 /// Visibility, rows top to bottom as shares have them.
 std::vector<float> draw_rows(Bench& bench, const std::string& filter) {
-  const std::vector<float> image = bench.draw(catalogue().parse_requests(filter).front());
+  const std::vector<float> image = bench.draw(request_of(filter));
   std::vector<float> rows;
   for (int y = kLayersHeight - 1; y >= 0; --y)
     rows.insert(rows.end(), image.begin() + y * kLayersWidth, image.begin() + (y + 1) * kLayersWidth);
@@ -303,15 +290,11 @@ std::vector<float> draw_rows(Bench& bench, const std::string& filter) {
 }
 
 TEST(CubeFaces, ShowNoLineWhereTheyMeetOnALitFloor) {
-  Bench bench(shared_context(), make_floor({}), kLayersMap, kLayersWidth, kLayersHeight);
+  Bench bench(make_floor({}), kLayersMap, kLayersWidth, kLayersHeight);
   const auto borders = mark_borders(list_shares(bench), 1);
   ASSERT_GT(std::ranges::count(borders, std::uint8_t{1}), 300);
-  for (const std::string& filter : filter_ids()) {
-    const std::vector<float> image = draw_rows(bench, filter);
-    float darkest = 1.0f;
-    for (const float v : image) darkest = std::min(darkest, v);
-    EXPECT_GE(darkest, 0.999f) << filter;
-  }
+  for (const std::string& filter : filter_ids())
+    EXPECT_GE(std::ranges::min(draw_rows(bench, filter)), 0.999f) << filter;
 }
 
 /// The same floor stood up before the lamp: two paraboloids meet in it along a level line.
@@ -324,7 +307,7 @@ TEST(Paraboloids, ShowNoLineWhereTheyMeetOnALitWall) {
   scene.cameras.front().position_ws = {0.0f, 0.0f, 2.0f};
   scene.cameras.front().forward_ws = {0.0f, 0.0f, -1.0f};
   scene.cameras.front().up_ws = {0.0f, 1.0f, 0.0f};
-  Bench bench(shared_context(), scene, kLayersMap, kLayersWidth, kLayersHeight);
+  Bench bench(scene, kLayersMap, kLayersWidth, kLayersHeight);
   const auto borders = mark_borders(list_shares(bench), 1);
   ASSERT_GT(std::ranges::count(borders, std::uint8_t{1}), 300);
   for (const std::string& filter : filter_ids()) {
@@ -355,7 +338,7 @@ double mean_over(const std::vector<float>& image, double from_x, double to_x, do
 TEST(CubeFaces, ShowNoLineWhereTheyMeetInAShadow) {
   const scene::Scene scene = make_floor(Caster{{0.16f, 0.01f, 0.16f}, {0.2, 0.3, 0.0}});
   const double widest = measure::largest_padding_texels(catalogue().parse_requests("all,teaching"));
-  Bench bench(shared_context(), scene, kLayersMap, kLayersWidth, kLayersHeight, {}, widest);
+  Bench bench(scene, kLayersMap, kLayersWidth, kLayersHeight, {}, widest);
   for (const std::string& filter : filter_ids()) {
     const std::vector<float> image = draw_rows(bench, filter);
     const double border = mean_over(image, 0.49, 0.51, 0.05), beside = mean_over(image, 0.43, 0.47, 0.05);

@@ -168,12 +168,7 @@ scene::Scene make_scene() {
   scene.meshes = {scene::make_plane({8.0f, 8.0f}, 1),
                   scene::transform_mesh(scene::make_plane({1.0f, 1.0f}, 1),
                                         glm::translate(glm::dmat4(1.0), glm::dvec3(-2.0, 2.0, 0.0)))};
-  scene::Camera camera;
-  camera.position_ws = {0.0f, 10.0f, 0.0f};
-  camera.forward_ws = {0.0f, -1.0f, 0.0f};
-  camera.up_ws = {0.0f, 0.0f, -1.0f};
-  camera.orthographic_height_m = 6.0f;
-  scene.cameras = {camera};
+  scene.cameras = {camera_above(10.0f, 6.0f)};
   scene::Sun sun;
   sun.angular_diameter_deg = 2.0f;
   scene.light.kind = sun;

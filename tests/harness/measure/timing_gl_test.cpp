@@ -22,8 +22,15 @@ options::RunOptions make_options(int width, int height) {
   options.width = width;
   options.height = height;
   options.rounds = options::RoundLimits::exactly(1);
-  options.reference = catalogue().parse_requests("none").front();
+  options.reference = request_of("none");
   return options;
+}
+
+/// One for all tests, made current: a test before this one may have had a context of its own.
+Renderer& shared_renderer() {
+  static Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
+  renderer.context->make_current();
+  return renderer;
 }
 
 /// A built-in scene with all that is measured with.
@@ -33,7 +40,7 @@ struct Stand {
 
   scene::Scene scene;
   options::RunOptions options;
-  Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
+  Renderer& renderer = shared_renderer();
   truth::TruthCache cache{{}, [](const std::string&) {}};
   SceneAssets assets;
 };
@@ -97,7 +104,7 @@ TEST(OwnTime, EmptyLookupsReadWhatTheirFiltersRead) {
 }
 
 TEST(Timing, TwiceTheTaps_TakeLonger) {
-  Bench bench(shared_context(), load_builtin("cubes"), 512, 480, 270);
+  Bench bench(load_builtin("cubes"), 512, 480, 270);
   const auto requests = catalogue().parse_requests("none,poisson:taps=16,poisson:taps=32");
   std::vector<std::unique_ptr<render::FilterPasses>> filters;
   std::vector<render::FilterPasses*> pointers;
@@ -128,9 +135,7 @@ class AccumulationTest : public ::testing::Test, protected Stand {
  protected:
   AccumulationTest() : Stand("ball", make_options(160, 90), 5.0) { options.frames = kAccumulated; }
 
-  static filters::FilterRequest request(const std::string& text) {
-    return test::catalogue().parse_requests(text).front();
-  }
+  static filters::FilterRequest request(const std::string& text) { return test::request_of(text); }
 
   records::AccumulationRecord measure(AccumulationMeter& meter, const std::string& filter) {
     AccumulatedImages images;
@@ -250,18 +255,14 @@ TEST(Flicker, OfAMapThatNoCameraMoves_IsThatUnderATurningLight) {
 /// Draws cells with stability, without timing or truth to speak of.
 std::vector<MeasuredCell> measure(const std::string& scene_name, const std::string& filters, int map_size = 512,
                                   int width = 240, int height = 135) {
-  static Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
-  renderer.context->make_current();
-  const scene::Scene scene = load_builtin(scene_name);
   options::RunOptions options = make_options(width, height);
   options.filters = catalogue().parse_requests(filters);
   options.phases = 1;  // numbers are looked at in the first of them alone
   options.truth = false;
   options.stability = true;
-  truth::TruthCache cache({}, [](const std::string&) {});
-  SceneAssets assets(renderer, options, scene, cache, largest_padding_texels(options.filters));
-  const SceneTask task{&scene, &scene.cameras.front(), map_size, options.filters};
-  return measure_scene({renderer, options, task, assets}).cells;
+  Stand stand(scene_name, options, largest_padding_texels(options.filters));
+  const SceneTask task{&stand.scene, &stand.scene.cameras.front(), map_size, options.filters};
+  return measure_scene({stand.renderer, stand.options, task, stand.assets}).cells;
 }
 
 class Defaults : public ::testing::TestWithParam<std::string> {};

@@ -11,11 +11,16 @@ namespace {
 /// Filters whose times are a mean with uniform noise of so many percent.
 class FakeFilters {
  public:
-  void add(double mean_ms, double noise, bool prefilter = false) {
-    TimedFilter filter;
-    filter.lookup = [this, mean_ms, noise] { return draw(mean_ms, noise); };
-    if (prefilter) filter.prefilter = [this, mean_ms, noise] { return draw(mean_ms, noise); };
-    filters_.push_back(std::move(filter));
+  struct Fake {
+    double mean_ms, noise;
+    bool has_prefilter = false;
+  };
+
+  explicit FakeFilters(const std::vector<Fake>& fakes) {
+    for (const Fake& fake : fakes) {
+      const auto draw_one = [this, fake] { return draw(fake.mean_ms, fake.noise); };
+      filters_.push_back({fake.has_prefilter ? draw_one : std::function<double()>(), draw_one});
+    }
   }
 
   RoundTimes run(const options::RoundLimits& limits) {
@@ -34,9 +39,7 @@ class FakeFilters {
 double width(const records::Ratio& ratio) { return (ratio.ci95.high - ratio.ci95.low) / ratio.median; }
 
 TEST(Rounds, QuietFilters_StopAsSoonAsTheyMay) {
-  FakeFilters filters;
-  filters.add(2.0, 0.001);
-  filters.add(5.0, 0.001);
+  FakeFilters filters({{2.0, 0.001}, {5.0, 0.001}});
   const RoundTimes times = filters.run({9, 100, 0.05, 1e6});
   EXPECT_EQ(times.map.size(), 9u);
   for (const FilterTimes& filter : times.filters) {
@@ -46,10 +49,7 @@ TEST(Rounds, QuietFilters_StopAsSoonAsTheyMay) {
 }
 
 TEST(Rounds, NoisyFilter_GoesOnUntilItsIntervalIsNarrow_WhileQuietOnesDropOut) {
-  FakeFilters filters;
-  filters.add(2.0, 0.001);
-  filters.add(5.0, 0.001);
-  filters.add(5.0, 0.20, true);
+  FakeFilters filters({{2.0, 0.001}, {5.0, 0.001}, {5.0, 0.20, true}});
   const RoundTimes times = filters.run({9, 2000, 0.05, 1e6});
   EXPECT_EQ(times.filters[1].lookup.size(), 9u);
   const std::size_t rounds = times.filters[2].lookup.size();
@@ -64,9 +64,7 @@ TEST(Rounds, NoisyFilter_GoesOnUntilItsIntervalIsNarrow_WhileQuietOnesDropOut) {
 }
 
 TEST(Rounds, BudgetIsSpent_AllStop_AndSaySo) {
-  FakeFilters filters;
-  filters.add(10.0, 0.5);
-  filters.add(10.0, 0.5);
+  FakeFilters filters({{10.0, 0.5}, {10.0, 0.5}});
   // A round takes some 21 ms, one of them warms up.
   const RoundTimes times = filters.run({9, 1000, 0.001, 500.0});
   EXPECT_NEAR(static_cast<double>(times.map.size()), 1000.0 / 21.0 - 1.0, 6.0);
@@ -97,9 +95,7 @@ TEST(Rounds, LookupsSettleAfterAPrefilter) {
 }
 
 TEST(Rounds, BudgetOfNothing_StillLeavesThreeRounds) {
-  FakeFilters filters;
-  filters.add(10.0, 0.5);
-  filters.add(10.0, 0.5);
+  FakeFilters filters({{10.0, 0.5}, {10.0, 0.5}});
   EXPECT_EQ(filters.run({9, 1000, 0.05, 1e-6}).map.size(), 3u);
   EXPECT_EQ(filters.run({2, 2, 0.05, 1e-6}).map.size(), 2u);
 }
@@ -123,9 +119,7 @@ TEST(Rounds, SlowFilters_AreWarm_OnceTheyWereDrawn) {
 }
 
 TEST(Rounds, AFixedNumber_IsKeptWhateverTheTimesSay) {
-  FakeFilters filters;
-  filters.add(1.0, 0.0);
-  filters.add(1.0, 0.9);
+  FakeFilters filters({{1.0, 0.0}, {1.0, 0.9}});
   const RoundTimes times = filters.run(options::RoundLimits::exactly(4));
   for (const FilterTimes& filter : times.filters) {
     EXPECT_EQ(filter.lookup.size(), 4u);
@@ -134,9 +128,7 @@ TEST(Rounds, AFixedNumber_IsKeptWhateverTheTimesSay) {
 }
 
 TEST(Rounds, TheMostThereMayBe_IsSaidToBeThat) {
-  FakeFilters filters;
-  filters.add(1.0, 0.5);
-  filters.add(1.0, 0.5);
+  FakeFilters filters({{1.0, 0.5}, {1.0, 0.5}});
   const RoundTimes times = filters.run({2, 5, 1e-6, 1e9});
   EXPECT_EQ(times.map.size(), 5u);
   EXPECT_EQ(times.filters[1].stopped, StopReason::kRounds);

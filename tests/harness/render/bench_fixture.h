@@ -46,10 +46,9 @@ inline render::ShaderLibrary& shared_shaders() {
 /// A scene drawn with one filter, everything at hand that the harness itself uses.
 class Bench {
  public:
-  Bench(gl::Context& context, const scene::Scene& scene, int map_size = 1024, int width = 480, int height = 270,
-        const render::MapSettings& map = {}, double pad_texels = 6.0)
-      : context_(context),
-        scene_(scene),
+  explicit Bench(const scene::Scene& scene, int map_size = 1024, int width = 480, int height = 270,
+                 const render::MapSettings& map = {}, double pad_texels = 6.0)
+      : scene_(scene),
         geometry_(scene),
         layers_(scene::fit_layers(scene, {.mode = fit_of(scene),
                                           .map_size = map_size,
@@ -89,9 +88,13 @@ class Bench {
 
   /// Gives visibility as the GL wrote it: rows bottom to top, like Receiver::pixel.
   std::vector<float> draw(const filters::FilterRequest& request, const render::BiasRule& rule = {}) {
-    render::FilterPasses filter(shaders_, request, map_, light(request, rule));
-    filter.prefilter(map_);
-    filter.lookup(gbuffer_, map_, target_);
+    render::FilterPasses passes(shaders_, request, map_, light(request, rule));
+    return draw(passes);
+  }
+
+  std::vector<float> draw(render::FilterPasses& passes) {
+    passes.prefilter(map_);
+    passes.lookup(gbuffer_, map_, target_);
     std::vector<float> visibility = target_.texture().read_floats(1);
     context_.require_no_gl_errors();
     return visibility;
@@ -120,7 +123,7 @@ class Bench {
   const std::vector<scene::LightFrustum>& layers() const { return layers_; }
 
  private:
-  gl::Context& context_;
+  gl::Context& context_ = shared_context();
   scene::Scene scene_;
   render::ShaderLibrary& shaders_ = shared_shaders();
   render::Geometry geometry_;
@@ -153,7 +156,7 @@ inline Bench& keep_bench(const std::string& scene_name, int map_size, int width,
   struct Kept {
     scene::Scene scene;
     std::array<int, 3> sizes;
-    Bench bench{shared_context(), scene, sizes[0], sizes[1], sizes[2]};
+    Bench bench{scene, sizes[0], sizes[1], sizes[2]};
   };
   shared_shaders();
   static std::unique_ptr<Kept> kept;
@@ -187,6 +190,8 @@ inline const filters::Catalogue& catalogue() {
   static const filters::Catalogue filters(options::find_resources().filters);
   return filters;
 }
+
+inline filters::FilterRequest request_of(const std::string& text) { return catalogue().parse_requests(text).front(); }
 
 inline std::vector<std::string> filter_ids() {
   std::vector<std::string> ids;

@@ -74,11 +74,11 @@ struct Traced {
 
   explicit Traced(const std::string& name, const render::MapSettings& map = {})
       : scene(load_builtin(name)),
-        bench(shared_context(), scene, 1024, kTracedWidth, kTracedHeight, map),
-        lit(trace(bench, scene, bench.receivers(catalogue().parse_requests("none").front()))) {}
+        bench(scene, 1024, kTracedWidth, kTracedHeight, map),
+        lit(trace(bench, scene, bench.receivers(request_of("none")))) {}
 
   Rates measure(const std::string& filter, const render::BiasRule& rule) {
-    return compare(bench.draw(catalogue().parse_requests(filter).front(), rule), lit);
+    return compare(bench.draw(request_of(filter), rule), lit);
   }
 };
 
@@ -138,7 +138,7 @@ const render::SweptMode& find_mode(const std::string& name) {
 
 struct Sweep {
   Sweep(double tilt, double azimuth, int map_size)
-      : scene(make_plane(tilt, azimuth)), bench(shared_context(), scene, map_size, 96, 96), size(map_size) {}
+      : scene(make_plane(tilt, azimuth)), bench(scene, map_size, 96, 96), size(map_size) {}
 
   render::BiasTheory theory(const filters::FilterRequest& request) {
     return render::make_theory(filters::bias_reach_texels(request.spec, request.values),
@@ -169,7 +169,7 @@ class PlaneSweep : public ::testing::TestWithParam<std::tuple<std::string, std::
 
 TEST_P(PlaneSweep, NoAcneAtTheTheoreticalAmount_AcneAtHalfOfIt) {
   const auto& [mode, filter] = GetParam();
-  const filters::FilterRequest request = catalogue().parse_requests(filter).front();
+  const filters::FilterRequest request = request_of(filter);
   for (const double tilt : kAngles) {
     for (const double azimuth : {0.0, 45.0}) {
       for (const int size : kSizes) {
@@ -212,7 +212,7 @@ class ReceiverPlane : public ::testing::TestWithParam<std::string> {};
 
 /// Needs no amount but what rounding asks for, whatever the kernel: up to 15 texels.
 TEST_P(ReceiverPlane, NeedsNoAmount_OnPlanes) {
-  const filters::FilterRequest request = catalogue().parse_requests(GetParam()).front();
+  const filters::FilterRequest request = request_of(GetParam());
   render::BiasRule rule = render::BiasRule::none();
   rule.max_tangent = 1e4;
   rule.receiver_plane = true;
@@ -256,9 +256,9 @@ TEST(DefaultBias, KeepsAFloorThatFacesTheLightLit_InAnyFormat) {
       for (const float lift : {0.0f, 0.17f, 0.41f, 0.83f}) {  // of the box, which moves the planes of depth
         scene::Scene scene = make_scene();
         for (scene::Vertex& v : scene.meshes[1].vertices) v.position_ws.y += lift;
-        Bench bench(shared_context(), scene, 128, 32, 32, {format, {reversed}});
+        Bench bench(scene, 128, 32, 32, {format, {reversed}});
         const auto is_dark = [&](const std::string& filter, const render::BiasRule& rule) {
-          const filters::FilterRequest request = catalogue().parse_requests(filter).front();
+          const filters::FilterRequest request = request_of(filter);
           const std::vector<float> image = bench.draw(request, rule);
           return std::ranges::any_of(bench.receivers(request, rule), [&](const filters::Receiver& r) {
             return std::abs(r.position_ws.x) > 2.0f && image[bench.index(r)] < 0.9f;
@@ -288,14 +288,14 @@ double height_in_map(Bench& bench, double x) {
 TEST(MapBias, FrontCull_KeepsBackFaces_AndWhatMayNotBeCulled) {
   scene::Scene scene = make_scene();
   {
-    Bench bench(shared_context(), scene, 128, 16, 16);
+    Bench bench(scene, 128, 16, 16);
     EXPECT_NEAR(height_in_map(bench, 0.0), 2.0, 1e-4);
     bench.redraw({.cull_front = true});
     EXPECT_NEAR(height_in_map(bench, 0.0), 1.0, 1e-4);
     EXPECT_LT(height_in_map(bench, 3.0), -1e-4) << "an open floor vanishes";
   }
   scene.meshes[0].may_cull_front = false;
-  Bench bench(shared_context(), scene, 128, 16, 16);
+  Bench bench(scene, 128, 16, 16);
   bench.redraw({.cull_front = true});
   EXPECT_NEAR(height_in_map(bench, 0.0), 1.0, 1e-4);
   EXPECT_NEAR(height_in_map(bench, 3.0), 0.0, 1e-4);
@@ -306,7 +306,7 @@ TEST(MapBias, Midpoint_LiesBetweenFirstAndSecondSurface) {
   for (const filters::DepthCurve& curve : {filters::DepthCurve{}, filters::DepthCurve{true},
                                            filters::DepthCurve{false, 20.0}, filters::DepthCurve{true, 20.0}}) {
     SCOPED_TRACE(render::describe_map({GL_DEPTH_COMPONENT32F, curve}));
-    Bench bench(shared_context(), scene, 128, 16, 16, {GL_DEPTH_COMPONENT32F, curve});
+    Bench bench(scene, 128, 16, 16, {GL_DEPTH_COMPONENT32F, curve});
     bench.redraw({.midpoint = true});
     EXPECT_NEAR(height_in_map(bench, 0.0), 1.5, 1e-4);
     // No second surface below the floor: half-way to depth 1.
@@ -321,10 +321,9 @@ TEST(MapBias, Midpoint_LiesBetweenFirstAndSecondSurface) {
 TEST(MapBias, PolygonOffset_MovesByFactorTimesSlope_AndUnitsOfTheFormat) {
   scene::Scene scene = make_scene();
   scene.light.kind = scene::Sun{glm::normalize(glm::vec3(-1.0f, -1.0f, 0.0f))};
-  Bench bench(shared_context(), scene, 128, 16, 16);
+  Bench bench(scene, 128, 16, 16);
   const double plain = height_in_map(bench, 3.0);
-  const filters::Receiver r =
-      bench.receivers(catalogue().parse_requests("none").front(), render::BiasRule::none()).front();
+  const filters::Receiver r = bench.receivers(request_of("none"), render::BiasRule::none()).front();
   const double slope =
       std::max(std::abs(static_cast<double>(r.depth_per_texel.x)), std::abs(static_cast<double>(r.depth_per_texel.y)));
   bench.redraw({.polygon_factor = 2.0});

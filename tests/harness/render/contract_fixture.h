@@ -31,7 +31,9 @@ inline std::vector<std::string> ids_of(const std::vector<filters::FilterKind>& k
 }
 
 /// Gives a filter with its parameters as the command line takes them, "vsm:radius=9".
-inline filters::FilterRequest request_of(const std::string& text) { return all_filters().parse_requests(text).front(); }
+inline filters::FilterRequest find_filter(const std::string& text) {
+  return all_filters().parse_requests(text).front();
+}
 
 inline bool is_stochastic(const filters::FilterRequest& request) {
   return request.spec.kind == filters::FilterKind::kStochastic;
@@ -42,14 +44,11 @@ inline std::vector<std::vector<float>> draw_seeds(Bench& bench, const filters::F
                                                   std::uint32_t seeds) {
   render::LightLayers light = bench.light(request);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), light);
-  render::ImageTarget target("visibility, by seed", GL_R32F, bench.gbuffer().width(), bench.gbuffer().height());
   std::vector<std::vector<float>> images;
   for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
     for (render::LightSetup& layer : light) layer.seed = seed;
     passes.retune(bench.shaders(), request.values, light);
-    passes.prefilter(bench.map());
-    passes.lookup(bench.gbuffer(), bench.map(), target);
-    images.push_back(target.texture().read_floats(1));
+    images.push_back(bench.draw(passes));
   }
   return images;
 }
@@ -76,7 +75,7 @@ class AnalyticFloor {
       : view_(view_texels(radius_texels)),
         map_(4 * view_),
         scene_(make_scene(casters)),
-        bench_(shared_context(), scene_, map_, pixels(), pixels()) {}
+        bench_(scene_, map_, pixels(), pixels()) {}
 
   /// Gives how many texels are in view, per side, where a kernel of this half-width is to be seen.
   static int view_texels(double radius_texels) { return 2 * static_cast<int>(std::ceil(radius_texels)) + 8; }

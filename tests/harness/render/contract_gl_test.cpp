@@ -47,13 +47,13 @@ std::ptrdiff_t count_impossible(const std::vector<float>& image) {
 }
 
 TEST_P(Contract, VisibilityIsWithinZeroAndOne) {
-  Bench bench(shared_context(), load_builtin("stack"), 512, 320, 180);
-  EXPECT_EQ(count_impossible(bench.draw(request_of(GetParam()))), 0);
+  Bench bench(load_builtin("stack"), 512, 320, 180);
+  EXPECT_EQ(count_impossible(bench.draw(find_filter(GetParam()))), 0);
 }
 
 void expect_everywhere(const std::string& filter, const scene::Scene& scene, float visibility, float slack) {
-  Bench bench(shared_context(), scene, 256, 160, 90);
-  const FilterRequest request = request_of(filter);
+  Bench bench(scene, 256, 160, 90);
+  const FilterRequest request = find_filter(filter);
   const std::vector<float> image = bench.draw(request);
   const auto receivers = bench.receivers(request);
   ASSERT_GT(receivers.size(), 1000u);
@@ -74,8 +74,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(Contract, SameInput_SameBits) {
   const scene::Scene scene = load_builtin("cubes");
-  Bench first(shared_context(), scene, 256, 160, 90), second(shared_context(), scene, 256, 160, 90);
-  const std::vector<float> a = first.draw(request_of(GetParam())), b = second.draw(request_of(GetParam()));
+  Bench first(scene, 256, 160, 90), second(scene, 256, 160, 90);
+  const std::vector<float> a = first.draw(find_filter(GetParam())), b = second.draw(find_filter(GetParam()));
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0);
 }
 
@@ -83,8 +83,8 @@ TEST_P(Contract, SameInput_SameBits) {
 /// what is uploaded, and in the model, which does not.
 TEST_P(Contract, PoisonedTexels_HarmNothingBeyondTheKernel) {
   constexpr int kMap = 256;
-  Bench bench(shared_context(), load_builtin("cubes"), kMap, 160, 90);
-  const FilterRequest request = request_of(GetParam());
+  Bench bench(load_builtin("cubes"), kMap, 160, 90);
+  const FilterRequest request = find_filter(GetParam());
   const auto model = filters::make_model(request.spec);
   const auto receivers = bench.receivers(request);
   const auto look = [&](filters::DepthMap map) {
@@ -146,16 +146,16 @@ std::vector<std::string> extreme_requests(const filters::FilterSpec& spec) {
 }
 
 TEST_P(Contract, ExtremeParameters_GiveVisibility) {
-  Bench bench(shared_context(), load_builtin("cubes"), 64, 64, 36);
+  Bench bench(load_builtin("cubes"), 64, 64, 36);
   for (const std::string& text : extreme_requests(all_filters().find(GetParam()))) {
     SCOPED_TRACE(text);
-    EXPECT_NO_THROW(EXPECT_EQ(count_impossible(bench.draw(request_of(text))), 0));
+    EXPECT_NO_THROW(EXPECT_EQ(count_impossible(bench.draw(find_filter(text))), 0));
   }
 }
 
 TEST_P(Contract, ReadsAreCounted_AndWithinTheDeclaredReach) {
-  Bench bench(shared_context(), load_builtin("cubes"), 64, 64, 36);
-  const FilterRequest request = request_of(GetParam());
+  Bench bench(load_builtin("cubes"), 64, 64, 36);
+  const FilterRequest request = find_filter(GetParam());
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
   const render::FilterCost cost = passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map());
@@ -169,8 +169,8 @@ TEST_P(Contract, ReadsAreCounted_AndWithinTheDeclaredReach) {
 INSTANTIATE_TEST_SUITE_P(AllFilters, Contract, ::testing::ValuesIn(ids_of()), name_of);
 
 double fetches_of(const std::string& text) {
-  Bench bench(shared_context(), load_builtin("cubes"), 64, 64, 36);
-  const FilterRequest request = request_of(text);
+  Bench bench(load_builtin("cubes"), 64, 64, 36);
+  const FilterRequest request = find_filter(text);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
   return *passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).fetches;
@@ -200,7 +200,7 @@ TEST(Gathers, AreTheFourTexelsOfAFetch) {
   for (const filters::DepthCurve& curve :
        {filters::DepthCurve{}, filters::DepthCurve{true, 1.0}, filters::DepthCurve{true, 100.0}}) {
     for (const char* bias : {"none", "receiver-plane"}) {
-      Bench bench(shared_context(), scene, 256, 160, 90, {GL_DEPTH_COMPONENT32F, curve});
+      Bench bench(scene, 256, 160, 90, {GL_DEPTH_COMPONENT32F, curve});
       const render::BiasRule rule = render::parse_bias({bias});
       const std::vector<float> image = bench.draw(request, rule);
       int differing = 0;
@@ -211,9 +211,9 @@ TEST(Gathers, AreTheFourTexelsOfAFetch) {
 }
 
 TEST(Prefilter, WithoutEncode_CompilesAndRunsNothing) {
-  Bench bench(shared_context(), load_builtin("cubes"), 64, 64, 36);
+  Bench bench(load_builtin("cubes"), 64, 64, 36);
   const int before = bench.shaders().compiled();
-  const FilterRequest request = request_of("none");
+  const FilterRequest request = find_filter("none");
   const render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   EXPECT_EQ(bench.shaders().compiled() - before, 1);
   EXPECT_FALSE(passes.has_prefilter());
@@ -247,7 +247,7 @@ std::vector<Caster> make_layers() {
 class BoundContract : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(BoundContract, IsNeverDarkerThanPcfOfItsKernel_OnLayers) {
-  FilterRequest request = request_of(GetParam());
+  FilterRequest request = find_filter(GetParam());
   if (!request.spec.bound_at_zero.empty()) request.values[request.spec.bound_at_zero] = 0.0;
   AnalyticFloor floor(filters::radius_texels(request.spec, request.values), make_layers());
   const std::vector<float> image = floor.bench().draw(request);
@@ -396,7 +396,7 @@ bool is_symmetric(const FilterRequest& request) {
 
 class LinearKernel : public ::testing::TestWithParam<std::string> {
  protected:
-  FilterRequest request() const { return request_of(GetParam()); }
+  FilterRequest request() const { return find_filter(GetParam()); }
 };
 
 TEST_P(LinearKernel, Edge_IsMonotone_FromDarkToLight) {

@@ -147,7 +147,7 @@ bool agrees(Receiver r, ivec2 own) {
 class OwnPasses : public ::testing::TestWithParam<Checked> {};
 
 TEST_P(OwnPasses, WriteWhatTheyShould) {
-  Bench bench(shared_context(), load_builtin("stack"), GetParam().side, 160, 90);
+  Bench bench(load_builtin("stack"), GetParam().side, 160, 90);
   const filters::FilterRequest request = make_request(GetParam());
   const std::vector<float> image = bench.draw(request);
   const auto receivers = bench.receivers(request);
@@ -167,8 +167,8 @@ INSTANTIATE_TEST_SUITE_P(Steps, OwnPasses,
 
 /// Lights that take turns keep their maps apart.
 TEST(OwnPassesOfLights, KeepTheirMaps) {
-  Bench bench(shared_context(), load_builtin("stack"), kPassSide, 160, 90);
-  const filters::FilterRequest request = catalogue().parse_requests("vsm_sat").front();
+  Bench bench(load_builtin("stack"), kPassSide, 160, 90);
+  const filters::FilterRequest request = request_of("vsm_sat");
   const std::vector<float> expected = bench.draw(request);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   render::ImageTarget target("visibility", GL_R32F, 160, 90);
@@ -193,7 +193,7 @@ struct Refused {
 };
 
 TEST(RefusedPasses, AreNamedWithFileAndLine) {
-  Bench bench(shared_context(), load_builtin("ball"), 96, 64, 36);
+  Bench bench(load_builtin("ball"), 96, 64, 36);
   const std::string agree = "bool agrees(Receiver r, ivec2 own) { return true; }\n";
   const Refused all[] = {
       {"[pass.first]\nstore = \"r32f\"\n[pass.second]\nstore = \"r32f\"\n",
@@ -236,8 +236,8 @@ class Blur : public ::testing::TestWithParam<int> {};
 
 TEST_P(Blur, IsTheSumOfItsTermsToTheBit) {
   const int radius = GetParam();
-  Bench bench(shared_context(), load_builtin("fence"), kBlurredSide, 64, 36);
-  const auto request = catalogue().parse_requests("esm:radius=" + std::to_string(radius)).front();
+  Bench bench(load_builtin("fence"), kBlurredSide, 64, 36);
+  const auto request = request_of("esm:radius=" + std::to_string(radius));
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
   const std::vector<float> blurred = passes.encoded_map()->read().values;
@@ -251,14 +251,6 @@ TEST_P(Blur, IsTheSumOfItsTermsToTheBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Radii, Blur, ::testing::Range(1, 17));
-
-/// Reads what passes draw over a bench.
-std::vector<float> draw(Bench& bench, render::FilterPasses& passes) {
-  render::ImageTarget target("visibility", GL_R32F, bench.gbuffer().width(), bench.gbuffer().height());
-  passes.prefilter(bench.map());
-  passes.lookup(bench.gbuffer(), bench.map(), target);
-  return target.texture().read_floats(1);
-}
 
 /// Every number of the filter at a step through its range, 0 .. 1; the others stay.
 filters::FilterRequest at(filters::FilterRequest request, double step) {
@@ -277,16 +269,16 @@ TEST_P(Retune, DrawsTheSameBitsAsNewPasses_ForEveryFilterAndLight) {
   scene::Scene other = scene;
   other.light = scene::turn_light(
       other.light, [](const glm::vec3& way) { return glm::normalize(way + glm::vec3(0.3f, 0.0f, 0.0f)); });
-  Bench bench(shared_context(), scene, 128, 96, 54), turned(shared_context(), other, 128, 96, 54);
+  Bench bench(scene, 128, 96, 54), turned(other, 128, 96, 54);
   for (const filters::FilterRequest& request : catalogue().parse_requests("all,teaching")) {
     SCOPED_TRACE(request.spec.id);
     render::FilterPasses passes(bench.shaders(), at(request, 0.0), bench.map(), bench.light(at(request, 0.0)));
-    draw(bench, passes);
+    bench.draw(passes);
     for (Bench* each : {&bench, &turned}) {
       for (const double step : {0.5, 0.0, 1.0}) {  // a radius of 0, without a blur, in between
         const filters::FilterRequest changed = at(request, step);
         passes.retune(each->shaders(), changed.values, each->light(changed));
-        EXPECT_EQ(draw(*each, passes), each->draw(changed)) << step;
+        EXPECT_EQ(each->draw(passes), each->draw(changed)) << step;
       }
     }
   }

@@ -11,6 +11,7 @@ namespace {
 using filters::Border;
 using filters::RangeRule;
 using filters::Receiver;
+using ::testing::FloatNear;
 
 // Each wrong way to treat what lies outside the map gives its own artefact on the scene made for it; the right way
 // none.
@@ -29,37 +30,28 @@ bool is_beyond_far(const Receiver& r) { return r.depth_unbiased > 1.0f; }
 /// The scene `edge` with every receiver known, those beyond the far plane too.
 class EdgeScene {
  public:
-  EdgeScene() : scene_(load_builtin("edge")), bench_(shared_context(), scene_, kRangeMapSize) {
+  EdgeScene() : scene_(load_builtin("edge")), bench_(scene_, kRangeMapSize) {
     bench_.set_range({Border::kBorder, false, true});
-    receivers_ = bench_.receivers(catalogue().parse_requests("none").front());
+    receivers_ = bench_.receivers(request_of("none"));
   }
 
-  /// Gives the share of the receivers that `belongs` chooses which a filter makes darker than half lit.
-  double dark(const std::string& filter, const RangeRule& rule, const std::function<bool(const Receiver&)>& belongs) {
+  /// Gives what a filter draws of the receivers that `belongs` chooses.
+  std::vector<float> draw(const std::string& filter, const RangeRule& rule,
+                          const std::function<bool(const Receiver&)>& belongs) {
     bench_.set_range(rule);
-    const std::vector<float> image = bench_.draw(catalogue().parse_requests(filter).front());
-    double dark = 0.0, all = 0.0;
-    for (const Receiver& r : receivers_) {
-      if (!belongs(r)) continue;
-      all += 1.0;
-      if (image[bench_.index(r)] < 0.5f) dark += 1.0;
-    }
-    EXPECT_GT(all, 200.0) << "the scene shows none of these receivers";
-    return dark / all;
-  }
-
-  /// How far the darkest and the lightest of such receivers are from a visibility.
-  double farthest_from(double visibility, const std::string& filter, const RangeRule& rule,
-                       const std::function<bool(const Receiver&)>& belongs) {
-    bench_.set_range(rule);
-    const std::vector<float> image = bench_.draw(catalogue().parse_requests(filter).front());
-    double farthest = 0.0;
-    int count = 0;
-    for (const Receiver& r : receivers_) count += belongs(r) ? 1 : 0;
-    EXPECT_GT(count, 200) << "the scene shows none of these receivers";
+    const std::vector<float> image = bench_.draw(request_of(filter));
+    std::vector<float> seen;
     for (const Receiver& r : receivers_)
-      if (belongs(r)) farthest = std::max(farthest, std::abs(visibility - static_cast<double>(image[bench_.index(r)])));
-    return farthest;
+      if (belongs(r)) seen.push_back(image[bench_.index(r)]);
+    EXPECT_GT(seen.size(), 200u) << "the scene shows none of these receivers";
+    return seen;
+  }
+
+  /// Gives the share of them that is darker than half lit.
+  double dark(const std::string& filter, const RangeRule& rule, const std::function<bool(const Receiver&)>& belongs) {
+    const std::vector<float> seen = draw(filter, rule, belongs);
+    return static_cast<double>(std::ranges::count_if(seen, [](float v) { return v < 0.5f; })) /
+           static_cast<double>(seen.size());
   }
 
   Bench& bench() { return bench_; }
@@ -85,7 +77,7 @@ TEST_P(MapRange, RightRule_LightsEverythingOutside) {
   EXPECT_EQ(edge.dark(GetParam(), {}, is_outside), 0.0);
   EXPECT_EQ(edge.dark(GetParam(), {}, is_in_streak), 0.0);
   EXPECT_EQ(edge.dark(GetParam(), {}, is_beyond_far), 0.0);
-  EXPECT_LT(edge.farthest_from(1.0, GetParam(), {}, is_outside), 1e-3);
+  EXPECT_THAT(edge.draw(GetParam(), {}, is_outside), Each(FloatNear(1.0f, 1e-3f)));
 }
 
 TEST_P(MapRange, NoFarTest_DarkensEverythingBeyond) {
@@ -103,22 +95,19 @@ std::vector<float> full_of_casters(float depth) {
 TEST_P(MapRange, MapFullOfCasters_DarkensNothingOutside) {
   EdgeScene edge;
   edge.bench().map().upload(full_of_casters(0.02f));
-  EXPECT_LT(edge.farthest_from(1.0, GetParam(), {}, is_outside), 1e-3);
+  EXPECT_THAT(edge.draw(GetParam(), {}, is_outside), Each(FloatNear(1.0f, 1e-3f)));
 }
 
 /// Series repeat themselves where a receiver lies farther behind its caster than the map is deep.
 TEST_P(MapRange, NoFarTest_DarkensWhatIsBehindACaster_HoweverDeep) {
-  Bench bench(shared_context(), load_builtin("stack"), kRangeMapSize, 160, 90);
-  const filters::FilterRequest request = catalogue().parse_requests(GetParam()).front();
+  Bench bench(load_builtin("stack"), kRangeMapSize, 160, 90);
+  const filters::FilterRequest request = request_of(GetParam());
   render::LightLayers light = bench.light(request);
   for (int column = 0; column < 4; ++column) light.front().frustum.uv_depth_from_world[column].z *= 1.6f;
   light.front().range.far_test = false;
   bench.map().upload(full_of_casters(0.02f));
   render::FilterPasses passes(bench.shaders(), request, bench.map(), light);
-  render::ImageTarget target("visibility", GL_R32F, 160, 90);
-  passes.prefilter(bench.map());
-  passes.lookup(bench.gbuffer(), bench.map(), target);
-  const std::vector<float> image = target.texture().read_floats(1);
+  const std::vector<float> image = bench.draw(passes);
   int deep = 0;
   for (const Receiver& r : render::read_receivers(bench.shaders(), bench.gbuffer(), light.front())) {
     const bool is_inside = glm::all(glm::lessThan(glm::abs(r.uv - 0.5f), glm::vec2(0.5f - kBeyondKernels)));
@@ -134,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(AllFilters, MapRange, ::testing::ValuesIn(filter_ids())
 
 TEST(MapRangeReceivers, LitByConvention_CountButAreNotAskedAbout) {
   EdgeScene edge;
-  const auto request = catalogue().parse_requests("none").front();
+  const auto request = request_of("none");
   edge.bench().set_range({});
   const std::size_t asked = edge.bench().receivers(request).size();
   const auto counted =
@@ -159,8 +148,8 @@ TEST(BehindALamp, ADeckIsNotAskedAbout_UnlessTheTestIsOff) {
   for (scene::Vertex& v : scene.meshes.back().vertices) v.position_ws.y = 6.0f;
   scene.cameras = {look_down({-1.5f, 3.5f, 1.0f})};
   scene.cameras.front().forward_ws = {0.0f, 1.0f, 0.0f};  // sees the side that is turned to the lamp
-  Bench bench(shared_context(), scene, kRangeMapSize);
-  const auto request = catalogue().parse_requests("none").front();
+  Bench bench(scene, kRangeMapSize);
+  const auto request = request_of("none");
   const auto find_deck = [&](const RangeRule& rule) {
     bench.set_range(rule);
     std::vector<Receiver> deck = bench.receivers(request);
@@ -194,10 +183,10 @@ glm::dvec2 step_on_plane(const scene::LightFrustum& frustum, const filters::Rece
 }
 
 TEST_P(CurvedMap, ReceiversLieWhereTheFrustumSays) {
-  Bench bench(shared_context(), load_builtin(GetParam()), kShapeMap);
+  Bench bench(load_builtin(GetParam()), kShapeMap);
   double worst_texel = 0.0, worst_depth = 0.0, worst_size = 0.0, worst_plane = 0.0;
   int compared = 0, steep = 0;
-  for (const filters::Receiver& r : bench.receivers(catalogue().parse_requests("none").front())) {
+  for (const filters::Receiver& r : bench.receivers(request_of("none"))) {
     if (r.layer_share == 0.0f) continue;
     const scene::LightFrustum& frustum = bench.layers()[static_cast<std::size_t>(r.layer)];
     const glm::dvec3 place = frustum.place(glm::dvec3(r.position_ws), kShapeMap);
@@ -234,7 +223,7 @@ constexpr double kShareOff = 0.01;   // so many pixels may be off by that
 using Pictures = std::map<std::string, std::vector<float>>;
 
 Pictures draw_placed(const scene::Scene& scene) {
-  Bench bench(shared_context(), scene, 256, kPlacedWidth, kPlacedHeight);
+  Bench bench(scene, 256, kPlacedWidth, kPlacedHeight);
   Pictures pictures;
   for (const char* id : {"none", "box3x3", "poisson", "vsm", "esm", "pcss"}) pictures[id] = bench.draw(request_of(id));
   return pictures;
@@ -328,7 +317,7 @@ TEST(Placement, SceneOfAFileFarFromTheOrigin_LooksTheSame) {
 /// Compares what filters draw of a scene with what is traced at the same places, but for surfaces that light grazes:
 /// there it must be a share of light, and no more is known.
 void expect_traced_shadow(const scene::Scene& scene, const std::vector<std::string>& filters) {
-  Bench bench(shared_context(), scene, 1024, kPlacedWidth, kPlacedHeight);
+  Bench bench(scene, 1024, kPlacedWidth, kPlacedHeight);
   const measure::ViewReceivers receivers = measure::read_view_receivers(bench.gbuffer(), scene.light);
   const images::Image traced = receivers.to_image(truth::trace_hard(
       truth::Occluders(scene::list_occluders(scene)), receivers.image, scene::make_area_light(scene.light)));

@@ -27,13 +27,13 @@ scene::Scene make_lamp_scene(const glm::vec3& position, const glm::vec3& target)
 class LampLight {
  public:
   explicit LampLight(const scene::Scene& scene, const filters::RangeRule& range = {})
-      : scene_(scene), range_(range), bench_(shared_context(), scene_, 64, kSide, kSide) {
+      : scene_(scene), range_(range), bench_(scene_, 64, kSide, kSide) {
     bench_.set_range(range);
   }
 
   /// The share of the floor that a filter finds lit.
   double measure_lit(const std::string& filter) {
-    const std::vector<float> image = bench_.draw(catalogue().parse_requests(filter).front());
+    const std::vector<float> image = bench_.draw(request_of(filter));
     return static_cast<double>(std::ranges::count(image, 1.0f)) / static_cast<double>(image.size());
   }
 
@@ -129,7 +129,7 @@ const std::vector<DegeneratePlace>& degenerate_places() {
 
 /// Draws all that a scene has under its light, and the truth.
 void expect_numbers(const scene::Scene& scene) {
-  Bench bench(shared_context(), scene, 128, 96, 54);
+  Bench bench(scene, 128, 96, 54);
   const auto is_share = [](float v) { return v >= -1e-3f && v <= 1.001f; };
   for (const char* id : {"none", "tent3x3", "vsm", "pcss"}) {
     const std::vector<float> image = bench.draw(request_of(id));
@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Everywhere, DegenerateLight, ::testing::ValuesIn(degene
 /// On the floor, the box and the wall, to the last bit.
 TEST(DegenerateLight, AtAReceiversVeryPlace_GivesNumbers) {
   const scene::Scene lit = load_room("direction = [-1, -1, -1]");
-  Bench bench(shared_context(), lit, 128, 96, 54);
+  Bench bench(lit, 128, 96, 54);
   const std::vector<filters::Receiver> receivers = bench.receivers(request_of("none"));
   ASSERT_GT(receivers.size(), 1000u);
   for (std::size_t i = 0; i < receivers.size(); i += receivers.size() / 7) {
@@ -339,7 +339,7 @@ class ScreenPassesTest : public ::testing::Test {
 TEST_F(ScreenPassesTest, RunInOrder_OnReceiversAlone) {
   for (const char* scene : {"stack", "avenue"}) {  // the avenue has a map of several layers
     SCOPED_TRACE(scene);
-    Bench bench(shared_context(), load_builtin(scene), 256, 160, 90);
+    Bench bench(load_builtin(scene), 256, 160, 90);
     filters::FilterRequest box = request("screen_box"), plain = box;
     plain.spec.screens.clear();
     const std::vector<float> filtered = bench.draw(box), before = bench.draw(plain);
@@ -367,7 +367,7 @@ TEST_F(ScreenPassesTest, RunInOrder_OnReceiversAlone) {
 }
 
 TEST_F(ScreenPassesTest, Reads_AreCounted_AndWithinTheDeclaredReach) {
-  Bench bench(shared_context(), load_builtin("stack"), 256, 160, 90);
+  Bench bench(load_builtin("stack"), 256, 160, 90);
   const auto measure = [&](const std::string& text) {
     const filters::FilterRequest filter = request(text);
     render::FilterPasses passes(bench.shaders(), filter, bench.map(), bench.light(filter));
@@ -390,7 +390,7 @@ TEST_F(ScreenPassesTest, Reads_AreCounted_AndWithinTheDeclaredReach) {
 }
 
 TEST_F(ScreenPassesTest, ThatReadsTheMap_OrOneOfTheFilters_IsRefused) {
-  Bench bench(shared_context(), load_builtin("stack"), 64, 32, 18);
+  Bench bench(load_builtin("stack"), 64, 32, 18);
   for (const char* read : {"load_depth(s.pixel)", "load_copy(s.pixel).x"}) {
     SCOPED_TRACE(read);
     filters::FilterRequest box = request("screen_box");
@@ -408,7 +408,7 @@ TEST_F(ScreenPassesTest, ThatReadsTheMap_OrOneOfTheFilters_IsRefused) {
 
 /// Noise goes, and what is the mean of many pixels stays: edges between surfaces, lit and dark pixels.
 TEST_F(ScreenPassesTest, OfPcss_TakeNoiseAway) {
-  Bench bench(shared_context(), load_builtin("ball"), 1024, 480, 270);
+  Bench bench(load_builtin("ball"), 1024, 480, 270);
   const std::vector<float> exact = bench.draw(request("pcss:taps=32,search_taps=32"));
   const auto differ = [&](const std::string& text) {
     const std::vector<float> image = bench.draw(request(text));

@@ -114,9 +114,9 @@ TEST(BlendCasters, LeaveOtherMaterialsAlone) {
   for (scene::Scene scene : {load_builtin("cubes"), load_builtin("fence")}) {
     for (scene::Material& material : scene.materials)
       material.base_color.a = 0.3f;  // which says nothing of what is opaque
-    Bench opaque(shared_context(), scene, 128, 16, 16);
+    Bench opaque(scene, 128, 16, 16);
     for (const BlendCasters casters : {BlendCasters::kHashed, BlendCasters::kDither}) {
-      Bench other(shared_context(), scene, 128, 16, 16, {.blend_casters = casters});
+      Bench other(scene, 128, 16, 16, {.blend_casters = casters});
       EXPECT_EQ(opaque.map().read().stored, other.map().read().stored);
     }
   }
@@ -129,7 +129,7 @@ TEST(BlendCasters, AreDrawnIntoMapsOfEveryShape_ButHashesNotIntoALogarithmicOne)
     for (scene::Material& material : scene.materials)
       material.base_color.a = 0.3f, material.alpha_mode = scene::AlphaMode::kBlend;
     const auto count_empty = [&](BlendCasters casters) {
-      Bench bench(shared_context(), scene, 128, 16, 16, {.blend_casters = casters});
+      Bench bench(scene, 128, 16, 16, {.blend_casters = casters});
       shared_context().require_no_gl_errors();
       std::ptrdiff_t empty = 0;
       for (int layer = 0; layer < bench.map().layers(); ++layer)
@@ -293,7 +293,7 @@ TEST(DepthPrecision, FormatOfOtherBits_IsRefused) {
 }
 
 TEST(DepthMapSize, EightThousand_IsDrawnWhole) {
-  Bench bench(shared_context(), load_builtin("cubes"), 8192, 32, 18, {GL_DEPTH_COMPONENT16});
+  Bench bench(load_builtin("cubes"), 8192, 32, 18, {GL_DEPTH_COMPONENT16});
   EXPECT_EQ(bench.map().bytes(), std::int64_t{8192} * 8192 * 2);
   const filters::DepthMap map = bench.map().read();
   const auto filled = std::count_if(map.stored.begin(), map.stored.end(), [](float d) { return d < 1.0f; });
@@ -346,7 +346,7 @@ class DepthSamples : public ::testing::TestWithParam<render::MapSettings> {};
 
 TEST_P(DepthSamples, HaveAMean_NearTheMeanOverTheTexel) {
   const scene::Scene scene = load_builtin("stack");
-  Bench bench(shared_context(), scene, kSampledSide, 160, 90, GetParam());
+  Bench bench(scene, kSampledSide, 160, 90, GetParam());
   const std::vector<float> mean = mean_depth(bench, scene, GetParam());
   const double one = rms(encode(bench, make_sampled(1)), mean), four = rms(encode(bench, make_sampled(4)), mean);
   EXPECT_GT(one, 0.01);
@@ -360,7 +360,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, DepthSamples,
 
 /// The samples follow what is drawn into the map: its bias, another map's contents, and values from elsewhere.
 TEST(DepthSamplesOfAMap, FollowTheMap) {
-  Bench bench(shared_context(), load_builtin("stack"), kSampledSide, 160, 90);
+  Bench bench(load_builtin("stack"), kSampledSide, 160, 90);
   const std::vector<float> drawn = encode(bench, make_sampled(4));
   bench.redraw({.polygon_factor = 4.0});
   EXPECT_GT(rms(encode(bench, make_sampled(4)), drawn), 1e-3);
@@ -373,14 +373,14 @@ TEST(DepthSamplesOfAMap, FollowTheMap) {
 }
 
 TEST(DepthSamplesOfAMap, OfLogarithms_GiveTheLogarithmOfTheMean) {
-  Bench bench(shared_context(), load_builtin("stack"), kSampledSide, 160, 90);
+  Bench bench(load_builtin("stack"), kSampledSide, 160, 90);
   std::vector<float> expected = encode(bench, make_sampled(4, "exp(8.0 * e.depth)"));
   for (float& value : expected) value = std::log(value);
   EXPECT_LT(rms(encode(bench, make_sampled(4, "8.0 * e.depth", "combine = \"log\"\n")), expected), 1e-5);
 }
 
 TEST(DepthSamplesOfAMap, AreCounted) {
-  Bench bench(shared_context(), load_builtin("stack"), kSampledSide, 160, 90);
+  Bench bench(load_builtin("stack"), kSampledSide, 160, 90);
   const filters::FilterRequest request = make_sampled(4);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
@@ -393,7 +393,7 @@ TEST(DepthSamplesOfAMap, MoreThanTheGlGives_AreRefusedWithTheLine) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &most);
   if (most >= 16) GTEST_SKIP() << "this GL gives " << most << " samples";
-  Bench bench(shared_context(), load_builtin("ball"), kSampledSide, 64, 36);
+  Bench bench(load_builtin("ball"), kSampledSide, 64, 36);
   const Error error = error_of([&] { encode(bench, make_sampled(16)); });
   EXPECT_EQ(error.kind(), ErrorKind::kFilter);
   EXPECT_EQ(error.where(), "sampled.glsl:6");

@@ -102,7 +102,7 @@ class DepthRays {
 TEST_P(Geometry, RaysHitWhatTheDepthMapSees) {
   constexpr int kSize = kMapTexels;
   const scene::Scene scene = load_builtin(GetParam());
-  Bench bench(shared_context(), scene, kSize, 64, 36);
+  Bench bench(scene, kSize, 64, 36);
   const truth::Occluders occluders(scene::list_occluders(scene));
   // Between the corners of a triangle a paraboloid's edges are straight and its depth is linear, where neither should
   // be.
@@ -154,8 +154,8 @@ TEST(RealScenes, LoadAndDraw_WithLightAndShadow) {
     SCOPED_TRACE(file.filename().string());
     const scene::Scene scene =
         scene::load(file.string(), {.scenes_folder = options::find_resources().scenes, .ground = true});
-    Bench bench(shared_context(), scene, 512, 240, 135);
-    const auto request = catalogue().parse_requests("pcf2x2").front();
+    Bench bench(scene, 512, 240, 135);
+    const auto request = request_of("pcf2x2");
     const std::vector<float> image = bench.draw(request);
     const auto receivers = bench.receivers(request);
     double lit = 0.0;
