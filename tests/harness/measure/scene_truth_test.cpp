@@ -6,6 +6,7 @@
 #include "reference/metrics/error_stats.h"
 #include "reference/metrics/metric_table.h"
 #include "reference/truth/occluders.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::measure {
@@ -167,8 +168,7 @@ ModelLayer make_grey_layer(const Receivers& receivers) { return {{4, std::vector
 constexpr ModelView kView{kImageWidth, kImageHeight};
 
 ModelImages evaluate(const std::vector<ModelLayer>& layers) {
-  static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  return evaluate_model(catalogue.parse_requests("none").front(), layers, kView);
+  return evaluate_model(filters::request_of("none"), layers, kView);
 }
 
 std::vector<double> compare(const std::vector<ModelLayer>& layers) {

@@ -1,6 +1,7 @@
 #include "harness/measure/timing.h"
 
 #include "harness/measure/traffic_meter.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::measure {
@@ -201,11 +202,6 @@ TEST(MedianInterval, HoldsTheTrueMedian_NinetyFiveTimesInAHundred) {
 constexpr int kSide = 64;  // texels of the map, and pixels of most pictures
 constexpr CacheShape kHoldsAll{1 << 20, 128}, kOneLine{128, 128};
 
-std::vector<filters::FilterRequest> parse(const std::string& filters) {
-  static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  return catalogue.parse_requests(filters);
-}
-
 /// A receiver at the centre of a texel, lit by a map of depth 0.5.
 filters::Receiver make_receiver(glm::ivec2 pixel, glm::ivec2 texel, int map_side = kSide) {
   filters::Receiver r;
@@ -230,7 +226,7 @@ ModelLayer make_steps(int width, int height, int step_texels = 1, int map_side =
 
 double count(const std::string& filter, const std::vector<ModelLayer>& layers, const CacheShape& cache,
              glm::ivec2 pixels = glm::ivec2(kSide)) {
-  return count_map_traffic(parse(filter).front(), layers, {pixels.x, pixels.y}, {{cache}}).value().front();
+  return count_map_traffic(filters::request_of(filter), layers, {pixels.x, pixels.y}, {{cache}}).value().front();
 }
 
 TEST(MapTraffic, AMapThatIsReadOnce_IsFetchedOnce) {
@@ -335,7 +331,7 @@ TEST(MapTraffic, WhereReceiversBringNothingNew_TheRestAreNotAsked_AndLittleIsMis
 }
 
 TEST(MapTraffic, CachesAreCountedEachForItself) {
-  const auto request = parse("tent3x3").front();
+  const auto request = filters::request_of("tent3x3");
   const std::vector<ModelLayer> layers = {make_steps(kSide, kSide)};
   const std::vector<CacheShape> caches = {kOneLine, kHoldsAll, {1 << 20, 64}};
   const auto together = count_map_traffic(request, layers, {kSide, kSide}, caches).value();
@@ -344,7 +340,7 @@ TEST(MapTraffic, CachesAreCountedEachForItself) {
 }
 
 TEST(MapTraffic, IsNothingWithoutAModelOrAReceiver) {
-  filters::FilterRequest request = parse("none").front();
+  filters::FilterRequest request = filters::request_of("none");
   EXPECT_FALSE(count_map_traffic(request, {make_layer({})}, {kSide, kSide}, {{kHoldsAll}}));
   request.spec.id = "mine";
   EXPECT_FALSE(count_map_traffic(request, {make_steps(8, 8)}, {8, 8}, {{kHoldsAll}}));

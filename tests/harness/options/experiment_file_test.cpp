@@ -1,9 +1,8 @@
 #include "harness/options/experiment_file.h"
 
-#include <unistd.h>
-
 #include "harness/options/run_options.h"
 #include "harness/render/bias.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::options {
@@ -12,10 +11,7 @@ namespace {
 class ExperimentFile : public ::testing::Test {
  protected:
   Experiment read(const std::string& text) const { return read_experiment(folder_.write("e.toml", text)); }
-  std::string expand(const std::string& text) const {
-    static const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-    return expand_filters(read(text), catalogue);
-  }
+  std::string expand(const std::string& text) const { return expand_filters(read(text), filters::built_in()); }
   const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
@@ -64,8 +60,7 @@ TEST_F(ExperimentFile, AWidth_IsAParameterOfAFilterWithARadius) {
 
 TEST(WrittenExperiment, AsksTheLightAgain) {
   RunOptions options;
-  const filters::Catalogue catalogue(SHADOWBENCH_SOURCE_DIR "/filters");
-  options.filters = catalogue.parse_requests("vsm:width=light");
+  options.filters = filters::built_in().parse_requests("vsm:width=light");
   options.filters.front().take_light_width(5.0);
   const std::string written = write_experiment(options);
   EXPECT_NE(written.find("width = 'light'"), std::string::npos) << written;
@@ -122,20 +117,19 @@ TEST_F(ExperimentFile, AreFoundByName_OrPath) {
 
 TEST(ShippedExperiments, EnginesListsEveryPreset_WithABiasThatWeHave) {
   const std::filesystem::path root(SHADOWBENCH_SOURCE_DIR);
-  const filters::Catalogue catalogue(root / "filters");
   std::string told;
   for (const ExperimentSetting& setting : read_experiment(root / "data/experiments/engines.toml").settings)
     if (setting.option == "--filters")
       for (const std::string& each : setting.values) told += (told.empty() ? "" : ",") + each;
   std::vector<std::string> run, known;
-  for (const filters::FilterRequest& request : catalogue.parse_requests(told))
+  for (const filters::FilterRequest& request : filters::built_in().parse_requests(told))
     for (const filters::Preset& preset : request.presets) run.push_back(preset.name);
-  for (const filters::Preset& preset : catalogue.presets()) {
+  for (const filters::Preset& preset : filters::built_in().presets()) {
     known.push_back(preset.name);
     if (!preset.bias_options.empty()) EXPECT_NO_THROW(render::parse_bias(preset.bias_options)) << preset.name;
   }
   EXPECT_THAT(run, ::testing::UnorderedElementsAreArray(known));
-  EXPECT_EQ(catalogue.parse_requests(told).front().label(), "none");
+  EXPECT_EQ(filters::built_in().parse_requests(told).front().label(), "none");
 }
 
 // The table of a run's options: what is told is what is read, written, and read again.

@@ -8,6 +8,7 @@
 #include "harness/scene/load.h"
 #include "harness/tune/tune_filters.h"
 #include "harness/tune/tune_scene.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::tune {
@@ -49,9 +50,8 @@ TEST(ParamScale, FromZero_TinyDefaultLiesInTheMiddle) {
 }
 
 TEST(ParamScale, OfEveryFilter_ReachesBothEndsAndTurnsBack) {
-  const filters::Catalogue catalogue(options::find_resources().filters);
   int scales = 0;
-  for (const filters::FilterRequest& request : catalogue.parse_requests("")) {
+  for (const filters::FilterRequest& request : filters::built_in().parse_requests("")) {
     for (const SearchedParam& param : list_searched_params(request)) {
       SCOPED_TRACE(request.spec.id + ":" + param.name);
       const ParamScale scale(param);
@@ -211,17 +211,14 @@ TEST(TunePadding, IsWhatTheWidestKernelNeeds_UpToA64thOfTheMap) {
   EXPECT_EQ(choose_tune_padding(4.0, 1024), 5.0);
   EXPECT_EQ(choose_tune_padding(64.0, 1024), 16.0);
   EXPECT_EQ(choose_tune_padding(64.0, 64), 4.0);
-  const filters::Catalogue catalogue(options::find_resources().filters);
-  EXPECT_EQ(find_widest_kernel(catalogue.parse_requests("vsm,esm:radius=3")), 64.0);
-  EXPECT_EQ(find_widest_kernel(catalogue.parse_requests("esm:radius=3")), 3.0);
+  EXPECT_EQ(find_widest_kernel(filters::built_in().parse_requests("vsm,esm:radius=3")), 64.0);
+  EXPECT_EQ(find_widest_kernel(filters::built_in().parse_requests("esm:radius=3")), 3.0);
 }
 
 TEST(SearchedParams, AreNumbersWithARange_NeitherConstNorSet) {
-  const filters::Catalogue catalogue(options::find_resources().filters);
   const auto names = [&](const std::string& text) {
     std::string joined;
-    for (const SearchedParam& param : list_searched_params(catalogue.parse_requests(text).front()))
-      joined += param.name + " ";
+    for (const SearchedParam& param : list_searched_params(filters::request_of(text))) joined += param.name + " ";
     return joined;
   };
   EXPECT_EQ(names("none"), "");
@@ -346,8 +343,8 @@ class TunedParameters : public ::testing::Test {
 
   /// The values of the first request after the file was applied.
   filters::FilterRequest apply(const std::string& requests, const std::filesystem::path& file) {
-    auto parsed = catalogue_.parse_requests(requests);
-    notes_ = apply_tuned(parsed, catalogue_, file, {1024}, {{}});
+    auto parsed = filters::built_in().parse_requests(requests);
+    notes_ = apply_tuned(parsed, filters::built_in(), file, {1024}, {{}});
     return parsed.front();
   }
 
@@ -358,7 +355,6 @@ class TunedParameters : public ::testing::Test {
   }
 
   TestFolder folder_;
-  filters::Catalogue catalogue_{options::find_resources().filters};
   std::vector<std::string> notes_;
 };
 
@@ -386,7 +382,7 @@ TEST_F(TunedParameters, TakeThePlaceOfAWidthsRadius) {
 
 TEST_F(TunedParameters, LeaveAPresetTheParametersOfItsEngine) {
   const auto file = write_found(R"({"bail": "agree"})", "poisson");
-  EXPECT_EQ(apply("@godot", file).values, catalogue_.parse_requests("@godot").front().values);
+  EXPECT_EQ(apply("@godot", file).values, filters::request_of("@godot").values);
   EXPECT_TRUE(notes_.empty());
   EXPECT_EQ(filters::text_or(apply("poisson", file).values, "bail", ""), "agree");
 }
@@ -399,18 +395,18 @@ TEST_F(TunedParameters, OfOtherFilters_LeaveTheDefaults_WithANote) {
 }
 
 TEST_F(TunedParameters, OfAnotherMapSize_AreTakenWithANote) {
-  auto requests = catalogue_.parse_requests("vsm");
-  const auto notes = apply_tuned(requests, catalogue_, write_found(R"({"radius": 2})"), {512, 1024}, {{}});
+  auto requests = filters::built_in().parse_requests("vsm");
+  const auto notes = apply_tuned(requests, filters::built_in(), write_found(R"({"radius": 2})"), {512, 1024}, {{}});
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_THAT(notes.front(), HasSubstr("1024 texels, this run draws 512"));
 }
 
 TEST_F(TunedParameters, OfAnotherFit_AreTakenWithANote) {
-  auto requests = catalogue_.parse_requests("vsm");
+  auto requests = filters::built_in().parse_requests("vsm");
   const auto file = write_filters(R"({"id": "vsm", "params": {"radius": 2}, "fit": "view"})");
-  EXPECT_THAT(apply_tuned(requests, catalogue_, file, {1024}, {{}}),
+  EXPECT_THAT(apply_tuned(requests, filters::built_in(), file, {1024}, {{}}),
               ElementsAre(HasSubstr("tuned for vsm (radius=2) under --fit view, which this run does not draw")));
-  EXPECT_THAT(apply_tuned(requests, catalogue_, file, {1024}, {{}, {scene::FitMode::kView, {}}}), IsEmpty());
+  EXPECT_THAT(apply_tuned(requests, filters::built_in(), file, {1024}, {{}, {scene::FitMode::kView, {}}}), IsEmpty());
 }
 
 TEST_F(TunedParameters, BadFiles_AreRefusedWithTheField) {
