@@ -51,15 +51,15 @@ class SideMeasurementTest : public ViewTest {
   }
 
   /// Waits for the end of what runs, two minutes at most; what it says meanwhile is noted.
-  State finish(view::SideMeasurement& measurement, std::vector<std::string>* said = nullptr) const {
-    for (int i = 0; i < 12000; ++i) {
-      const State now = measurement.poll();
-      if (now != State::kRunning) return now;
-      if (said != nullptr && (said->empty() || said->back() != measurement.text())) said->push_back(measurement.text());
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ADD_FAILURE() << measurement.text();
-    return State::kRunning;
+  State finish(std::vector<std::string>* said = nullptr) {
+    State now = State::kRunning;
+    const auto is_over = [&] {
+      now = measurement_.poll();
+      if (said && (said->empty() || said->back() != measurement_.text())) said->push_back(measurement_.text());
+      return now != State::kRunning;
+    };
+    EXPECT_TRUE(wait_until(is_over, 12000)) << measurement_.text();
+    return now;
   }
 
   /// Processes that were told of a file in the test's folder.
@@ -115,17 +115,18 @@ class SideMeasurementTest : public ViewTest {
     }
     EXPECT_GT(counted, 10000u);
   }
+
+  view::SideMeasurement measurement_{SHADOWBENCH_PROGRAM};
 };
 
 TEST_F(SideMeasurementTest, Finished_HasBothSides_WithPartsThatAddUpToTheError) {
   const view::ViewState state = make_state("cubes", "vsm:radius=6", "tent3x3");
-  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-  EXPECT_EQ(measurement.poll(), State::kIdle);
-  measurement.start(state);
+  EXPECT_EQ(measurement_.poll(), State::kIdle);
+  measurement_.start(state);
   std::vector<std::string> said;
-  ASSERT_EQ(finish(measurement, &said), State::kFinished) << measurement.text();
+  ASSERT_EQ(finish(&said), State::kFinished) << measurement_.text();
   EXPECT_THAT(said, Contains(HasSubstr("attribution of tent3x3")));
-  const view::MeasuredSides& sides = measurement.results();
+  const view::MeasuredSides& sides = measurement_.results();
   for (std::size_t side = 0; side < view::kSides; ++side) {
     const measure::MeasuredCell* cell = sides.find_side(side);
     ASSERT_NE(cell, nullptr);
@@ -139,11 +140,11 @@ TEST_F(SideMeasurementTest, Finished_HasBothSides_WithPartsThatAddUpToTheError) 
   EXPECT_TRUE(sides.find_side(1)->stability.variance.empty()) << "tent3x3 stores none";
   EXPECT_NEAR(find_median_texels(state, sides), sides.find_side(0)->record.coverage.texels_per_pixel.value(), 1e-3);
   const images::Image truth = sides.truth, mask = sides.truth_mask;
-  measurement.start(state, view::Measurand::kTruthAlone);
-  ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
-  EXPECT_EQ(measurement.results().find_side(0), nullptr);
-  EXPECT_EQ(measurement.results().truth.texels, truth.texels);
-  EXPECT_EQ(measurement.results().truth_mask.texels, mask.texels);
+  measurement_.start(state, view::Measurand::kTruthAlone);
+  ASSERT_EQ(finish(), State::kFinished) << measurement_.text();
+  EXPECT_EQ(measurement_.results().find_side(0), nullptr);
+  EXPECT_EQ(measurement_.results().truth.texels, truth.texels);
+  EXPECT_EQ(measurement_.results().truth_mask.texels, mask.texels);
   expect_nothing_left();
 }
 
@@ -154,22 +155,21 @@ TEST_F(SideMeasurementTest, StartedTwice_MeasuresTheSecond_WhateverTheFirstWasDo
     settings.sides[0].truth = true;
     settings.cameras[0].position_ws.y += 0.5f;
   });
-  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-  measurement.start(first);
-  ASSERT_TRUE(wait_until([&] { return measurement.poll() != State::kRunning || measurement.text() != "starting"; }));
-  measurement.start(second);
+  measurement_.start(first);
+  ASSERT_TRUE(wait_until([&] { return measurement_.poll() != State::kRunning || measurement_.text() != "starting"; }));
+  measurement_.start(second);
   ASSERT_TRUE(wait_until([&] { return !list_processes().empty(); }));
   EXPECT_EQ(list_processes().size(), 1u) << "the first is gone";
   EXPECT_EQ(getpriority(PRIO_PROCESS, static_cast<id_t>(std::stoi(list_processes().at(0)))), 19);
-  ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
-  const view::MeasuredSides& sides = measurement.results();
+  ASSERT_EQ(finish(), State::kFinished) << measurement_.text();
+  const view::MeasuredSides& sides = measurement_.results();
   EXPECT_EQ(sides.find_side(0), nullptr) << "it shows the truth";
   ASSERT_NE(sides.find_side(1), nullptr);
   EXPECT_TRUE(sides.find_side(1)->visibility.texels == draw(second, 1).texels);
   expect_sum(sides, *sides.find_side(1));
-  measurement.start(first);
-  ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
-  EXPECT_TRUE(measurement.results().find_side(0)->visibility.texels == draw(first, 0).texels);
+  measurement_.start(first);
+  ASSERT_EQ(finish(), State::kFinished) << measurement_.text();
+  EXPECT_TRUE(measurement_.results().find_side(0)->visibility.texels == draw(first, 0).texels);
 }
 
 TEST_F(SideMeasurementTest, NothingThatFacesTheLight_LeavesFieldsAbsentWithReasons) {
@@ -178,12 +178,11 @@ TEST_F(SideMeasurementTest, NothingThatFacesTheLight_LeavesFieldsAbsentWithReaso
     settings.lights[0] = scene::turn_light(settings.lights[0], [](const glm::vec3&) { return glm::vec3(0, 1, 0); });
     settings.cameras[0].forward_ws = glm::vec3(0.0f, -1.0f, 0.0f);
   });
-  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-  measurement.start(state);
-  ASSERT_EQ(finish(measurement), State::kFinished) << measurement.text();
-  EXPECT_TRUE(measurement.results().truth.empty());
-  EXPECT_THAT(measurement.results().no_truth, HasSubstr("faces the light"));
-  const measure::MeasuredCell& cell = *measurement.results().find_side(0);
+  measurement_.start(state);
+  ASSERT_EQ(finish(), State::kFinished) << measurement_.text();
+  EXPECT_TRUE(measurement_.results().truth.empty());
+  EXPECT_THAT(measurement_.results().no_truth, HasSubstr("faces the light"));
+  const measure::MeasuredCell& cell = *measurement_.results().find_side(0);
   EXPECT_FALSE(cell.record.error.rmse.has_value());
   EXPECT_FALSE(cell.record.absent.at("error").empty());
   EXPECT_TRUE(std::ranges::all_of(cell.error_parts, &images::Image::empty));
@@ -193,36 +192,34 @@ TEST_F(SideMeasurementTest, FilterWithBrokenGlsl_FailsWithItsFileAndLine) {
   view::ViewState state = make_state("cubes", "none", "tent3x3");
   const std::string file = user_filter("broken_glsl.glsl");
   change(state, [&](view::ViewSettings& settings) { settings.sides[0].filter = request("broken_glsl", file); });
-  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-  measurement.start(state);
-  EXPECT_EQ(finish(measurement), State::kFailed);
-  EXPECT_THAT(measurement.text(), HasSubstr("broken_glsl.glsl:"));
-  EXPECT_THAT(measurement.text(), Not(HasSubstr("\n0.0 %"))) << "nothing of what it said before";
+  measurement_.start(state);
+  EXPECT_EQ(finish(), State::kFailed);
+  EXPECT_THAT(measurement_.text(), HasSubstr("broken_glsl.glsl:"));
+  EXPECT_THAT(measurement_.text(), Not(HasSubstr("\n0.0 %"))) << "nothing of what it said before";
   expect_nothing_left();
   change(state, [&](view::ViewSettings& settings) { settings.sides[0].filter = request("none"); });
-  measurement.start(state);
-  EXPECT_EQ(finish(measurement), State::kFinished) << measurement.text();
+  measurement_.start(state);
+  EXPECT_EQ(finish(), State::kFinished) << measurement_.text();
 }
 
 TEST_F(SideMeasurementTest, ProgramThatIsNotThere_Fails) {
-  view::SideMeasurement measurement(folder() / "none");
-  measurement.start(make_state("cubes", "none", "tent3x3"));
-  EXPECT_EQ(finish(measurement), State::kFailed);
-  EXPECT_THAT(measurement.text(), HasSubstr("cannot be started"));
+  view::SideMeasurement none(folder() / "none");
+  none.start(make_state("cubes", "none", "tent3x3"));
+  EXPECT_TRUE(wait_until([&] { return none.poll() == State::kFailed; }));
+  EXPECT_THAT(none.text(), HasSubstr("cannot be started"));
 }
 
 TEST_F(SideMeasurementTest, Cancelled_IsKilledWithItsChildren_WithinATenthOfASecond) {
   const view::ViewState state = make_endless_state();
   double fastest_ms = 1e9;
   for (int attempt = 0; attempt < 3; ++attempt) {  // another process may hold this one up
-    view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-    measurement.start(state);
+    measurement_.start(state);
     ASSERT_TRUE(wait_until([&] { return !list_processes("--worker").empty(); })) << "a child of the child";
     const double begin_ms = now_ms();
-    measurement.cancel();
+    measurement_.cancel();
     fastest_ms = std::min(fastest_ms, now_ms() - begin_ms);
     EXPECT_THAT(list_processes("/measured.toml"), IsEmpty()) << "the run itself, at once";
-    EXPECT_EQ(measurement.poll(), State::kIdle);
+    EXPECT_EQ(measurement_.poll(), State::kIdle);
     expect_nothing_left();
   }
   std::printf("cancelled within %.1f ms\n", fastest_ms);
@@ -232,11 +229,10 @@ TEST_F(SideMeasurementTest, Cancelled_IsKilledWithItsChildren_WithinATenthOfASec
 TEST_F(SideMeasurementTest, CancelledWhileResultsAreRead_WaitsForNoMoreThanOneImage) {
   view::ViewState state = make_state("cubes", "vsm:radius=6", "tent3x3");
   change(state, [](view::ViewSettings& settings) { settings.options.width = 960, settings.options.height = 540; });
-  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-  measurement.start(state);
-  ASSERT_TRUE(wait_until([&] { return measurement.poll(), measurement.text() == "reading the results"; }));
+  measurement_.start(state);
+  ASSERT_TRUE(wait_until([&] { return measurement_.poll(), measurement_.text() == "reading the results"; }));
   const double begin_ms = now_ms();
-  measurement.cancel();
+  measurement_.cancel();
   std::printf("cancelled within %.1f ms\n", now_ms() - begin_ms);
   EXPECT_LT(now_ms() - begin_ms, 150.0) << "an image of many";
   expect_nothing_left();
@@ -244,22 +240,21 @@ TEST_F(SideMeasurementTest, CancelledWhileResultsAreRead_WaitsForNoMoreThanOneIm
 
 TEST_F(SideMeasurementTest, NeitherStartNorPoll_HoldsUpTheWindow) {
   const view::ViewState state = make_state("cubes", "vsm:radius=2", "vsm:radius=6");
-  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
   std::vector<double> times_ms;
   const auto time = [&](const auto& work) {
     const double begin_ms = now_ms();
     work();
     times_ms.push_back(now_ms() - begin_ms);
   };
-  time([&] { measurement.start(state); });
+  time([&] { measurement_.start(state); });
   State now = State::kRunning;
   while (now == State::kRunning) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    time([&] { now = measurement.poll(); });
+    time([&] { now = measurement_.poll(); });
   }
-  ASSERT_EQ(now, State::kFinished) << measurement.text();
+  ASSERT_EQ(now, State::kFinished) << measurement_.text();
   for (std::size_t side = 0; side < view::kSides; ++side)
-    EXPECT_TRUE(measurement.results().find_side(side)->visibility.texels == draw(state, side).texels) << side;
+    EXPECT_TRUE(measurement_.results().find_side(side)->visibility.texels == draw(state, side).texels) << side;
   std::printf("start %.2f ms, ", times_ms.front());
   std::ranges::sort(times_ms);
   std::printf("median of polls %.3f ms, longest call %.2f ms\n", times_ms[times_ms.size() / 2], times_ms.back());
@@ -270,8 +265,7 @@ TEST_F(SideMeasurementTest, WindowThatIsKilled_LeavesNoProcess_AndItsFilesGoWith
   const view::ViewState state = make_endless_state();
   const pid_t window = fork();
   if (window == 0) {
-    view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-    measurement.start(state);
+    measurement_.start(state);
     for (;;) pause();
   }
   ASSERT_TRUE(wait_until([&] { return !list_processes("--worker").empty(); }));
@@ -282,9 +276,8 @@ TEST_F(SideMeasurementTest, WindowThatIsKilled_LeavesNoProcess_AndItsFilesGoWith
   waitpid(window, nullptr, 0);
   wait_until([&] { return list_processes().empty(); }, kMoment);
   EXPECT_THAT(list_processes(), IsEmpty());
-  view::SideMeasurement measurement(SHADOWBENCH_PROGRAM);
-  measurement.start(state);
-  measurement.cancel();
+  measurement_.start(state);
+  measurement_.cancel();
   expect_nothing_left();
 }
 

@@ -378,6 +378,19 @@ class StageTest : public ViewTest {
     stage.draw(state, view::Changes::all());
     return read(stage, state);
   }
+
+  /// Draws what has changed, which must show what a new stage does, and not what it showed before. Returns how many
+  /// shaders that compiled.
+  static int expect_redrawn(view::Stage& stage, const view::ViewState& state, const view::Changes& changes) {
+    const Images before = read(stage, state);
+    const int compiled = renderer().shaders.compiled();
+    stage.draw(state, changes);
+    const int compiled_now = renderer().shaders.compiled();
+    const Images now = read(stage, state);
+    EXPECT_EQ(now, draw_anew(state));
+    for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NE(now[i], before[i]) << "nothing has moved";
+    return compiled_now - compiled;
+  }
 };
 
 class MovedLight : public StageTest, public ::testing::WithParamInterface<Shown> {};
@@ -386,19 +399,12 @@ TEST_P(MovedLight, CompilesNothing_AndShowsTheSameBitsAsANewStage) {
   view::ViewState state = make_state(GetParam());
   view::Stage stage(renderer(), state.scene);
   stage.draw(state, view::Changes::all());
-  Images before = read(stage, state);
   for (int step = 0; step < 3; ++step) {
     SCOPED_TRACE(step);
     put_light(state, scene::turn_light(state.scene.light, [](const glm::vec3& way) {
                 return glm::normalize(way + glm::vec3(0.05f, 0.0f, 0.0f));
               }));
-    const int compiled = renderer().shaders.compiled();
-    stage.draw(state, {.light = true});
-    const Images now = read(stage, state);
-    EXPECT_EQ(renderer().shaders.compiled(), compiled);
-    EXPECT_EQ(now, draw_anew(state));
-    for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NE(now[i], before[i]) << "the light has not moved";
-    before = now;
+    EXPECT_EQ(expect_redrawn(stage, state, {.light = true}), 0);
   }
   renderer().context->require_no_gl_errors();
 }
@@ -415,24 +421,18 @@ TEST_F(StageTest, LightOfAnotherKind_ShowsTheSameBitsAsANewStage) {
   view::ViewState state = make_state({"", "lamp", {"vsm", "tent3x3"}, {}});
   view::Stage stage(renderer(), state.scene);
   stage.draw(state, view::Changes::all());
-  read(stage, state);
   scene::Light sun = state.scene.light;
   sun.kind = scene::Sun{-scene::to_light(sun, glm::vec3(0.0f))};
   put_light(state, sun);
-  stage.draw(state, {.light = true});
-  EXPECT_EQ(read(stage, state), draw_anew(state));
+  expect_redrawn(stage, state, {.light = true});
 }
 
 TEST_F(StageTest, MovedCamera_ShowsTheSameBitsAsANewStage) {
   view::ViewState state = make_state({"", "cubes", {"vsm", "tent3x3"}, {}});
   view::Stage stage(renderer(), state.scene);
   stage.draw(state, view::Changes::all());
-  const Images before = read(stage, state);
   change(state, [](view::ViewSettings& settings) { settings.cameras[0].position_ws.y += 0.1f; });
-  stage.draw(state, {.camera = true});
-  const Images now = read(stage, state);
-  for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NE(now[i], before[i]) << "the camera has not moved";
-  EXPECT_EQ(now, draw_anew(state));
+  expect_redrawn(stage, state, {.camera = true});
 }
 
 }  // namespace
