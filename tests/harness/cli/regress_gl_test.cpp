@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include "base/folder_lock.h"
-#include "report/regress/regress.h"
 #include "tests/harness/cli/program.h"
 
 namespace shadowbench::test {
@@ -19,24 +18,8 @@ class Regress : public ProgramTest {
               out);
   }
 
-  /// Compares as `regress OUT --baseline base OPTIONS` does, in this process.
   Outcome compare(const std::string& out, const std::string& options = "") const {
-    const auto has = [&](const char* option) { return options.find(option) != std::string::npos; };
-    regress::RegressOptions told;
-    told.run = folder() / out;
-    told.baseline = folder() / "base";
-    told.out = told.run / "regress";
-    if (has("--filters none")) told.selection.filters = {"none"};
-    told.accept = has("--accept");
-    told.remove_missing = has("--remove-missing");
-    told.brief = true;
-    told.command = {"shadowbench", "regress"};
-    try {
-      const regress::RegressOutcome outcome = regress::run_regress(told);
-      return {outcome.failure.empty() ? 0 : static_cast<int>(outcome.kind), outcome.text, outcome.failure};
-    } catch (const Error& error) {
-      return {static_cast<int>(error.kind()), "", error.what()};
-    }
+    return run("regress " + out + " --baseline base " + options);
   }
 
   /// A run and the baseline that was accepted from it.
@@ -267,7 +250,7 @@ TEST_F(Regress, StochasticFilter_OfAnotherSeed_IsTestedAsNoise) {
 TEST_F(Regress, ForBuildServers_JUnitAndJson) {
   make_baseline();
   draw("b", "--filters none,box3x3");
-  const Outcome outcome = run("regress b --baseline base --junit junit.xml --json");
+  const Outcome outcome = compare("b", "--junit junit.xml --json");
   EXPECT_EQ(outcome.exit_code, 1);
   const json printed = json::parse(outcome.out);
   EXPECT_EQ(printed, report("b"));
