@@ -196,7 +196,7 @@ void FrameDrawing::draw(const ShownFrame& frame, std::vector<render::ResolvePass
   render::LightLayers light = make_filter_light(rig_.options, frame.light, frame.map.layers, filter_->request());
   for (render::LightSetup& layer : light) layer.frame = frame.number;
   render::ShaderLibrary& shaders = rig_.renderer.shaders;
-  filter_->retune(shaders, filter_->request().values, light);
+  filter_->retune(light);
   filter_->prefilter(frame.map.map);
   filter_->lookup(frame.gbuffer, frame.map.map, target_);
   for (render::ResolvePass& resolve : resolves)

@@ -243,9 +243,8 @@ images::Image draw_visibility(render::FilterPasses& filter, const render::Shadow
   return render::read_image(target.texture(), 1);
 }
 
-void draw_without_bias(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets, LightMap& light,
+void draw_without_bias(const options::RunOptions& options, SceneAssets& assets, LightMap& light,
                        render::FilterPasses& filter, const std::function<void()>& draw) {
-  const filters::ParamValues values = filter.request().values;
   const render::LightLayers own = filter.light();
   render::LightLayers unbiased = own;
   for (render::LightSetup& layer : unbiased) {
@@ -254,9 +253,9 @@ void draw_without_bias(Renderer& renderer, const options::RunOptions& options, S
   }
   const bool biased_map = options.bias.map != render::MapBias();
   if (biased_map) assets.redraw(light, {});
-  filter.retune(renderer.shaders, values, unbiased);
+  filter.retune(unbiased);
   draw();
-  filter.retune(renderer.shaders, values, own);
+  filter.retune(own);
   if (biased_map) assets.redraw(light);
 }
 

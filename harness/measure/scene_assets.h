@@ -161,7 +161,7 @@ images::Image draw_visibility(render::FilterPasses& filter, const render::Shadow
                               const render::GBuffer& gbuffer, render::ImageTarget& target);
 
 /// Calls `draw` with a filter that has no bias, in its receivers and in the map; both are as before afterwards.
-void draw_without_bias(Renderer& renderer, const options::RunOptions& options, SceneAssets& assets, LightMap& light,
+void draw_without_bias(const options::RunOptions& options, SceneAssets& assets, LightMap& light,
                        render::FilterPasses& filter, const std::function<void()>& draw);
 
 /// Lookups that read what filters read of their receivers, and nothing of the map: what a lookup takes longer than its

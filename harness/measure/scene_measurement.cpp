@@ -76,7 +76,7 @@ class SceneBench {
       if (rig_.options.uncertainty) result.cells.back().uncertainty = measure_uncertainty(*filter);
       if (!rig_.options.truth && !rig_.options.part.is_worker()) continue;
       result.cells.back().cascades = draw_cascades(*filter);
-      draw_without_bias(rig_.renderer, rig_.options, rig_.assets, light_, *filter, [&] {
+      draw_without_bias(rig_.options, rig_.assets, light_, *filter, [&] {
         result.cells.back().unbiased = draw_visibility(*filter, light_.map, gbuffer_, target_);
       });
     }
@@ -133,7 +133,7 @@ class SceneBench {
     cell.record.nan = std::ranges::count_if(cell.visibility.texels, [](float v) { return !std::isfinite(v); });
     if (receivers_ < 0) receivers_ = render::count_receivers(rig_.renderer.shaders, gbuffer_, filter.light());
     cell.record.receivers = receivers_;
-    cell.cost = filter.measure_cost(rig_.renderer.shaders, gbuffer_, light_.map);
+    cell.cost = filter.measure_cost(gbuffer_, light_.map);
     cell.passes = filter.list_passes(gl::pixel_format(rig_.options.map.format).bytes_per_texel);
     cell.record.cost = {.fetches = cell.cost.fetches,
                         .bytes_per_texel = cell.cost.bytes_per_texel,
@@ -157,11 +157,11 @@ class SceneBench {
     for (std::size_t i = 0; i < own.size(); ++i) {
       render::LightLayers alone = own;
       for (std::size_t other = 0; other < alone.size(); ++other) alone[other].frustum.share = other == i ? kAll : kNone;
-      filter.retune(rig_.renderer.shaders, filter.request().values, alone);
+      filter.retune(alone);
       filter.lookup(gbuffer_, light_.map, target_);
       drawn.push_back(render::read_image(target_.texture(), 1));
     }
-    filter.retune(rig_.renderer.shaders, filter.request().values, own);
+    filter.retune(own);
     return drawn;
   }
 
@@ -212,7 +212,7 @@ class SceneBench {
     for (std::uint32_t i = 1; i <= static_cast<std::uint32_t>(images::kSpreadSeeds); ++i) {
       render::LightLayers other = own;
       for (render::LightSetup& layer : other) layer.seed = filters::hash_bits(own.front().seed + i);
-      filter.retune(rig_.renderer.shaders, filter.request().values, other);
+      filter.retune(other);
       const images::Image image = draw_visibility(filter, light_.map, gbuffer_, target_);
       for (std::size_t p = 0; p < sum.size(); ++p) {
         const double value = static_cast<double>(image.texels[p]);
@@ -220,7 +220,7 @@ class SceneBench {
         squares[p] += value * value;
       }
     }
-    filter.retune(rig_.renderer.shaders, filter.request().values, own);
+    filter.retune(own);
     for (std::size_t p = 0; p < sum.size(); ++p) {
       const double n = images::kSpreadSeeds, mean = sum[p] / n;
       spread.seed_mean.texels[p] = static_cast<float>(mean);
@@ -323,9 +323,7 @@ class SceneBench {
   }
 
   images::Image draw_turned(render::FilterPasses& filter, const LightMap& light) {
-    const auto encoded = filter.make_encoded_targets();
-    filter.turn_to(filter.prepare(
-        make_filter_light(rig_.options, rig_.task.scene->light, light.layers, filter.request()), encoded));
+    filter.retune(make_filter_light(rig_.options, rig_.task.scene->light, light.layers, filter.request()));
     return draw_visibility(filter, light.map, gbuffer_, target_);
   }
 };

@@ -324,7 +324,7 @@ std::vector<CountedLayer> TrafficMeter::count_reads(const MeasuredCell& cell) {
   const auto passes = rig_.make_passes(cell.request);
   passes->prefilter(light_.map);
   std::vector<CountedLayer> layers;
-  for (const render::CountedReads& counted : passes->count_reads(rig_.renderer.shaders, gbuffer_, light_.map)) {
+  for (const render::CountedReads& counted : passes->count_reads(gbuffer_, light_.map)) {
     const ModelLayer& own = layers_[layers.size()];
     CountedLayer& layer = layers.emplace_back(CountedLayer{own.map, own.receivers, {}});
     if (passes->encoded_format()) layer.map.texel_bytes = gl::pixel_format(*passes->encoded_format()).bytes_per_texel;

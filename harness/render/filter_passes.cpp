@@ -47,10 +47,10 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
                            const LightLayers& light)
     : shaders_(&shaders),
       request_(request),
-      layers_{{light.front(), nullptr, nullptr}},
+      layers_{{light.front()}},
       map_size_(map.size()),
       map_defines_(map_defines(request, map.settings())),
-      lookup_(compile_lookup(shaders, {})) {
+      lookup_(compile_lookup({})) {
   if (lookup_.has("blue_noise")) blue_noise_ = make_blue_noise();
   if (request.spec.has_encode) prefilter_.emplace(shaders, request, map, light.front(), map_defines_);
   if (!request.spec.passes.empty()) {
@@ -60,19 +60,23 @@ FilterPasses::FilterPasses(ShaderLibrary& shaders, const filters::FilterRequest&
   if (!filters::list_screens(request.spec, request.values).empty())
     screen_.emplace(shaders, request, light.front(), map_defines_);
   if (light.size() == 1) return;  // else every layer has maps of its own
-  layers_.resize(light.size());
-  turn_to(prepare(light, make_encoded_targets()));
+  layers_.clear();
+  for (const LightSetup& each : light)
+    layers_.push_back({each,
+                       prefilter_ ? std::make_shared<ImageTarget>(request.spec.id + " map", prefilter_->format(),
+                                                                  map_size_, map_size_)
+                                  : nullptr,
+                       own_ ? own_->make_maps() : nullptr});
 }
 
-gl::Program FilterPasses::compile_lookup(ShaderLibrary& shaders, Defines defines,
-                                         const std::optional<std::string>& body) const {
+gl::Program FilterPasses::compile_lookup(Defines defines, const std::optional<std::string>& body) const {
   for (const Defines& more : {map_defines_, receiver_defines(layers_.front().light)})
     defines.insert(defines.end(), more.begin(), more.end());
   if (!filters::list_screens(request_.spec, request_.values).empty()) defines.emplace_back("SCREEN", "1");
   if (layers_.front().light.bias.receiver_plane) defines.emplace_back("RECEIVER_PLANE", "1");
   std::vector<gl::Piece> pieces = filter_pieces(request_);
   if (body) pieces.back().text = *body;
-  gl::Program program = shaders.compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, pieces);
+  gl::Program program = shaders_->compile_filter(request_.spec.id + " lookup", "lookup.frag", defines, pieces);
   set_uniforms(program, layers_.front().light);
   return program;
 }
@@ -84,50 +88,31 @@ void FilterPasses::set_uniforms(gl::Program& lookup, const LightSetup& light) co
 
 LightLayers FilterPasses::light() const {
   LightLayers light;
-  for (const PreparedLayer& layer : layers_) light.push_back(layer.light);
+  for (const Layer& layer : layers_) light.push_back(layer.light);
   return light;
 }
 
-void FilterPasses::retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightLayers& light) {
-  assert(light.size() == layers_.size());
+void FilterPasses::retune(const filters::ParamValues& values, const LightLayers& light) {
   request_.values = values;
+  retune(light);
+}
+
+void FilterPasses::retune(const LightLayers& light) {
+  assert(light.size() == layers_.size());
   set_uniforms(lookup_, light.front());
-  if (prefilter_) prefilter_->retune(shaders, request_, light.front());
+  if (prefilter_) prefilter_->retune(request_, light.front());
   if (own_) own_->retune(request_, light.front());
   if (screen_) screen_->retune(request_, light.front());
   for (std::size_t i = 0; i < light.size(); ++i) layers_[i].light = light[i];
 }
 
-EncodedTargets FilterPasses::make_encoded_targets() const {
-  EncodedTargets targets;
-  for (int layer = 0; prefilter_ && layer < layers(); ++layer)
-    targets.push_back(
-        std::make_shared<ImageTarget>(request_.spec.id + " map", prefilter_->format(), map_size_, map_size_));
-  return targets;
-}
-
-PreparedLight FilterPasses::prepare(const LightLayers& light, const EncodedTargets& encoded) {
-  PreparedLight prepared;
-  for (std::size_t i = 0; i < light.size(); ++i)
-    prepared.push_back({light[i], prefilter_ ? encoded[i] : nullptr, own_ ? own_->make_maps() : nullptr});
-  return prepared;
-}
-
-void FilterPasses::turn_to(const PreparedLight& light) {
-  assert(light.size() == layers_.size());
-  layers_ = light;
-  turn(layers_.front());
-}
-
-void FilterPasses::turn(const PreparedLayer& layer) {
-  set_light(lookup_, layer.light);
-  if (prefilter_) prefilter_->turn_to(layer.light, layer.encoded);
-  if (own_) own_->turn_to(layer.light, layer.maps);
-}
-
 /// The only layer is what the passes are turned to anyway.
 void FilterPasses::select(int layer) {
-  if (layers() > 1) turn(layers_[static_cast<std::size_t>(layer)]);
+  if (layers() == 1) return;
+  const Layer& chosen = layers_[static_cast<std::size_t>(layer)];
+  set_light(lookup_, chosen.light);
+  if (prefilter_) prefilter_->turn_to(chosen.light, chosen.encoded);
+  if (own_) own_->turn_to(chosen.light, chosen.maps);
 }
 
 Prefilter* FilterPasses::encoded_map(int layer) {
@@ -214,10 +199,9 @@ CountingSource FilterPasses::make_counting_source() const {
           std::move(counted.body)};
 }
 
-std::vector<CountedReads> FilterPasses::count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer,
-                                                    const ShadowMap& map) {
+std::vector<CountedReads> FilterPasses::count_reads(const GBuffer& gbuffer, const ShadowMap& map) {
   const CountingSource source = make_counting_source();
-  gl::Program counting = compile_lookup(shaders, source.defines, source.body);
+  gl::Program counting = compile_lookup(source.defines, source.body);
   const gl::Texture visibility("counted visibility", GL_R32F, gbuffer.width(), gbuffer.height());
   const gl::Texture reads("reads", GL_RGBA32F, gbuffer.width(), gbuffer.height());
   const gl::Texture wide_reads("wide reads", GL_RG32F, gbuffer.width(), gbuffer.height());
@@ -244,12 +228,11 @@ std::vector<CountedReads> FilterPasses::count_reads(ShaderLibrary& shaders, cons
 
 double FilterPasses::blurred_reach() const { return filters::prefilter_radius_texels(request_.spec, request_.values); }
 
-void FilterPasses::count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer,
-                                 const ShadowMap& map) {
+void FilterPasses::count_fetches(FilterCost& cost, const GBuffer& gbuffer, const ShadowMap& map) {
   std::vector<double> sums(static_cast<std::size_t>(gbuffer.width()) * static_cast<std::size_t>(gbuffer.height()),
                            -1.0);
   double reach = -1.0;
-  for (const CountedReads& layer : count_reads(shaders, gbuffer, map)) {
+  for (const CountedReads& layer : count_reads(gbuffer, map)) {
     for (std::size_t i = 0; i < sums.size(); ++i) {
       if (layer.reads[4 * i] < 0.0f) continue;
       sums[i] = std::max(sums[i], 0.0) + static_cast<double>(layer.reads[4 * i]);
@@ -290,15 +273,15 @@ std::int64_t FilterPasses::count_map_bytes(const ShadowMap& map) const {
          (reads_depth ? map.bytes() : 0);
 }
 
-FilterCost FilterPasses::measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map) {
+FilterCost FilterPasses::measure_cost(const GBuffer& gbuffer, const ShadowMap& map) {
   FilterCost cost;
-  if (!request_.spec.uses_samplers) count_fetches(cost, shaders, gbuffer, map);
+  if (!request_.spec.uses_samplers) count_fetches(cost, gbuffer, map);
   cost.map_bytes = count_map_bytes(map);
   cost.bytes_per_texel = cost.map_bytes / (std::int64_t{layers()} * map_size_ * map_size_);
   if (screen_) {
     ImageTarget drawn("screen", GL_R32F, gbuffer.width(), gbuffer.height());
     look_up(gbuffer, map, drawn);
-    cost.screen = screen_->count_reads(shaders, gbuffer, layers_.front().light, make_counting_source());
+    cost.screen = screen_->count_reads(*shaders_, gbuffer, layers_.front().light, make_counting_source());
     cost.most_turns = std::max(cost.most_turns, cost.screen.most_turns);
   }
   cost.passes = 2 * layers() + prefilter_passes() + (screen_ ? screen_->passes() : 0);

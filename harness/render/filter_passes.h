@@ -43,20 +43,7 @@ struct ReceiverReads {
   auto operator<=>(const ReceiverReads&) const = default;
 };
 
-/// A prepared layer of a light's map: passes can change to it by setting uniforms alone.
-struct PreparedLayer {
-  LightSetup light;
-  std::shared_ptr<ImageTarget> encoded;  ///< the encoded map; null for filters that read depth
-  std::shared_ptr<PassMaps> maps;        ///< of the filter's own passes; null where it has none
-};
-
-/// A prepared light, layer by layer.
-using PreparedLight = std::vector<PreparedLayer>;
-
-/// The encoded maps of a light, by layer; empty for filters that read depth.
-using EncodedTargets = std::vector<std::shared_ptr<ImageTarget>>;
-
-/// One filter, with its parameters, over one G-buffer and one shadow map.
+/// One filter, with its parameters, over one G-buffer and one shadow map. The library of shaders must outlive it.
 class FilterPasses {
  public:
   /// Compiles what this filter needs, and nothing else.
@@ -71,23 +58,15 @@ class FilterPasses {
   /// that only values change that are neither `const` nor texts, and a light with the same range rule, map size and
   /// number of layers, with a bias by slope only if the one before had it, and with a map that curves depth only if the
   /// one before did.
-  void retune(ShaderLibrary& shaders, const filters::ParamValues& values, const LightLayers& light);
+  void retune(const filters::ParamValues& values, const LightLayers& light);
 
-  /// Prepares another light with the same range rule, map size and number of layers. `encoded` are as
-  /// make_encoded_targets() makes them; passes that take turns may share them. The light of these passes is undefined
-  /// afterwards until turn_to() sets one.
-  PreparedLight prepare(const LightLayers& light, const EncodedTargets& encoded);
-
-  /// Draws with another light from now on, as new passes would. Parameters stay.
-  void turn_to(const PreparedLight& light);
+  /// The same; parameters stay.
+  void retune(const LightLayers& light);
 
   /// The format of the encoded map; nothing for filters that read depth.
   std::optional<GLenum> encoded_format() const {
     return prefilter_ ? std::optional(prefilter_->format()) : std::nullopt;
   }
-
-  /// Targets for prepare().
-  EncodedTargets make_encoded_targets() const;
 
   bool has_prefilter() const { return prefilter_ || own_; }
 
@@ -122,10 +101,10 @@ class FilterPasses {
                      const std::optional<glm::ivec2>& columns = std::nullopt);
 
   /// Compiles and runs the counting variant of the lookup. Call after prefilter().
-  FilterCost measure_cost(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
+  FilterCost measure_cost(const GBuffer& gbuffer, const ShadowMap& map);
 
   /// The same, layer by layer. Requires a filter that does not read the samplers itself.
-  std::vector<CountedReads> count_reads(ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
+  std::vector<CountedReads> count_reads(const GBuffer& gbuffer, const ShadowMap& map);
 
   /// How far from where they are, in texels, the lookup's fetches reach by what a blur before it has brought there.
   double blurred_reach() const;
@@ -139,9 +118,16 @@ class FilterPasses {
   int layers() const { return static_cast<int>(layers_.size()); }
 
  private:
+  /// A layer of the light's map. Of several each has maps of its own.
+  struct Layer {
+    LightSetup light;
+    std::shared_ptr<ImageTarget> encoded = nullptr;
+    std::shared_ptr<PassMaps> maps = nullptr;  ///< of the filter's own passes
+  };
+
   ShaderLibrary* shaders_;
   filters::FilterRequest request_;
-  PreparedLight layers_;
+  std::vector<Layer> layers_;
   int map_size_;
   Defines map_defines_;
   std::optional<Prefilter> prefilter_;
@@ -151,16 +137,14 @@ class FilterPasses {
   std::optional<gl::Texture> blue_noise_;  ///< for filters that read it
   gl::FullscreenTriangle triangle_;
 
-  void turn(const PreparedLayer& layer);
   void select(int layer);
   std::int64_t count_map_bytes(const ShadowMap& map) const;
   void set_uniforms(gl::Program& lookup, const LightSetup& light) const;
   /// `body` takes the place of the filter's own.
-  gl::Program compile_lookup(ShaderLibrary& shaders, Defines defines,
-                             const std::optional<std::string>& body = std::nullopt) const;
+  gl::Program compile_lookup(Defines defines, const std::optional<std::string>& body = std::nullopt) const;
   const ReceiverBuffer& bind_lookup(gl::Program& program, const GBuffer& gbuffer, int layer, const ShadowMap& map);
   CountingSource make_counting_source() const;
-  void count_fetches(FilterCost& cost, ShaderLibrary& shaders, const GBuffer& gbuffer, const ShadowMap& map);
+  void count_fetches(FilterCost& cost, const GBuffer& gbuffer, const ShadowMap& map);
 };
 
 }  // namespace shadowbench::render

@@ -230,17 +230,17 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
   sampler_.set_wrap(wrap_mode(light.range.border));
   blur_sampler_.set_wrap(wrap_mode(light.range.border));
   reads_border_ = light.range.border == filters::Border::kBorder;
-  retune(shaders, request, light);
+  retune(request, light);
 }
 
-void Prefilter::retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light) {
+void Prefilter::retune(const filters::FilterRequest& request, const LightSetup& light) {
   set_uniforms(encode_, request, light);
   border_ = encode_border();
   sampler_.set_border(border_);
   blur_sampler_.set_border(border_);
   radius_ = filters::prefilter_radius_texels(request.spec, request.values);
   if (radius_ == 0) return;
-  blur_ = &shaders.fullscreen("blur.frag", blur_defines(request, radius_));
+  blur_ = &shaders_->fullscreen("blur.frag", blur_defines(request, radius_));
   if (scratch_) return;
   scratch_.emplace(request.spec.id + " blur", store_format(request.values), stored_->texture().width(),
                    stored_->texture().width());

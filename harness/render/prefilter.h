@@ -54,7 +54,7 @@ class Prefilter {
             const LightSetup& light, Defines map_defines = {});
 
   /// Changes the light, and parameters that are neither `const` nor texts. The light must have the same range rule.
-  void retune(ShaderLibrary& shaders, const filters::FilterRequest& request, const LightSetup& light);
+  void retune(const filters::FilterRequest& request, const LightSetup& light);
 
   /// Changes to another light with the same range rule. From now on run() writes to `stored` and bind() binds it; it
   /// has format() and the map's size.

@@ -37,7 +37,7 @@ void FilterBench::upload_receivers(const std::vector<glm::vec3>& positions_ws, c
 std::vector<float> FilterBench::look_up(const render::LightSetup& light, const filters::ParamValues& values) {
   request_.values = values;
   if (passes_)
-    passes_->retune(shaders_, values, light);
+    passes_->retune(values, light);
   else
     passes_.emplace(shaders_, request_, surfaces_->map, light);
   passes_->prefilter(surfaces_->map);

@@ -212,7 +212,7 @@ std::optional<std::vector<double>> TuneScene::score(render::FilterPasses& passes
   for (std::size_t i = 0; i < views_.size(); ++i) {
     measure::LightMap& light = *views_[i].light;
     if (drawn != &light) {
-      passes.retune(renderer_.shaders, setting.values, make_light(request, light));
+      passes.retune(setting.values, make_light(request, light));
       passes.prefilter(light.map);
       if (measure::count_broken_texels(passes, light.map) > 0) return std::nullopt;
     }
@@ -223,7 +223,7 @@ std::optional<std::vector<double>> TuneScene::score(render::FilterPasses& passes
     if (settings_.metric->kind == TuneMetricKind::kFlip)
       shots[i].picture = render::shade(renderer_.shaders, gbuffer, target_.texture(), scene_, *views_[i].camera);
     if (settings_.metric->kind != TuneMetricKind::kLeak) continue;
-    measure::draw_without_bias(renderer_, options_, assets_, light, passes, [&] {
+    measure::draw_without_bias(options_, assets_, light, passes, [&] {
       shots[i].unbiased = measure::draw_visibility(passes, light.map, gbuffer, target_);
     });
     drawn = nullptr;  // the prefilter is that of the map without bias

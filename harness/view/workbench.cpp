@@ -111,8 +111,7 @@ void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, b
 }
 
 void Stage::retune(const ViewState& state, render::FilterPasses& passes, const filters::FilterRequest& request) {
-  passes.retune(renderer_.shaders, request.values,
-                measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
+  passes.retune(request.values, measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
 }
 
 void Stage::compile(const ViewState& state, std::size_t side) {

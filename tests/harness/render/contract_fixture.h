@@ -47,7 +47,7 @@ inline std::vector<std::vector<float>> draw_seeds(Bench& bench, const filters::F
   std::vector<std::vector<float>> images;
   for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
     for (render::LightSetup& layer : light) layer.seed = seed;
-    passes.retune(bench.shaders(), request.values, light);
+    passes.retune(request.values, light);
     images.push_back(bench.draw(passes));
   }
   return images;

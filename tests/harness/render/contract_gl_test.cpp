@@ -158,7 +158,7 @@ TEST_P(Contract, ReadsAreCounted_AndWithinTheDeclaredReach) {
   const FilterRequest request = find_filter(GetParam());
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
-  const render::FilterCost cost = passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map());
+  const render::FilterCost cost = passes.measure_cost(bench.gbuffer(), bench.map());
   EXPECT_EQ(cost.fetches.has_value(), !request.spec.uses_samplers);
   EXPECT_GE(cost.fetches.value_or(1.0), 1.0);
   EXPECT_LE(cost.reach_texels.value_or(0.0), filters::reach_texels(request.spec, request.values) + 1e-3);
@@ -173,7 +173,7 @@ double fetches_of(const std::string& text) {
   const FilterRequest request = find_filter(text);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
-  return *passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).fetches;
+  return *passes.measure_cost(bench.gbuffer(), bench.map()).fetches;
 }
 
 TEST(FetchCount, EqualsTheFetchesInTheGlsl) {

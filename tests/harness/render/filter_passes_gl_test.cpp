@@ -158,32 +158,12 @@ TEST_P(OwnPasses, WriteWhatTheyShould) {
       << differing << " of " << receivers.size();
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
-  EXPECT_EQ(passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map()).passes, GetParam().passes_run);
+  EXPECT_EQ(passes.measure_cost(bench.gbuffer(), bench.map()).passes, GetParam().passes_run);
 }
 
 INSTANTIATE_TEST_SUITE_P(Steps, OwnPasses,
                          ::testing::Values(kPrefix, kLevels, kLevelsOfAnySide, kHalf, kAxes, kSeveral, kFootprint),
                          [](const auto& each) { return std::string(each.param.name); });
-
-/// Lights that take turns keep their maps apart.
-TEST(OwnPassesOfLights, KeepTheirMaps) {
-  Bench bench(load_builtin("stack"), kPassSide, 160, 90);
-  const filters::FilterRequest request = request_of("vsm_sat");
-  const std::vector<float> expected = bench.draw(request);
-  render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
-  render::ImageTarget target("visibility", GL_R32F, 160, 90);
-  const auto first = passes.prepare(bench.light(request), passes.make_encoded_targets());
-  const auto second = passes.prepare(bench.light(request), passes.make_encoded_targets());
-  passes.turn_to(first);
-  passes.prefilter(bench.map());
-  render::ShadowMap empty(kPassSide, {});
-  empty.draw(bench.shaders(), render::Geometry(scene::Scene{}), bench.frustum());
-  passes.turn_to(second);
-  passes.prefilter(empty);
-  passes.turn_to(first);
-  passes.lookup(bench.gbuffer(), bench.map(), target);
-  EXPECT_EQ(target.texture().read_floats(1), expected);
-}
 
 struct Refused {
   const char* passes;
@@ -277,7 +257,7 @@ TEST_P(Retune, DrawsTheSameBitsAsNewPasses_ForEveryFilterAndLight) {
     for (Bench* each : {&bench, &turned}) {
       for (const double step : {0.5, 0.0, 1.0}) {  // a radius of 0, without a blur, in between
         const filters::FilterRequest changed = at(request, step);
-        passes.retune(each->shaders(), changed.values, each->light(changed));
+        passes.retune(changed.values, each->light(changed));
         EXPECT_EQ(each->draw(passes), each->draw(changed)) << step;
       }
     }

@@ -371,7 +371,7 @@ TEST_F(ScreenPassesTest, Reads_AreCounted_AndWithinTheDeclaredReach) {
   const auto measure = [&](const std::string& text) {
     const filters::FilterRequest filter = request(text);
     render::FilterPasses passes(bench.shaders(), filter, bench.map(), bench.light(filter));
-    return passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map());
+    return passes.measure_cost(bench.gbuffer(), bench.map());
   };
   const render::FilterCost near = measure("screen_box");
   EXPECT_NEAR(near.screen.per_receiver, 6.0, 1e-6);  // 3 and 1 of row(), and 1 of halve(), twice

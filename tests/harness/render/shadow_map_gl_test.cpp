@@ -384,7 +384,7 @@ TEST(DepthSamplesOfAMap, AreCounted) {
   const filters::FilterRequest request = make_sampled(4);
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
-  const render::FilterCost cost = passes.measure_cost(bench.shaders(), bench.gbuffer(), bench.map());
+  const render::FilterCost cost = passes.measure_cost(bench.gbuffer(), bench.map());
   EXPECT_EQ(cost.passes, 4);
   EXPECT_EQ(cost.prefilter_texels, (4 + 1) * kSampledSide * kSampledSide);
 }
