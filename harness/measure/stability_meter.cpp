@@ -150,47 +150,24 @@ std::string warn_of_variance(const FilterRequest& request, const TexelHealth& he
       advise(remedies));
 }
 
-/// A filter's encoded map as it was read back, in the terms of metrics::check_texels.
-class ReadMap {
- public:
-  /// Reads the map of a filter back, of a 16-bit float store before its blur, too: there a GL may saturate, and the
-  /// blur hides it. Requires a filter that encodes, and that its map was made.
-  ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer = 0);
-
-  /// What is looked at; the object must outlive it.
-  metrics::StoredMap stored() const;
-
- private:
-  filters::FilterRequest request_;
-  render::EncodedTexels texels_;
-  std::optional<render::EncodedTexels> before_blur_;
-  int radius_ = 0;
-  std::optional<glm::vec4> border_;
-};
-
-ReadMap::ReadMap(render::FilterPasses& filter, const render::ShadowMap& map, int layer)
-    : request_(filter.request()),
-      texels_(filter.encoded_map(layer)->read()),
-      radius_(filter.encoded_map(layer)->blur_radius_texels()),
-      border_(filter.encoded_map(layer)->blurred_border()) {
-  const bool is_half = filters::store_precision(store_of(request_.values)) == filters::StorePrecision::kHalf;
-  if (is_half) before_blur_ = filter.encoded_map(layer)->read_before_blur(map, layer);
-}
-
-metrics::StoredMap ReadMap::stored() const {
-  metrics::StoredMap stored{texels_.values, texels_.channels, largest_number(request_.values),
-                            request_.spec.holds_moments};
-  if (before_blur_) stored.before_blur = before_blur_->values;
-  stored.blur_radius_texels = radius_;
-  if (border_) stored.border = std::span(&border_->x, static_cast<std::size_t>(texels_.channels));
+/// Reads a layer of a filter's encoded map back, of a 16-bit float store before its blur, too: there a GL may saturate,
+/// and the blur hides it. Requires a filter that encodes, and that its map was made.
+metrics::StoredMap read_map(render::FilterPasses& filter, const render::ShadowMap& map, int layer = 0) {
+  const filters::FilterRequest& request = filter.request();
+  render::Prefilter& encoded = *filter.encoded_map(layer);
+  metrics::StoredMap stored{encoded.read(), encoded.channels(), largest_number(request.values),
+                            request.spec.holds_moments};
+  if (filters::store_precision(store_of(request.values)) == filters::StorePrecision::kHalf)
+    stored.before_blur = encoded.read_before_blur(map, layer);
+  stored.blur_radius_texels = encoded.blur_radius_texels();
+  if (const auto border = encoded.blurred_border()) stored.border.assign(&border->x, &border->x + stored.channels);
   return stored;
 }
 
 /// Looks through all layers of a filter's encoded map. Requires a filter that encodes, and that its map was made.
 metrics::TexelHealth check_map(render::FilterPasses& filter, const render::ShadowMap& map) {
-  metrics::TexelHealth health = metrics::check_texels(ReadMap(filter, map).stored());
-  for (int layer = 1; layer < filter.layers(); ++layer)
-    health.add(metrics::check_texels(ReadMap(filter, map, layer).stored()));
+  metrics::TexelHealth health = metrics::check_texels(read_map(filter, map));
+  for (int layer = 1; layer < filter.layers(); ++layer) health.add(metrics::check_texels(read_map(filter, map, layer)));
   return health;
 }
 
@@ -301,20 +278,18 @@ void StabilityMeter::check_texels(MeasuredCell& cell, render::FilterPasses& filt
     return;
   }
   const metrics::TexelHealth health = check_map(filter, light_.map);
-  const ReadMap first(filter, light_.map);
-  const bool holds_moments = first.stored().moments;
   stability.overflow_texels = health.overflowed;
   stability.nan_texels = health.nan;
   cell.stability.headroom = draw_layers(filter, metrics::measure_headroom);
   if (health.largest && *health.largest > 0.0)
-    stability.headroom = std::log(first.stored().largest_number) - std::log(*health.largest);
+    stability.headroom = std::log(largest_number(cell.request.values)) - std::log(*health.largest);
   else
     note_absent(cell.record, {"headroom"}, health.largest ? "the map holds nothing but 0" : "the map overflowed");
   stability.safe_exponent = find_safe_exponent(cell.request, make_trial(cell.request));
   if (!stability.safe_exponent)
     note_absent(cell.record, {"safe_exponent"},
                 "the map holds no exponentials, or none that a smaller exponent keeps finite");
-  if (!holds_moments) {
+  if (!cell.request.spec.holds_moments) {
     note_absent(cell.record, {"negative_variance_texels", "lowest_variance"},
                 "the filter does not say that its map holds moments");
     return;
@@ -328,7 +303,7 @@ images::Image StabilityMeter::draw_layers(render::FilterPasses& filter,
                                           std::vector<float> (*of_layer)(const metrics::StoredMap&)) const {
   images::Image image(filter.layers() * light_.map.size(), light_.map.size(), 1);
   for (int layer = 0; layer < filter.layers(); ++layer)
-    put_layer(image, layer, of_layer(ReadMap(filter, light_.map, layer).stored()));
+    put_layer(image, layer, of_layer(read_map(filter, light_.map, layer)));
   return image;
 }
 

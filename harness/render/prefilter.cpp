@@ -259,7 +259,7 @@ glm::vec4 Prefilter::encode_border() {
   encode_.use();
   triangle_.draw();
   encode_.set("encode_border", 0);
-  std::vector<float> value = texel.texture().read_floats(texel.texture().format().channels);
+  std::vector<float> value = read(texel);
   value.resize(4, 0.0f);
   return {value[0], value[1], value[2], value[3]};
 }
@@ -297,14 +297,7 @@ void Prefilter::bind() const {
   sampler_.bind(kStoredUnit);
 }
 
-EncodedTexels Prefilter::read(const ImageTarget& target) {
-  const int channels = target.texture().format().channels;
-  return {target.texture().width(), channels, target.texture().read_floats(channels)};
-}
-
-EncodedTexels Prefilter::read() const { return read(*stored_); }
-
-EncodedTexels Prefilter::read_before_blur(const ShadowMap& map, int layer) {
+std::vector<float> Prefilter::read_before_blur(const ShadowMap& map, int layer) {
   if (radius_ == 0) return read(*stored_);
   encode(map, layer, *scratch_);
   return read(*scratch_);

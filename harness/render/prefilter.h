@@ -39,13 +39,6 @@ struct DrawnPass {
   bool is_screen = false;   ///< writes every pixel of the picture, and `texels` says nothing
 };
 
-/// An encoded map as it was read back.
-struct EncodedTexels {
-  int side = 0;  ///< texels
-  int channels = 0;
-  std::vector<float> values;  ///< side x side x channels, row 0 is v = 0
-};
-
 /// The passes of a filter that stores something else than depth: `encode`, then `blur` twice where it asks for that.
 class Prefilter {
  public:
@@ -66,11 +59,11 @@ class Prefilter {
   /// Binds the result to the unit of lib/map_access.glsl that fetch_map reads.
   void bind() const;
 
-  /// Reads the result back.
-  EncodedTexels read() const;
+  /// Reads the result back: channels() for each texel, row 0 is v = 0.
+  std::vector<float> read() const { return read(*stored_); }
 
   /// Encodes a map again and reads it back before any blur; the result stays as it is.
-  EncodedTexels read_before_blur(const ShadowMap& map, int layer = 0);
+  std::vector<float> read_before_blur(const ShadowMap& map, int layer = 0);
 
   const gl::Program& encode_program() const { return encode_; }
 
@@ -84,6 +77,7 @@ class Prefilter {
   int passes() const { return (radius_ > 0 ? 3 : 1) + (samples_ ? 1 : 0); }
   std::int64_t bytes() const { return static_cast<std::int64_t>(stored_->texture().bytes()); }
   GLenum format() const { return stored_->texture().format().internal_format; }
+  int channels() const { return stored_->texture().format().channels; }
   std::int64_t texels_written() const;
 
   /// Encode, and blur where there is one; `depth_bytes` are those of a texel of the depth map.
@@ -111,7 +105,7 @@ class Prefilter {
   gl::Sampler sampler_{"encoded map"};
   gl::Sampler blur_sampler_{"encoded map, to blur"};
 
-  static EncodedTexels read(const ImageTarget& target);
+  std::vector<float> read(const ImageTarget& target) const { return target.texture().read_floats(channels()); }
   void encode(const ShadowMap& map, int layer, ImageTarget& to);
   glm::vec4 encode_border();
   void blur(const gl::Texture& from, ImageTarget& to, glm::vec2 direction);

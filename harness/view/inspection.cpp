@@ -161,10 +161,11 @@ images::Image MapPanel::read_content(int layer) const {
         *image.at(x, size - 1 - y) = depth.curve.linear(depth.stored[static_cast<std::size_t>(y * size + x)]);
     return image;
   }
-  const render::EncodedTexels stored = bench_.stage().passes(last_side_)->encoded_map(layer)->read();
+  const render::Prefilter& encoded = *bench_.stage().passes(last_side_)->encoded_map(layer);
+  const std::vector<float> stored = encoded.read();
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
-      const auto* texel = &stored.values[static_cast<std::size_t>((y * size + x) * stored.channels)];
+      const auto* texel = &stored[static_cast<std::size_t>((y * size + x) * encoded.channels())];
       *image.at(x, size - 1 - y) =
           content_ == "variance" ? texel[1] - texel[0] * texel[0] : texel[content_.back() - '1'];
     }

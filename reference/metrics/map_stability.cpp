@@ -12,10 +12,10 @@ constexpr double kWeightSlack = 1e-6;  // the kernel's weights are single precis
 
 std::size_t count_texels(const StoredMap& map) { return map.values.size() / static_cast<std::size_t>(map.channels); }
 
-std::span<const float> texel(const StoredMap& map, std::size_t i) {
-  const auto channels = static_cast<std::size_t>(map.channels);
-  return map.values.subspan(i * channels, channels);
+std::span<const float> texel(std::span<const float> values, std::size_t i, int channels) {
+  return values.subspan(i * static_cast<std::size_t>(channels), static_cast<std::size_t>(channels));
 }
+std::span<const float> texel(const StoredMap& map, std::size_t i) { return texel(map.values, i, map.channels); }
 
 /// The largest magnitude of a texel's channels; NaN where a channel is NaN, which std::max would pass over.
 float find_largest(std::span<const float> channels) {
@@ -56,15 +56,13 @@ void mark_rim(std::vector<std::uint8_t>& marked, std::size_t side, int radius) {
 
 /// Marks the texels that overflowed before the blur, and those that the blur mixed them into; empty where none did.
 std::vector<std::uint8_t> find_saturated(const StoredMap& map) {
-  StoredMap before = map;
-  before.values = map.before_blur;
-  std::vector<std::uint8_t> marked(count_texels(before));
+  std::vector<std::uint8_t> marked(map.before_blur.size() / static_cast<std::size_t>(map.channels));
   const auto is_saturated = [&](std::span<const float> channels) {
     return static_cast<double>(find_largest(channels)) >= map.largest_number;
   };
   bool any = false;
   for (std::size_t i = 0; i < marked.size(); ++i) {
-    marked[i] = is_saturated(texel(before, i)) ? 1 : 0;
+    marked[i] = is_saturated(texel(map.before_blur, i, map.channels)) ? 1 : 0;
     any = any || marked[i];
   }
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(marked.size()))));

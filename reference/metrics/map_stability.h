@@ -9,16 +9,15 @@ namespace shadowbench::metrics {
 
 /// An encoded map as the GL made it.
 struct StoredMap {
-  std::span<const float> values;  ///< texels x channels, interleaved
+  std::vector<float> values;  ///< texels x channels, interleaved
   int channels = 1;
   double largest_number = 0.0;  ///< the largest number that the map's format holds
   bool moments = false;         ///< channels in pairs, a mean and the mean of its square; requires an even number
   /// The same map before its blur, a square, for formats in which a GL may store the largest number instead of
   /// infinity: texels that hold that number have overflowed. Where this is empty, only infinity counts as overflow.
-  std::span<const float> before_blur = {};
+  std::vector<float> before_blur = {};
   int blur_radius_texels = 0;
-  std::span<const float> border =
-      {};  ///< what that blur reads outside the map, one value per channel; empty: no value of its own
+  std::vector<float> border = {};  ///< what that blur reads outside the map, by channel; empty: no value of its own
 };
 
 /// What is wrong with the numbers of an encoded map. min() and clamp() in a lookup hide it in the image.

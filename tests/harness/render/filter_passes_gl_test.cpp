@@ -220,8 +220,8 @@ TEST_P(Blur, IsTheSumOfItsTermsToTheBit) {
   const auto request = request_of("esm:radius=" + std::to_string(radius));
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
-  const std::vector<float> blurred = passes.encoded_map()->read().values;
-  const std::vector<float> encoded = passes.encoded_map()->read_before_blur(bench.map()).values;
+  const std::vector<float> blurred = passes.encoded_map()->read();
+  const std::vector<float> encoded = passes.encoded_map()->read_before_blur(bench.map());
   const std::vector<float> expected = blur(blur(encoded, radius, 1, 0), radius, 0, 1);
   for (int y = radius; y < kBlurredSide - radius; ++y)
     for (int x = radius; x < kBlurredSide - radius; ++x) {

@@ -317,7 +317,7 @@ filters::FilterRequest make_sampled(int samples, const std::string& encoded = "e
 std::vector<float> encode(Bench& bench, const filters::FilterRequest& request) {
   render::FilterPasses passes(bench.shaders(), request, bench.map(), bench.light(request));
   passes.prefilter(bench.map());
-  std::vector<float> values = passes.encoded_map()->read().values;
+  std::vector<float> values = passes.encoded_map()->read();
   shared_context().require_no_gl_errors();
   return values;
 }

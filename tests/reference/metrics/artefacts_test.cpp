@@ -323,10 +323,9 @@ TEST(TexelHealth, Saturation_IsOverflow_AndReachesAsFarAsTheBlur) {
   EXPECT_EQ(headroom[5 * 7 + 3], -kInfinity);
   EXPECT_NEAR(headroom[5 * 7 + 4], std::log(65504.0 / 900.0), 1e-4);
   EXPECT_GT(headroom[6 * 7], 0.0f);
-  before[3 * 7 + 1] = 65472.0f;
+  map.before_blur[3 * 7 + 1] = 65472.0f;
   EXPECT_EQ(check_texels(map).overflowed, 0);
-  const float outside[] = {65504.0f};
-  map.border = outside;
+  map.border = {65504.0f};
   EXPECT_EQ(check_texels(map).overflowed, 49 - 3 * 3) << "all whose blur reads what lies outside";
 }
 
