@@ -237,7 +237,7 @@ class SceneBench {
       farthest = depth < 1.0f ? std::max(farthest, depth) : farthest;
     const double step_m = render::find_coarsest_step(light_.map.settings(), static_cast<double>(farthest)) *
                           light_.frustum().depth_range_ws;
-    const double bias_m = rig_.options.bias.constant.in_world(light_.frustum());
+    const double bias_m = render::in_world(rig_.options.bias.constant, light_.frustum());
     if (bias_m == 0.0 || bias_m >= 0.5 * step_m) return;
     const std::string warning(fmt::format(
         "{}: a map stored as {} holds depth in steps of up to {} m, but the constant bias is {} m: expect "
@@ -440,18 +440,7 @@ records::CellRecord make_record(const options::RunOptions& options, const SceneT
   record.map_format = render::describe_map(options.map);
   record.fit = scene::describe_fit(options.fit) + (options.snap ? " snapped" : "");
   if (options.light) record.light = describe_light(*options.light);
-  const render::BiasRule& bias = options.bias;
-  const auto amount = [](const render::BiasAmount& a) { return records::BiasAmountRecord{a.depth, a.texels, a.world}; };
-  record.bias = {.constant = amount(bias.constant),
-                 .slope = amount(bias.slope),
-                 .plane_texels = bias.plane_texels,
-                 .plane_kernels = bias.plane_kernels,
-                 .normal_offset = amount(bias.normal_offset),
-                 .receiver_plane = bias.receiver_plane,
-                 .polygon_factor = bias.map.polygon_factor,
-                 .polygon_units = bias.map.polygon_units,
-                 .front_cull = bias.map.cull_front,
-                 .midpoint = bias.map.midpoint};
+  record.bias = options.bias;
   record.range = options.range;
   if (!options.stability)
     record.absent["stability"] = record.absent["images.stability"] = "the run was made without --stability";

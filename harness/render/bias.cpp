@@ -112,11 +112,11 @@ void add(BiasRule& rule, const std::string& text) {
 
 render::Bias resolve(const BiasRule& rule, const scene::LightFrustum& frustum, double reach_texels) {
   render::Bias bias;
-  bias.constant_depth = rule.constant.in_depth(frustum);
-  bias.slope_depth = rule.slope.in_depth(frustum);
+  bias.constant_depth = in_depth(rule.constant, frustum);
+  bias.slope_depth = in_depth(rule.slope, frustum);
   bias.plane_texels = rule.plane_texels + rule.plane_kernels * reach_texels;
   bias.plane_kernels = rule.plane_kernels;
-  bias.normal_offset_texels = rule.normal_offset.in_world(frustum) / frustum.texel_size_ws;
+  bias.normal_offset_texels = in_world(rule.normal_offset, frustum) / frustum.texel_size_ws;
   bias.receiver_plane = rule.receiver_plane;
   bias.max_tangent = rule.max_tangent;
   return bias;
@@ -124,12 +124,12 @@ render::Bias resolve(const BiasRule& rule, const scene::LightFrustum& frustum, d
 
 }  // namespace
 
-double BiasAmount::in_world(const scene::LightFrustum& frustum) const {
-  return depth * frustum.depth_range_ws + texels * frustum.texel_size_ws + world;
+double in_world(const BiasAmount& amount, const scene::LightFrustum& frustum) {
+  return amount.depth * frustum.depth_range_ws + amount.texels * frustum.texel_size_ws + amount.world;
 }
 
-double BiasAmount::in_depth(const scene::LightFrustum& frustum) const {
-  return depth + (texels * frustum.texel_size_ws + world) / frustum.depth_range_ws;
+double in_depth(const BiasAmount& amount, const scene::LightFrustum& frustum) {
+  return amount.depth + (amount.texels * frustum.texel_size_ws + amount.world) / frustum.depth_range_ws;
 }
 
 BiasRule BiasRule::none() {

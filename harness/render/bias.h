@@ -11,6 +11,7 @@
 #include "filters/receiver.h"
 #include "harness/gl/gl_api.h"
 #include "harness/scene/lights/light_fit.h"
+#include "report/records/records.h"
 
 namespace shadowbench::render {
 
@@ -44,37 +45,21 @@ struct Bias {
   bool operator==(const Bias&) const = default;
 };
 
-/// What is drawn into the depth map instead of the surfaces that light meets first.
-struct MapBias {
-  bool cull_front = false;      ///< leave out faces that face the light, of meshes that allow it
-  bool midpoint = false;        ///< half-way between the first and the second surface
-  double polygon_factor = 0.0;  ///< glPolygonOffset: times the larger depth slope
-  double polygon_units = 0.0;   ///< glPolygonOffset: times the format's smallest step
+using records::BiasAmount, records::MapBias;
 
-  bool operator==(const MapBias&) const = default;
-};
+/// An amount in metres, and in depth.
+double in_world(const BiasAmount& amount, const scene::LightFrustum& frustum);
+double in_depth(const BiasAmount& amount, const scene::LightFrustum& frustum);
 
-/// A length along the light in three units, whose parts add up.
-struct BiasAmount {
-  double depth = 0.0;   ///< [0,1] over the light's range
-  double texels = 0.0;  ///< as long as so many shadow-map texels are wide
-  double world = 0.0;   ///< metres
+/// The bias of a whole run. Each filter gets its own share of `plane_kernels`, because the depth that a plane gains
+/// under a kernel grows with the kernel.
+struct BiasRule : records::BiasRecord {
+  BiasRule() {
+    constant.depth = 2e-5;
+    plane_kernels = 1.0;
+  }
 
-  double in_world(const scene::LightFrustum& frustum) const;  ///< metres
-  double in_depth(const scene::LightFrustum& frustum) const;
-};
-
-/// The bias of a whole run. The parts add up; each filter gets its own share of `plane_kernels`, because the depth that
-/// a plane gains under a kernel grows with the kernel.
-struct BiasRule {
-  BiasAmount constant{2e-5, 0.0, 0.0};
-  BiasAmount slope;             ///< times 1 - n.l; the larger of this and `constant` holds
-  double plane_texels = 0.0;    ///< depth change of the receiver's plane over this many texels
-  double plane_kernels = 1.0;   ///< the same, in units of filters::bias_reach_texels()
-  BiasAmount normal_offset;     ///< moves the receiver along its normal; `depth` is not used
-  bool receiver_plane = false;  ///< the plane's gradient is added for every tap
-  double max_tangent = 10.0;    ///< steeper planes are biased as this one
-  render::MapBias map;
+  double max_tangent = 10.0;  ///< steeper planes are biased as this one
 
   /// The rule that does nothing.
   static BiasRule none();

@@ -21,7 +21,7 @@ std::string format_param(const records::ParamValue& value) {
 }
 
 /// Writes a length in the units it was given in, then in all three where the map's scale is known.
-std::string describe_amount(const records::BiasAmountRecord& amount, const records::MapScaleRecord& scale) {
+std::string describe_amount(const records::BiasAmount& amount, const records::MapScaleRecord& scale) {
   std::vector<std::string> given;
   if (amount.depth > 0.0) given.push_back(format_number(amount.depth) + " depth");
   if (amount.texels > 0.0) given.push_back(format_number(amount.texels) + " texels");
@@ -33,9 +33,7 @@ std::string describe_amount(const records::BiasAmountRecord& amount, const recor
                             format_number(metres / *scale.texel_m), format_number(metres));
 }
 
-bool any(const records::BiasAmountRecord& amount) {
-  return amount.depth > 0.0 || amount.texels > 0.0 || amount.world > 0.0;
-}
+bool any(const records::BiasAmount& amount) { return amount.depth > 0.0 || amount.texels > 0.0 || amount.world > 0.0; }
 
 /// Names the fit and the light where they are not the default.
 std::string describe_fit_and_light(const records::CellRecord& cell) {
@@ -134,12 +132,12 @@ std::string describe_bias(const records::BiasRecord& bias, const records::MapSca
     parts.push_back(fmt::format("plane over {} × the filter's reach", format_number(bias.plane_kernels)));
   if (any(bias.normal_offset)) parts.push_back("normal offset of " + describe_amount(bias.normal_offset, scale));
   if (bias.receiver_plane) parts.push_back("receiver plane, per tap");
-  if (bias.polygon_factor > 0.0 || bias.polygon_units > 0.0) {
-    parts.push_back(
-        fmt::format("polygon offset {}, {}", format_number(bias.polygon_factor), format_number(bias.polygon_units)));
+  if (bias.map.polygon_factor > 0.0 || bias.map.polygon_units > 0.0) {
+    parts.push_back(fmt::format("polygon offset {}, {}", format_number(bias.map.polygon_factor),
+                                format_number(bias.map.polygon_units)));
   }
-  if (bias.front_cull) parts.push_back("front faces culled");
-  if (bias.midpoint) parts.push_back("midpoint map");
+  if (bias.map.cull_front) parts.push_back("front faces culled");
+  if (bias.map.midpoint) parts.push_back("midpoint map");
   return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, " + "));
 }
 

@@ -170,10 +170,11 @@ void visit_fields(Is<BiasRecord> auto& bias, auto&& visit) {
   visit("normal_offset_world", bias.normal_offset.world, {.column = "normal offset, metres"});
   visit("receiver_plane", bias.receiver_plane,
         {.column = "1: the receiver plane's gradient is added for every tap", .as_number = true});
-  visit("polygon_factor", bias.polygon_factor, {.column = "glPolygonOffset in the depth pass, factor"});
-  visit("polygon_units", bias.polygon_units, {.column = "glPolygonOffset in the depth pass, units"});
-  visit("front_cull", bias.front_cull, {.column = "1: front faces are left out of the depth map", .as_number = true});
-  visit("midpoint", bias.midpoint,
+  visit("polygon_factor", bias.map.polygon_factor, {.column = "glPolygonOffset in the depth pass, factor"});
+  visit("polygon_units", bias.map.polygon_units, {.column = "glPolygonOffset in the depth pass, units"});
+  visit("front_cull", bias.map.cull_front,
+        {.column = "1: front faces are left out of the depth map", .as_number = true});
+  visit("midpoint", bias.map.midpoint,
         {.column = "1: the depth map lies half-way between first and second surface", .as_number = true});
 }
 

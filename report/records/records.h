@@ -54,24 +54,31 @@ enum class CellStatus { kOk, kSuspect, kTimeout, kCrashed, kError };
 constexpr auto names_of(CellStatus) { return std::array{"ok", "suspect", "timeout", "crashed", "error"}; }
 
 /// A length along the light in three units, whose parts add up.
-struct BiasAmountRecord {
+struct BiasAmount {
   double depth = 0.0;   ///< [0,1] over the light's range
   double texels = 0.0;  ///< in widths of a shadow-map texel
   double world = 0.0;   ///< metres
 };
 
-/// The depth bias that every filter of the run was given, as it was asked for.
+/// What is drawn into the depth map instead of the surfaces that light meets first.
+struct MapBias {
+  double polygon_factor = 0.0;  ///< glPolygonOffset: times the larger depth slope
+  double polygon_units = 0.0;   ///< glPolygonOffset: times the format's smallest step
+  bool cull_front = false;      ///< leave out faces that face the light, of meshes that allow it
+  bool midpoint = false;        ///< half-way between the first and the second surface
+
+  bool operator==(const MapBias&) const = default;
+};
+
+/// The depth bias that every filter of the run was given, as it was asked for. The parts add up.
 struct BiasRecord {
-  BiasAmountRecord constant;
-  BiasAmountRecord slope;          ///< times 1 - n.l; the larger of this and `constant` holds
-  double plane_texels = 0.0;       ///< depth change of the receiver's plane over this many shadow-map texels
-  double plane_kernels = 0.0;      ///< the same change, in units of the filter's reach
-  BiasAmountRecord normal_offset;  ///< receiver moved along its normal; `depth` is 0
-  bool receiver_plane = false;     ///< the plane's gradient is added for every tap
-  double polygon_factor = 0.0;     ///< glPolygonOffset in the depth pass
-  double polygon_units = 0.0;
-  bool front_cull = false;  ///< faces towards the light are not drawn into the map
-  bool midpoint = false;    ///< the map lies half-way between the first and the second surface
+  BiasAmount constant;
+  BiasAmount slope;             ///< times 1 - n.l; the larger of this and `constant` holds
+  double plane_texels = 0.0;    ///< depth change of the receiver's plane over this many shadow-map texels
+  double plane_kernels = 0.0;   ///< the same change, in units of filters::bias_reach_texels()
+  BiasAmount normal_offset;     ///< receiver moved along its normal; `depth` is not used
+  bool receiver_plane = false;  ///< the plane's gradient is added for every tap
+  MapBias map;
 };
 
 /// What a cell's passes cost in time, in milliseconds of the clock that the run names.

@@ -41,7 +41,7 @@ TEST(Bias, Units_AddUpAlongTheLight) {
   EXPECT_NEAR(resolve({"slope:world=0.1"}).slope_depth, 0.01, 1e-15);
   EXPECT_NEAR(resolve({"normal-offset:texels=1,world=0.01"}).normal_offset_texels, 1.5, 1e-12);
   const BiasAmount amount{0.001, 2.0, 0.01};
-  EXPECT_NEAR(amount.in_world(make_frustum()), 0.06, 1e-15);
+  EXPECT_NEAR(in_world(amount, make_frustum()), 0.06, 1e-15);
 }
 
 TEST(Bias, SeveralModes_AddUp) {

@@ -354,7 +354,7 @@ TEST(Advice, OfABiasInMetres_SaysThatItHoldsForOneTexelSize) {
   const auto list_notes = [&] { return list_advice_notes(advise(cells, {}), make_run().gl); };
   cells[0].bias.constant.texels = 1.0;
   EXPECT_THAT(list_notes(), Not(says_so));
-  for (BiasAmountRecord BiasRecord::*mode : {&BiasRecord::constant, &BiasRecord::slope, &BiasRecord::normal_offset}) {
+  for (BiasAmount BiasRecord::*mode : {&BiasRecord::constant, &BiasRecord::slope, &BiasRecord::normal_offset}) {
     cells[0].bias = {};
     (cells[0].bias.*mode).world = 0.01;
     EXPECT_THAT(list_notes(), says_so);

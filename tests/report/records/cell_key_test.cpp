@@ -117,7 +117,7 @@ TEST(CellNames, OfCascades_NameTheValuesInWhichTheyDiffer) {
 
 TEST(CellNames, NameTheBiasTheLightTheBorderAndThePicture) {
   CellRecord biased = make_named("none"), lit = biased, edged = biased, small = biased;
-  biased.bias.midpoint = true;
+  biased.bias.map.midpoint = true;
   EXPECT_THAT(list_names({biased, make_named("none")}), ElementsAre("none, bias: midpoint map", "none, bias: none"));
   lit.light = "96,30";
   EXPECT_THAT(list_names({lit, make_named("none")}), ElementsAre("none, light at 96,30", "none, light of the scene"));
