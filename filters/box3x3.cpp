@@ -24,6 +24,6 @@ class Box3x3 {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_box3x3_model() { return make_templated_model<Box3x3>(); }
+ScalarModel make_box3x3_model() { return make_templated_model<Box3x3>(); }
 
 }  // namespace shadowbench::filters

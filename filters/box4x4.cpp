@@ -43,6 +43,6 @@ class Box4x4 {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_box4x4_model() { return make_templated_model<Box4x4>(); }
+ScalarModel make_box4x4_model() { return make_templated_model<Box4x4>(); }
 
 }  // namespace shadowbench::filters

@@ -2,6 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_castano3_model() { return make_templated_model<SlidingPairs<1, 2, 1>::Filter>(); }
+ScalarModel make_castano3_model() { return make_templated_model<SlidingPairs<1, 2, 1>::Filter>(); }
 
 }  // namespace shadowbench::filters

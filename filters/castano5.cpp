@@ -2,8 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_castano5_model() {
-  return make_templated_model<SlidingPairs<1, 3, 4, 3, 1>::Filter>();
-}
+ScalarModel make_castano5_model() { return make_templated_model<SlidingPairs<1, 3, 4, 3, 1>::Filter>(); }
 
 }  // namespace shadowbench::filters

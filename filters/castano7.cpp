@@ -2,8 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_castano7_model() {
-  return make_templated_model<SlidingPairs<1, 5, 12, 16, 12, 5, 1>::Filter>();
-}
+ScalarModel make_castano7_model() { return make_templated_model<SlidingPairs<1, 5, 12, 16, 12, 5, 1>::Filter>(); }
 
 }  // namespace shadowbench::filters

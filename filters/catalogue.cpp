@@ -241,7 +241,7 @@ void Catalogue::add_user_file(const std::filesystem::path& path) {
     if (known.id == spec.id)
       fail(fmt::format("filter id '{}' of {} is taken by {}: rename the file", spec.id, spec.path, known.path));
   for (const FilterSpec& known : filters_)
-    if (make_model(known.id) && strip(known) == strip(spec)) spec.copy_of = known.id;
+    if (find_model(known.id) && strip(known) == strip(spec)) spec.copy_of = known.id;
   user_ids_.push_back(spec.id);
   filters_.push_back(std::move(spec));
 }

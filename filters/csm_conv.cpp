@@ -68,6 +68,6 @@ class CsmConv {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_csm_conv_model() { return make_templated_model<CsmConv>(); }
+ScalarModel make_csm_conv_model() { return make_templated_model<CsmConv>(); }
 
 }  // namespace shadowbench::filters

@@ -19,9 +19,6 @@ class Dpcf {
         rotation_(text_or(input.values, "rotation", "none")),
         seed_(input.seed) {}
 
-  /// Every receiver sharpens by its own penumbra.
-  static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }
-
   T visibility(const Receiver& r, Tally& tally) const {
     const P search = disk_.radius(r, static_cast<P>(r.depth_unbiased), tally);
     if (search < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
@@ -71,6 +68,6 @@ class Dpcf {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_dpcf_model() { return make_templated_model<Dpcf>(); }
+ScalarModel make_dpcf_model() { return make_templated_model<Dpcf>(); }
 
 }  // namespace shadowbench::filters

@@ -66,6 +66,6 @@ class Esm {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_esm_model() { return make_templated_model<Esm>(); }
+ScalarModel make_esm_model() { return make_templated_model<Esm>(); }
 
 }  // namespace shadowbench::filters

@@ -2,6 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_evsm4_model() { return make_templated_model<WarpedVariance<2>::Filter>(); }
+ScalarModel make_evsm4_model() { return make_templated_model<WarpedVariance<2>::Filter>(); }
 
 }  // namespace shadowbench::filters

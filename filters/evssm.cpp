@@ -21,9 +21,6 @@ class Evssm {
         rotation_(text_or(input.values, "rotation", "none")),
         seed_(input.seed) {}
 
-  /// Every receiver has a disk of its own.
-  static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }
-
   T visibility(const Receiver& r, Tally& tally) const {
     const T zero(P(0)), one(P(1)), depth(static_cast<P>(r.depth));
     if (r.depth > 1.0f) return zero;
@@ -118,6 +115,6 @@ class Evssm {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_evssm_model() { return make_templated_model<Evssm>(); }
+ScalarModel make_evssm_model() { return make_templated_model<Evssm>(); }
 
 }  // namespace shadowbench::filters

@@ -69,6 +69,6 @@ class GatherPcf {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_gather_pcf_model() { return make_templated_model<GatherPcf>(); }
+ScalarModel make_gather_pcf_model() { return make_templated_model<GatherPcf>(); }
 
 }  // namespace shadowbench::filters

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "filters/kernel.h"
 #include "filters/map_reader.h"
@@ -54,18 +54,14 @@ struct ScalarModel {
   ModelResult (*screen)(const ScreenPicture& picture, glm::ivec2 pixel, int step, Precision precision) = nullptr;
 };
 
-/// Makes the model of a filter; CMake lists one for each `<id>.cpp` that stands beside its `<id>.glsl`.
-struct ModelEntry {
-  std::string id;
-  std::unique_ptr<ScalarModel> (*make)();
-};
-const std::vector<ModelEntry>& model_table();
+/// The models of filters by their ids; CMake lists one for each `<id>.cpp` that stands beside its `<id>.glsl`.
+const std::map<std::string, ScalarModel>& model_table();
 
 /// The model of a built-in filter; null where there is none.
-std::unique_ptr<ScalarModel> make_model(const std::string& id);
+const ScalarModel* find_model(const std::string& id);
 
 /// A filter's model, that of the filter it copies included; null where it has none (a user's file).
-std::unique_ptr<ScalarModel> make_model(const FilterSpec& spec);
+const ScalarModel* find_model(const FilterSpec& spec);
 
 /// Why a filter without a model has none.
 inline constexpr const char* kNoModel = "the filter has no scalar model";
@@ -128,15 +124,16 @@ ModelResult screen_templated(const ScreenPicture& picture, glm::ivec2 pixel, int
       precision, [&]<class T>() { return Filter<T>::screen(picture, pixel, step); });
 }
 
-/// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const` and
-/// `static Kernel kernel(const ParamValues&)`, or an optional one, as a ScalarModel; with
+/// Wraps `Filter<T>`, a class made from a ModelInput with `T visibility(const Receiver&, Tally&) const`, as a
+/// ScalarModel; with `static Kernel kernel(const ParamValues&)` where all receivers share one, and
 /// `static ModelResult screen(const ScreenPicture&, glm::ivec2 pixel, int step)` where it has a screen pass.
 template <template <class> class Filter>
-std::unique_ptr<ScalarModel> make_templated_model() {
-  const auto kernel = [](const ParamValues& values) -> std::optional<Kernel> { return Filter<double>::kernel(values); };
-  ScalarModel model{&prepare_templated<Filter>, kernel};
+ScalarModel make_templated_model() {
+  ScalarModel model{&prepare_templated<Filter>, [](const ParamValues&) { return std::optional<Kernel>(); }};
+  if constexpr (requires { &Filter<double>::kernel; })
+    model.kernel = [](const ParamValues& values) { return std::optional<Kernel>(Filter<double>::kernel(values)); };
   if constexpr (requires { &Filter<double>::screen; }) model.screen = &screen_templated<Filter>;
-  return std::make_unique<ScalarModel>(model);
+  return model;
 }
 
 }  // namespace shadowbench::filters

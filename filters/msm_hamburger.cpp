@@ -2,8 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_msm_hamburger_model() {
-  return make_templated_model<FourMoments<Depths::kAny>::Filter>();
-}
+ScalarModel make_msm_hamburger_model() { return make_templated_model<FourMoments<Depths::kAny>::Filter>(); }
 
 }  // namespace shadowbench::filters

@@ -2,8 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_msm_hausdorff_model() {
-  return make_templated_model<FourMoments<Depths::kInRange>::Filter>();
-}
+ScalarModel make_msm_hausdorff_model() { return make_templated_model<FourMoments<Depths::kInRange>::Filter>(); }
 
 }  // namespace shadowbench::filters

@@ -2,7 +2,7 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_msm_packed32_model() {
+ScalarModel make_msm_packed32_model() {
   return make_templated_model<PackedMoments<packed_moments::Levels{2048, 2048, 64, 16}>::Filter>();
 }
 

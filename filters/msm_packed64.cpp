@@ -2,7 +2,7 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_msm_packed64_model() {
+ScalarModel make_msm_packed64_model() {
   return make_templated_model<PackedMoments<packed_moments::Levels{65536, 65536, 65536, 65536}>::Filter>();
 }
 

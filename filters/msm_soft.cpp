@@ -14,9 +14,6 @@ class MsmSoft {
       : box_(input, [](const EncodeInput<T>& e) { return four_moments::encode(e.depth); }),
         bias_(static_cast<float>(number(input.values, "moment_bias"))) {}
 
-  /// Every receiver has a box of its own.
-  static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }
-
   T visibility(const Receiver& r, Tally& tally) const {
     const S depth(static_cast<P>(r.depth));
     const auto around = box_.moments(r, box_.search(r), tally);
@@ -93,6 +90,6 @@ class MsmSoft {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_msm_soft_model() { return make_templated_model<MsmSoft>(); }
+ScalarModel make_msm_soft_model() { return make_templated_model<MsmSoft>(); }
 
 }  // namespace shadowbench::filters

@@ -18,6 +18,6 @@ class NoFilter {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_none_model() { return make_templated_model<NoFilter>(); }
+ScalarModel make_none_model() { return make_templated_model<NoFilter>(); }
 
 }  // namespace shadowbench::filters

@@ -18,6 +18,6 @@ class Pcf2x2 {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_pcf2x2_model() { return make_templated_model<Pcf2x2>(); }
+ScalarModel make_pcf2x2_model() { return make_templated_model<Pcf2x2>(); }
 
 }  // namespace shadowbench::filters

@@ -23,9 +23,6 @@ class Pcss {
         interpolates_(text_or(input.values, "read", "bilinear") == "interpolated"),
         seed_(input.seed) {}
 
-  /// Every receiver has a disk of its own.
-  static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }
-
   T visibility(const Receiver& r, Tally& tally) const {
     const P search = disk_.radius(r, static_cast<P>(r.depth_unbiased), tally);
     if (search < Disk::kOneFetch) return compare_tap(r, {}, tally);
@@ -142,6 +139,6 @@ class Pcss {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_pcss_model() { return make_templated_model<Pcss>(); }
+ScalarModel make_pcss_model() { return make_templated_model<Pcss>(); }
 
 }  // namespace shadowbench::filters

@@ -38,6 +38,6 @@ class Poisson {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_poisson_model() { return make_templated_model<Poisson>(); }
+ScalarModel make_poisson_model() { return make_templated_model<Poisson>(); }
 
 }  // namespace shadowbench::filters

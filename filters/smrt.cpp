@@ -20,9 +20,6 @@ class Smrt {
         rotation_(text_or(input.values, "rotation", "none")),
         seed_(input.seed) {}
 
-  /// Every receiver has its own rays.
-  static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }
-
   T visibility(const Receiver& r, Tally& tally) const {
     const DiskTurn<T> turn(rotation_, r, seed_);
     P blocked{}, depths{};
@@ -78,6 +75,6 @@ class Smrt {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_smrt_model() { return make_templated_model<Smrt>(); }
+ScalarModel make_smrt_model() { return make_templated_model<Smrt>(); }
 
 }  // namespace shadowbench::filters

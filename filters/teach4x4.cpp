@@ -2,6 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_teach4x4_model() { return make_templated_model<FourTaps<2>::Filter>(); }
+ScalarModel make_teach4x4_model() { return make_templated_model<FourTaps<2>::Filter>(); }
 
 }  // namespace shadowbench::filters

@@ -2,6 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_tent3x3_model() { return make_templated_model<FourTaps<1>::Filter>(); }
+ScalarModel make_tent3x3_model() { return make_templated_model<FourTaps<1>::Filter>(); }
 
 }  // namespace shadowbench::filters

@@ -2,6 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_tent4x4_model() { return make_templated_model<TrianglePairs<2>::Filter>(); }
+ScalarModel make_tent4x4_model() { return make_templated_model<TrianglePairs<2>::Filter>(); }
 
 }  // namespace shadowbench::filters

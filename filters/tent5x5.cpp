@@ -2,6 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_tent5x5_model() { return make_templated_model<TrianglePairs<3>::Filter>(); }
+ScalarModel make_tent5x5_model() { return make_templated_model<TrianglePairs<3>::Filter>(); }
 
 }  // namespace shadowbench::filters

@@ -2,6 +2,6 @@
 
 namespace shadowbench::filters {
 
-std::unique_ptr<ScalarModel> make_tent7x7_model() { return make_templated_model<TrianglePairs<4>::Filter>(); }
+ScalarModel make_tent7x7_model() { return make_templated_model<TrianglePairs<4>::Filter>(); }
 
 }  // namespace shadowbench::filters

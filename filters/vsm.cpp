@@ -23,6 +23,6 @@ class Vsm {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_vsm_model() { return make_templated_model<Vsm>(); }
+ScalarModel make_vsm_model() { return make_templated_model<Vsm>(); }
 
 }  // namespace shadowbench::filters

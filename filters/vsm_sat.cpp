@@ -30,6 +30,6 @@ class VsmSat {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_vsm_sat_model() { return make_templated_model<VsmSat>(); }
+ScalarModel make_vsm_sat_model() { return make_templated_model<VsmSat>(); }
 
 }  // namespace shadowbench::filters

@@ -13,9 +13,6 @@ class Vssm {
   explicit Vssm(const ModelInput& input)
       : variance_(input), box_(input, [this](const EncodeInput<T>& e) { return variance_.encode(e); }) {}
 
-  /// Every receiver has a box of its own.
-  static std::optional<Kernel> kernel(const ParamValues&) { return std::nullopt; }
-
   T visibility(const Receiver& r, Tally& tally) const {
     const T search = box_.search(r);
     const auto around = box_.moments(r, search, tally);
@@ -40,6 +37,6 @@ class Vssm {
 
 }  // namespace
 
-std::unique_ptr<ScalarModel> make_vssm_model() { return make_templated_model<Vssm>(); }
+ScalarModel make_vssm_model() { return make_templated_model<Vssm>(); }
 
 }  // namespace shadowbench::filters

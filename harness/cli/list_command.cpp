@@ -57,7 +57,7 @@ records::KernelRecord find_kernel(const FilterSpec& spec) {
 void print_filter(const FilterSpec& spec) {
   print("{}  {}\n  kind {}{}{}{}\n  kernel: {}\n  source: {}\n", spec.id, spec.title, name_of(spec.kind),
         spec.bound_at_zero.empty() ? "" : ", with " + spec.bound_at_zero + "=0", spec.teaching ? ", for teaching" : "",
-        filters::make_model(spec) ? "" : ", without a model", records::describe_kernel(find_kernel(spec)), spec.source);
+        filters::find_model(spec) ? "" : ", without a model", records::describe_kernel(find_kernel(spec)), spec.source);
   if (const std::string stored = describe_stored(spec); !stored.empty()) print("  its map holds: {}\n", stored);
   for (const ParamSpec& param : spec.params) {
     print("  {:<16} {} [{}]{}\n  {:<16} {}\n", param.name, describe_range(param),
@@ -103,7 +103,7 @@ nlohmann::json to_json(const FilterSpec& spec) {
           {"claims", spec.claims},
           {"teaching", spec.teaching},
           {"kernel", to_json(find_kernel(spec))},
-          {"model", filters::make_model(spec) != nullptr},
+          {"model", filters::find_model(spec) != nullptr},
           {"params", params},
           {"moments", spec.holds_moments},
           {"exponent", spec.exponent},

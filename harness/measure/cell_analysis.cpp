@@ -280,7 +280,7 @@ void CellAnalyser::attribute(MeasuredCell& cell) {
   records::CellRecord& record = cell.record;
   const filters::FilterRequest& request = cell.request;
   const auto shape = filters::find_kernel(request.spec, request.values);
-  if (!rig_.options.attribution || (!shape && !filters::make_model(request.spec))) {
+  if (!rig_.options.attribution || (!shape && !filters::find_model(request.spec))) {
     const char* reason = rig_.options.attribution ? filters::explain_no_kernel(request.spec, request.values)
                                                   : "the run was made with --no-attribution";
     for (const char* field : {"attribution", "artefact.noise", "error.kernel_rmse", "excused"})

@@ -172,7 +172,8 @@ class SceneBench {
     images::UncertaintyImages uncertainty;
     const filters::FilterSpec& spec = filter.request().spec;
     if (spec.kind == filters::FilterKind::kStochastic) uncertainty = spread_seeds(filter);
-    if (const auto model = filters::make_model(spec)) uncertainty.rounding = bound_rounding(*model, filter);
+    if (const filters::ScalarModel* model = filters::find_model(spec))
+      uncertainty.rounding = bound_rounding(*model, filter);
     return uncertainty;
   }
 

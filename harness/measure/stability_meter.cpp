@@ -338,8 +338,8 @@ void StabilityMeter::compare_stores(MeasuredCell& cell) {
 void StabilityMeter::check_bound(MeasuredCell& cell, render::FilterPasses& filter) {
   const std::initializer_list<const char*> fields = {"bound_shortfall_max", "bound_violations",
                                                      "bound_exact_violations"};
-  const auto model = filters::make_model(cell.request.spec);
-  if (const std::string reason = explain_no_bound(cell.request, model.get()); !reason.empty())
+  const filters::ScalarModel* model = filters::find_model(cell.request.spec);
+  if (const std::string reason = explain_no_bound(cell.request, model); !reason.empty())
     return note_absent(cell.record, fields, reason);
   metrics::BoundCheck check = compare_with_closer(cell, *model, filter.light());
   if (check.receivers == 0) return note_absent(cell.record, fields, "no receiver can be compared");

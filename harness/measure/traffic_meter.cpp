@@ -264,7 +264,7 @@ int count_columns(const options::RunOptions& options, int rows) {
 std::optional<std::vector<double>> count_map_traffic(const filters::FilterRequest& request,
                                                      const std::vector<ModelLayer>& layers, const ModelView& view,
                                                      std::span<const CacheShape> caches) {
-  const std::unique_ptr<filters::ScalarModel> model = filters::make_model(request.spec);
+  const filters::ScalarModel* model = filters::find_model(request.spec);
   if (!model) return std::nullopt;
   std::vector<TiledLayer> tiled;
   std::size_t receivers = 0;
@@ -311,7 +311,7 @@ void TrafficMeter::measure(MeasuredCell& cell) {
         render::make_light_setup(layer, rig_.task.scene->light, bias, rig_.options.seed, rig_.options.range));
   }
   const ModelView view{gbuffer_.width(), gbuffer_.height(), rig_.options.seed, rig_.options.bias.plane_max_tangent()};
-  auto bytes = filters::make_model(cell.request.spec) ? count_map_traffic(cell.request, layers_, view, caches_)
+  auto bytes = filters::find_model(cell.request.spec) ? count_map_traffic(cell.request, layers_, view, caches_)
                : cell.cost.fetches                    ? count_map_traffic(count_reads(cell), view, caches_)
                                                       : std::nullopt;
   if (!bytes) return;

@@ -303,7 +303,7 @@ truth::TracedVisibility trace_layers(const std::vector<TracedLayer>& layers, con
 
 ModelImages evaluate_model(const filters::FilterRequest& request, const std::vector<ModelLayer>& layers,
                            const ModelView& view) {
-  const std::unique_ptr<filters::ScalarModel> model = filters::make_model(request.spec);
+  const filters::ScalarModel* model = filters::find_model(request.spec);
   ModelImages images;
   if (!model) return images;
   const bool has_disks = !filters::find_kernel(request.spec, request.values);

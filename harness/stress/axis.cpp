@@ -108,7 +108,7 @@ Case start_case(const AxisInputs& inputs, const filters::FilterRequest& request,
   Case item{.filter = request.spec.id, .variant = std::move(variant), .level = level};
   if (level == Level::kGl && !inputs.renderer)
     item.not_available = "there is no GL";
-  else if (!filters::make_model(request.spec))
+  else if (!filters::find_model(request.spec))
     item.not_available = filters::kNoModel;
   else
     item.params = request.values;

@@ -112,7 +112,7 @@ SyntheticLookup make_gl_lookup(const AxisInputs& inputs, const filters::FilterRe
 
 SyntheticLookup make_model_lookup(const AxisInputs& inputs, const filters::FilterRequest& request,
                                   filters::Precision precision) {
-  const std::shared_ptr<filters::ScalarModel> model = filters::make_model(request.spec);
+  const filters::ScalarModel* model = filters::find_model(request.spec);
   return [=, spec = request.spec, seed = inputs.seed](const SyntheticScene& scene, const filters::ParamValues& values) {
     const filters::DepthMap map{scene.size, scene.depths};
     const auto lookup = model->prepare({spec, values, map, {}, seed}, precision);

@@ -275,16 +275,16 @@ MapPanel::Prepared* MapPanel::prepare(int layer) {
   if (prepared) return prepared.get();
   const filters::FilterRequest& request = bench_.stage().passes(last_side_)->request();
   const bool reads_depth = !request.spec.has_encode && request.spec.passes.empty();
-  std::unique_ptr<filters::ScalarModel> model = reads_depth ? filters::make_model(request.spec) : nullptr;
+  const filters::ScalarModel* model = reads_depth ? filters::find_model(request.spec) : nullptr;
   if (!model) return nullptr;
-  prepared = std::make_unique<Prepared>(Prepared{request, map.read(layer), std::move(model), nullptr});
+  prepared = std::make_unique<Prepared>(Prepared{request, map.read(layer), nullptr});
   const ViewState& state = bench_.state();
-  prepared->lookup = prepared->model->prepare({.spec = prepared->request.spec,
-                                               .values = prepared->request.values,
-                                               .map = prepared->map,
-                                               .seed = state.options.seed,
-                                               .plane_max_tangent = state.options.bias.plane_max_tangent()},
-                                              filters::Precision::kFloat);
+  prepared->lookup = model->prepare({.spec = prepared->request.spec,
+                                     .values = prepared->request.values,
+                                     .map = prepared->map,
+                                     .seed = state.options.seed,
+                                     .plane_max_tangent = state.options.bias.plane_max_tangent()},
+                                    filters::Precision::kFloat);
   return prepared.get();
 }
 

@@ -74,7 +74,6 @@ class MapPanel {
   struct Prepared {
     filters::FilterRequest request;
     filters::DepthMap map;
-    std::unique_ptr<filters::ScalarModel> model;
     std::unique_ptr<filters::Lookup> lookup;
   };
 

@@ -18,14 +18,14 @@ void expect_usage_error(const std::string& text, const std::string& words) {
 
 TEST(Catalogue, EveryBuiltInFilter_HasAModelAndASource) {
   for (const FilterSpec& spec : built_in().filters()) {
-    EXPECT_NE(make_model(spec), nullptr) << spec.id;
+    EXPECT_NE(find_model(spec), nullptr) << spec.id;
     EXPECT_FALSE(spec.source.empty()) << spec.id;
   }
   EXPECT_EQ(built_in().filters().front().id, "none");
 }
 
 TEST(Catalogue, EveryModel_HasItsFilter) {
-  for (const ModelEntry& entry : model_table()) EXPECT_NO_THROW(built_in().find(entry.id)) << entry.id;
+  for (const auto& [id, model] : model_table()) EXPECT_NO_THROW(built_in().find(id)) << id;
 }
 
 std::vector<std::string> ids_of(const std::string& text) {

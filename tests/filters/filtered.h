@@ -28,7 +28,7 @@ class Filtered {
  public:
   Filtered(FilterRequest request, const DepthMap& map, Precision precision = Precision::kDouble)
       : request_(std::move(request)),
-        lookup_(make_model(request_.spec)->prepare({request_.spec, request_.values, map, {}, 0}, precision)) {}
+        lookup_(find_model(request_.spec)->prepare({request_.spec, request_.values, map, {}, 0}, precision)) {}
   Filtered(const std::string& text, const DepthMap& map, Precision precision = Precision::kDouble)
       : Filtered(request_of(text), map, precision) {}
 

@@ -58,7 +58,7 @@ std::optional<double> find_model_error_left(const AxisInputs& inputs, const filt
                                             int width) {
   const SyntheticScene scene = make_scene(width);
   const auto light_size = static_cast<float>(make_light(inputs.seed).light_size);
-  const auto model = filters::make_model(request.spec);
+  const filters::ScalarModel* model = filters::find_model(request.spec);
   const filters::DepthMap map{scene.size, scene.depths};
   const auto lookup = model->prepare({request.spec, request.values, map, {}, inputs.seed}, filters::Precision::kDouble);
   filters::ScreenPicture picture(width, kRows);

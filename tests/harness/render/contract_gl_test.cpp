@@ -85,7 +85,7 @@ TEST_P(Contract, PoisonedTexels_HarmNothingBeyondTheKernel) {
   constexpr int kMap = 256;
   Bench bench(load_builtin("cubes"), kMap, 160, 90);
   const FilterRequest request = find_filter(GetParam());
-  const auto model = filters::make_model(request.spec);
+  const filters::ScalarModel* model = filters::find_model(request.spec);
   const auto receivers = bench.receivers(request);
   const auto look = [&](filters::DepthMap map) {
     bench.map().upload(map.stored);

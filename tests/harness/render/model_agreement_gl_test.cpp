@@ -38,7 +38,7 @@ constexpr double kShareRounding = 0x1p-23;  // of a share, and of the sum
 
 std::map<std::size_t, ModelPixel> model_pixels(Bench& bench, const filters::FilterRequest& request,
                                                const render::BiasRule& rule) {
-  const auto model = filters::make_model(request.spec);
+  const filters::ScalarModel* model = filters::find_model(request.spec);
   const std::vector<filters::Receiver> receivers = bench.receivers(request, rule);
   std::map<std::size_t, ModelPixel> pixels;
   filters::ScreenPicture single_picture(bench.gbuffer().width(), bench.gbuffer().height());
