@@ -11,26 +11,20 @@ class Dpcf {
   using Disk = PenumbraDisk<T>;
 
  public:
-  explicit Dpcf(const ModelInput& input)
-      : map_(input),
-        accuracy_(input.accuracy),
-        points_(generate_disk_points(input.spec, input.values, "disk_points")),
-        disk_(input.values),
-        rotation_(text_or(input.values, "rotation", "none")),
-        seed_(input.seed) {}
+  explicit Dpcf(const ModelInput& input) : map_(input), accuracy_(input.accuracy), taps_(input), disk_(input.values) {}
 
   T visibility(const Receiver& r, Tally& tally) const {
     const P search = disk_.radius(r, static_cast<P>(r.depth_unbiased), tally);
     if (search < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
-    const DiskTurn<T> turn(rotation_, r, seed_);
+    const DiskTurn<T> turn(taps_, r);
     Blockers found;
-    for (const glm::vec2& point : points_) add_tap(r, turn.place(search, point), found, tally);
+    for (const glm::vec2& point : taps_.points) add_tap(r, turn.place(search, point), found, tally);
     if (found.depths == P(0)) return T(P(1));
     const P blocker = found.depths / static_cast<P>(value_of(found.weight));
     const P radius = disk_.radius(r, static_cast<P>(r.depth) - blocker, tally);
     if (radius < Disk::kOneFetch) return map_.compare_2x2(r, {}, r.depth, tally);
     tally.disk_radius_texels = static_cast<double>(radius);
-    const T half(P(0.5)), blocked = found.weight / T(static_cast<P>(points_.size()));
+    const T half(P(0.5)), blocked = found.weight / T(static_cast<P>(taps_.points.size()));
     return minimum(maximum(half + (half - blocked) * T(search / radius), T(P(0))), T(P(1)));
   }
 
@@ -42,10 +36,8 @@ class Dpcf {
 
   DepthReader<T> map_;
   GlAccuracy accuracy_;
-  std::vector<glm::vec2> points_;
+  TurnedDisk taps_;
   Disk disk_;
-  std::string rotation_;
-  std::uint32_t seed_;
 
   /// A gather aims half-way between texels, and a texel that rounding swaps for the next one weighs next to nothing.
   void add_tap(const Receiver& r, const Offset<T>& offset, Blockers& found, Tally& tally) const {

@@ -15,11 +15,9 @@ class Evssm {
   explicit Evssm(const ModelInput& input)
       : warps_(input, Warps<T>::read(input.values, "c"), Warps<T>::read(input.values, "c_down")),
         levels_(input, [this](const EncodeInput<T>& e) { return warps_.encode(e.depth); }),
-        points_(generate_disk_points(input.spec, input.values, "disk_points")),
+        taps_(input),
         widest_(std::max(P(0.5) * Warps<T>::read(input.values, "max_radius"), kLeastRadius)),
-        reduction_(Warps<T>::read(input.values, "bleed_reduction")),
-        rotation_(text_or(input.values, "rotation", "none")),
-        seed_(input.seed) {}
+        reduction_(Warps<T>::read(input.values, "bleed_reduction")) {}
 
   T visibility(const Receiver& r, Tally& tally) const {
     const T zero(P(0)), one(P(1)), depth(static_cast<P>(r.depth));
@@ -30,7 +28,7 @@ class Evssm {
     if (is_sure(lit, tally)) return doubt(value_of(lit) > 0.5 ? one : zero, lit);
     const T radius = radius_of(r, depth - warps_.depth_of_blockers(depth, nearness, lit), search);
     tally.disk_radius_texels = value_of(radius);
-    const DiskTurn<T> turn(rotation_, r, seed_);
+    const DiskTurn<T> turn(taps_, r);
     const auto average = [&](const T& R) { return std::array{warps_.bound_light(fetch_disk(r, R, turn), depth)}; };
     const T light = change_by_radius(radius, average)[0];
     return doubt(maximum(light - T(reduction_), zero) / (one - T(reduction_)), lit);
@@ -44,11 +42,9 @@ class Evssm {
 
   Warps<T> warps_;
   MipLevels<T, 4> levels_;
-  std::vector<glm::vec2> points_;
+  TurnedDisk taps_;
   P widest_;
   P reduction_;
-  std::string rotation_;
-  std::uint32_t seed_;
 
   /// The radius of the penumbra that a blocker so far above the receiver makes, within its limits.
   static T radius_of(const Receiver& r, const T& above, const T& widest) {
@@ -77,11 +73,11 @@ class Evssm {
   }
 
   Moments fetch_disk(const Receiver& r, const T& radius, const DiskTurn<T>& turn) const {
-    const P all = static_cast<P>(value_of(radius)), count = static_cast<P>(points_.size());
+    const P all = static_cast<P>(value_of(radius)), count = static_cast<P>(taps_.points.size());
     const P side = std::max(all / std::sqrt(count), kLeastRadius),
             reach = std::sqrt(std::max(all * all - side * side, P(0)));
     Moments sum{};
-    for (const glm::vec2& point : points_) {
+    for (const glm::vec2& point : taps_.points) {
       const Moments tap = fetch_wide(r, turn.place(reach, point), T(side));
       for (std::size_t c = 0; c < 4; ++c) sum[c] = sum[c] + tap[c];
     }

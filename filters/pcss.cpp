@@ -15,18 +15,19 @@ class Pcss {
   explicit Pcss(const ModelInput& input)
       : map_(input),
         bail_(input.values),
-        points_(bail_.order(generate_disk_points(input.spec, input.values, "disk_points"))),
-        search_points_(bail_.order(generate_disk_points(input.spec, input.values, "search_points"))),
+        taps_(input),
+        search_points_(generate_disk_points(input.spec, input.values, "search_points")),
         disk_(input.values),
-        rotation_(text_or(input.values, "rotation", "none")),
         reads_one_(text_or(input.values, "read", "bilinear") == "nearest"),
-        interpolates_(text_or(input.values, "read", "bilinear") == "interpolated"),
-        seed_(input.seed) {}
+        interpolates_(text_or(input.values, "read", "bilinear") == "interpolated") {
+    bail_.order(taps_.points);
+    bail_.order(search_points_);
+  }
 
   T visibility(const Receiver& r, Tally& tally) const {
     const P search = disk_.radius(r, static_cast<P>(r.depth_unbiased), tally);
     if (search < Disk::kOneFetch) return compare_tap(r, {}, tally);
-    const DiskTurn<T> turn(rotation_, r, seed_);
+    const DiskTurn<T> turn(taps_, r);
     const std::optional<P> blocker = find_blocker(r, search, turn, tally);
     if (!blocker) return T(P(1));
     const P radius = disk_.radius(r, static_cast<P>(r.depth) - *blocker, tally);
@@ -34,7 +35,7 @@ class Pcss {
     tally.disk_radius_texels = static_cast<double>(radius);
     tally.screen_value = static_cast<double>(radius) * static_cast<double>(r.texel_size_ws);
     tally.screen_bound = static_cast<double>(Disk::kRounding) * static_cast<double>(r.texel_size_ws);
-    return bail_.template average<T>(points_, tally, [&](const glm::vec2& point) {
+    return bail_.template average<T>(taps_.points, tally, [&](const glm::vec2& point) {
       const Offset<T> offset = turn.place(radius, point);
       return compare_tap(r, offset, tally);
     });
@@ -80,13 +81,11 @@ class Pcss {
 
   DepthReader<T> map_;
   EarlyBail bail_;
-  std::vector<glm::vec2> points_;
+  TurnedDisk taps_;
   std::vector<glm::vec2> search_points_;
   Disk disk_;
-  std::string rotation_;
   bool reads_one_;
   bool interpolates_;
-  std::uint32_t seed_;
 
   T compare_tap(const Receiver& r, const Offset<T>& offset, Tally& tally) const {
     if (interpolates_) return T(P(find_blocker_at(r, offset, tally) ? 0 : 1));

@@ -13,14 +13,26 @@
 
 namespace shadowbench::filters {
 
-/// How a disk of points is turned at a pixel: `find_turn` and `rotate` of shaders/lib/disk.glsl.
+/// The points `disk_points` of a filter that turns them by its parameter `rotation`.
+struct TurnedDisk {
+  std::vector<glm::vec2> points;
+  std::string rotation;
+  std::uint32_t seed;
+
+  explicit TurnedDisk(const ModelInput& input)
+      : points(generate_disk_points(input.spec, input.values, "disk_points")),
+        rotation(text_or(input.values, "rotation", "none")),
+        seed(input.seed) {}
+};
+
+/// How a disk is turned at a pixel: `find_turn` and `rotate` of shaders/lib/disk.glsl.
 template <class T>
 class DiskTurn {
   using P = Position<T>;
 
  public:
-  DiskTurn(const std::string& rotation, const Receiver& r, std::uint32_t seed) {
-    const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn_of(rotation, r.pixel, seed, r.frame));
+  DiskTurn(const TurnedDisk& disk, const Receiver& r) {
+    const P angle = P(2) * std::numbers::pi_v<P> * static_cast<P>(turn_of(disk.rotation, r.pixel, disk.seed, r.frame));
     cosine_ = std::cos(angle);
     sine_ = std::sin(angle);
   }
@@ -147,10 +159,10 @@ class EarlyBail {
  public:
   explicit EarlyBail(const ParamValues& values) : bails_(text_or(values, "bail", "none") == "agree") {}
 
-  /// A disk's points in the order of their taps: with a bail the last first, which are those at the rim of a spiral.
-  std::vector<glm::vec2> order(std::vector<glm::vec2> points) const {
+  /// Puts a disk's points in the order of their taps: with a bail the last first, which are those at the rim of a
+  /// spiral.
+  void order(std::vector<glm::vec2>& points) const {
     if (bails_) std::ranges::reverse(points);
-    return points;
   }
 
   /// The mean of what a function makes of ordered points, or of the first where these agree.

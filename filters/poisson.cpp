@@ -11,18 +11,15 @@ class Poisson {
 
  public:
   explicit Poisson(const ModelInput& input)
-      : map_(input),
-        bail_(input.values),
-        points_(bail_.order(generate_disk_points(input.spec, input.values, "disk_points"))),
-        radius_(static_cast<P>(number(input.values, "radius"))),
-        rotation_(text_or(input.values, "rotation", "none")),
-        seed_(input.seed) {}
+      : map_(input), bail_(input.values), taps_(input), radius_(static_cast<P>(number(input.values, "radius"))) {
+    bail_.order(taps_.points);
+  }
 
   static Kernel kernel(const ParamValues& values) { return Kernel::make_disk(number(values, "radius")); }
 
   T visibility(const Receiver& r, Tally& tally) const {
-    const DiskTurn<T> turn(rotation_, r, seed_);
-    return bail_.template average<T>(points_, tally, [&](const glm::vec2& point) {
+    const DiskTurn<T> turn(taps_, r);
+    return bail_.template average<T>(taps_.points, tally, [&](const glm::vec2& point) {
       return map_.compare_2x2(r, turn.place(radius_, point), r.depth, tally);
     });
   }
@@ -30,10 +27,8 @@ class Poisson {
  private:
   DepthReader<T> map_;
   EarlyBail bail_;
-  std::vector<glm::vec2> points_;
+  TurnedDisk taps_;
   P radius_;
-  std::string rotation_;
-  std::uint32_t seed_;
 };
 
 }  // namespace

@@ -13,19 +13,17 @@ class Smrt {
  public:
   explicit Smrt(const ModelInput& input)
       : map_(input),
-        points_(generate_disk_points(input.spec, input.values, "disk_points")),
+        rays_(input),
         steps_(static_cast<int>(number(input.values, "steps"))),
         thickness_(static_cast<P>(number(input.values, "thickness"))),
-        disk_(input.values),
-        rotation_(text_or(input.values, "rotation", "none")),
-        seed_(input.seed) {}
+        disk_(input.values) {}
 
   T visibility(const Receiver& r, Tally& tally) const {
-    const DiskTurn<T> turn(rotation_, r, seed_);
+    const DiskTurn<T> turn(rays_, r);
     P blocked{}, depths{};
-    for (std::size_t i = 0; i < points_.size(); ++i) {
+    for (std::size_t i = 0; i < rays_.points.size(); ++i) {
       const P golden = (static_cast<P>(i) + P(0.5)) * P(0.61803399f), within = golden - std::floor(golden);
-      const std::optional<float> depth = trace(r, turn.place(P(1), points_[i]), within, tally);
+      const std::optional<float> depth = trace(r, turn.place(P(1), rays_.points[i]), within, tally);
       if (!depth) continue;
       blocked += P(1);
       depths += static_cast<P>(*depth);
@@ -34,7 +32,7 @@ class Smrt {
     if (blocked > P(0))
       tally.disk_radius_texels =
           static_cast<double>(disk_.radius(r, static_cast<P>(r.depth) - depths / blocked, unused));
-    const P rays = static_cast<P>(points_.size());
+    const P rays = static_cast<P>(rays_.points.size());
     return T(rays - blocked) / T(rays);
   }
 
@@ -42,12 +40,10 @@ class Smrt {
   static constexpr float kRounding = 3e-7f;  // of the ends of a step, in depth
 
   DepthReader<T> map_;
-  std::vector<glm::vec2> points_;
+  TurnedDisk rays_;
   int steps_;
   P thickness_;
   Disk disk_;
-  std::string rotation_;
-  std::uint32_t seed_;
 
   P height_of(P step) const {
     const P share = step / static_cast<P>(steps_);
