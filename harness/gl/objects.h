@@ -115,6 +115,8 @@ class Texture {
   int height() const { return height_; }
   GLenum internal_format() const { return format_->internal_format; }
   const PixelFormat& format() const { return *format_; }
+  int samples() const { return samples_; }
+
   /// The bits of depth that the GL really stores; 0 for a colour format.
   int depth_bits() const;
   /// Returns the memory of all levels in bytes, as the format stores them.

@@ -119,9 +119,12 @@ bool Geometry::is_in(DrawSet set, const VertexRange& range) {
   return false;
 }
 
-ImageTarget::ImageTarget(std::string_view label, GLenum internal_format, int width, int height)
-    : texture_(label, internal_format, width, height), framebuffer_(label) {
-  framebuffer_.attach_color(0, texture_);
+ImageTarget::ImageTarget(std::string_view label, GLenum internal_format, int width, int height, int samples)
+    : texture_(label, internal_format, width, height, 1, samples), framebuffer_(label) {
+  if (texture_.format().depth)
+    framebuffer_.attach_depth(texture_);
+  else
+    framebuffer_.attach_color(0, texture_);
 }
 
 images::Image read_image(const gl::Texture& texture, int channels) {

@@ -74,14 +74,16 @@ void Geometry::draw(ShaderLibrary& shaders, const std::string& shader, DrawSet s
   }
 }
 
-/// One texture with the framebuffer that draws into it.
+/// One texture, of colours or depths, with the framebuffer that draws into it.
 class ImageTarget {
  public:
-  ImageTarget(std::string_view label, GLenum internal_format, int width, int height);
+  ImageTarget(std::string_view label, GLenum internal_format, int width, int height, int samples = 0);
 
   void bind() { framebuffer_.bind(); }
   void clear(const glm::vec4& color) { framebuffer_.clear_color(0, color); }
+  void clear_depth(float depth) { framebuffer_.clear_depth(depth); }
   const gl::Texture& texture() const { return texture_; }
+  gl::Texture& texture() { return texture_; }
 
  private:
   gl::Texture texture_;

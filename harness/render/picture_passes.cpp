@@ -20,14 +20,10 @@ Defines shade_defines(const scene::Light& light, const filters::RangeRule& range
 
 constexpr int kSteps = 256;
 
-gl::Texture upload_scale(const char* label, const images::Image& colors) {
-  gl::Texture scale(label, GL_RGBA32F, colors.width, 1);
-  scale.upload_floats(colors.texels, 3);
+gl::Texture upload_scale(Colors colors) {
+  gl::Texture scale("scale of colours", GL_RGBA32F, kSteps, 1);
+  scale.upload_floats(images::color_values(images::make_ramp(kSteps, 1), color_function(colors)).texels, 3);
   return scale;
-}
-
-images::Image color_ramp(Colors colors) {
-  return images::color_values(images::make_ramp(kSteps, 1), color_function(colors));
 }
 
 constexpr GLuint kAddedUnit = 4, kHistoryUnit = 12;  // of resolve.frag
@@ -74,10 +70,10 @@ images::Colors color_function(Colors colors) {
   return [](float place) { return images::map_diverging(2.0f * place - 1.0f, 1.0f); };
 }
 
-DisplayPass::DisplayPass()
-    : grey_(upload_scale("grey", color_ramp(Colors::kGrey))),
-      diverging_(upload_scale("diverging", color_ramp(Colors::kDiverging))),
-      sequential_(upload_scale("sequential", color_ramp(Colors::kSequential))) {}
+DisplayPass::DisplayPass() {
+  for (const Colors colors : {Colors::kGrey, Colors::kDiverging, Colors::kSequential})
+    scales_.emplace(colors, upload_scale(colors));
+}
 
 void DisplayPass::clear_window(const glm::ivec2& size, const glm::vec3& color) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -118,7 +114,7 @@ void DisplayPass::draw_side(ShaderLibrary& shaders, const DisplayedValues& shown
   shown.values->bind(0);
   if (!is_picture) {
     (shown.less ? shown.less : shown.values)->bind(1);
-    scale_of(shown.colors).bind(2);
+    scales_.at(shown.colors).bind(2);
     program.set("range", glm::vec2(shown.low, shown.high));
     program.set("channel", shown.channel);
     program.set("has_less", shown.less ? 1 : 0);
@@ -128,11 +124,6 @@ void DisplayPass::draw_side(ShaderLibrary& shaders, const DisplayedValues& shown
   program.set("pixels_per_target", 1.0f / place.magnified);
   program.use();
   triangle_.draw();
-}
-
-const gl::Texture& DisplayPass::scale_of(Colors colors) const {
-  if (colors == Colors::kDiverging) return diverging_;
-  return colors == Colors::kSequential ? sequential_ : grey_;
 }
 
 ResolvePass::ResolvePass(ResolveRule rule, int width, int height)

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 
 #include "filters/depth_map.h"
@@ -82,12 +83,9 @@ class DisplayPass {
   static images::Image read_window(const glm::ivec2& corner, const glm::ivec2& size);
 
  private:
-  gl::Texture grey_;
-  gl::Texture diverging_;
-  gl::Texture sequential_;
+  std::map<Colors, gl::Texture> scales_;
   gl::FullscreenTriangle triangle_;
 
-  const gl::Texture& scale_of(Colors colors) const;
   void draw_side(ShaderLibrary& shaders, const DisplayedValues& shown, const DisplayPlace& place, int from, int to);
 };
 

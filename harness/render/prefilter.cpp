@@ -211,11 +211,6 @@ void set_uniforms(gl::Program& program, const FilterRequest& request, const Ligh
   }
 }
 
-Prefilter::Samples::Samples(const ShadowMap& map, int samples)
-    : count(samples), depth("depth samples", map.settings().format, map.size(), map.size(), 1, samples) {
-  framebuffer.attach_depth(depth);
-}
-
 Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& request, const ShadowMap& map,
                      const LightSetup& light, Defines map_defines)
     : shaders_(&shaders),
@@ -223,7 +218,8 @@ Prefilter::Prefilter(ShaderLibrary& shaders, const filters::FilterRequest& reque
                                             map.size())),
       encode_(shaders.compile_filter(request.spec.id + " encode", "encode.frag",
                                      add_samples(std::move(map_defines), request), filter_pieces(request))) {
-  if (const int samples = filters::depth_samples(request.values); samples > 1) samples_.emplace(map, samples);
+  if (const int samples = filters::depth_samples(request.values); samples > 1)
+    samples_.emplace("depth samples", map.settings().format, map.size(), map.size(), samples);
   encode_.set("map_texel_uv", 1.0f / static_cast<float>(map.size()));
   const bool nearest = filters::reads_nearest(request.values);
   sampler_.set_filter(nearest ? GL_NEAREST : GL_LINEAR, nearest ? GL_NEAREST : GL_LINEAR);
@@ -266,8 +262,8 @@ glm::vec4 Prefilter::encode_border() {
 
 void Prefilter::encode(const ShadowMap& map, int layer, ImageTarget& to) {
   if (samples_) {
-    map.draw_samples(*shaders_, samples_->framebuffer, layer);
-    samples_->depth.bind(kSamplesUnit);
+    map.draw_samples(*shaders_, *samples_, layer);
+    samples_->texture().bind(kSamplesUnit);
   }
   map.bind(encode_, layer);
   to.bind();
@@ -305,7 +301,7 @@ std::vector<float> Prefilter::read_before_blur(const ShadowMap& map, int layer) 
 
 std::int64_t Prefilter::texels_written() const {
   const std::int64_t side = stored_->texture().width();
-  return (passes() + (samples_ ? samples_->count - 1 : 0)) * side * side;
+  return (passes() + (samples_ ? samples_->texture().samples() - 1 : 0)) * side * side;
 }
 
 std::vector<DrawnPass> Prefilter::list_passes(int depth_bytes) const {

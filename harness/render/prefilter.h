@@ -84,17 +84,9 @@ class Prefilter {
   std::vector<DrawnPass> list_passes(int depth_bytes) const;
 
  private:
-  /// The depth map once more, with several samples a texel.
-  struct Samples {
-    Samples(const ShadowMap& map, int count);
-    int count;
-    gl::Texture depth;
-    gl::Framebuffer framebuffer{"depth samples"};
-  };
-
   int radius_ = 0;
   ShaderLibrary* shaders_;
-  std::optional<Samples> samples_;  ///< for filters that ask for them
+  std::optional<ImageTarget> samples_;  ///< the depth map once more, for filters that ask for several samples a texel
   std::shared_ptr<ImageTarget> stored_;
   std::optional<ImageTarget> scratch_;  ///< only with a blur
   gl::Program encode_;

@@ -85,14 +85,9 @@ void require_depth_bits(GLenum format, int bits) {
                                              gl::pixel_format(format).name, bits));
 }
 
-ShadowMap::Layer::Layer(const char* label, GLenum format, int size)
-    : depth(label, format, size, size), framebuffer(label) {
-  framebuffer.attach_depth(depth);
-}
-
 ShadowMap::ShadowMap(int size, const MapSettings& settings, int layers)
     : wanted_(settings.curve), settings_(settings), drawn_(static_cast<std::size_t>(layers)) {
-  for (int layer = 0; layer < layers; ++layer) layers_.emplace_back("shadow map", settings.format, size);
+  for (int layer = 0; layer < layers; ++layer) layers_.emplace_back("shadow map", settings.format, size, size);
   require_depth_bits(settings.format, texture().depth_bits());
   const GLenum compare = settings.curve.reversed ? GL_GEQUAL : GL_LEQUAL;
   for (gl::Sampler* sampler : {&plain_, &compare_linear_, &compare_nearest_}) {
@@ -111,10 +106,10 @@ void ShadowMap::set_border(filters::Border border) {
 }
 
 void ShadowMap::draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
-                             const MapBias& bias, gl::Framebuffer& framebuffer, Defines defines) const {
-  framebuffer.bind();
+                             const MapBias& bias, ImageTarget& target, Defines defines) const {
+  target.bind();
   set_geometry_state();
-  framebuffer.clear_depth(settings_.curve.far_plane());
+  target.clear_depth(settings_.curve.far_plane());
   const filters::DepthCurve& curve = settings_.curve;
   for (auto& define : curve_defines(curve)) defines.push_back(std::move(define));
   const bool is_plane = !is_curved(frustum.shape), bends = !curve.is_linear() && !frustum.perspective;
@@ -163,7 +158,7 @@ void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const sce
   if (bias.midpoint)
     draw_midpoint(shaders, geometry, frustum, bias);
   else
-    draw_casters(shaders, geometry, frustum, bias, layers_[layer].framebuffer, {});
+    draw_casters(shaders, geometry, frustum, bias, layers_[layer], {});
 }
 
 /// Woo 1992, The Shadow Depth Map Revisited, Graphics Gems III: the map lies between the first and the second surface,
@@ -171,39 +166,39 @@ void ShadowMap::draw(ShaderLibrary& shaders, const Geometry& geometry, const sce
 void ShadowMap::draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                               const MapBias& bias) {
   if (surfaces_.empty()) {
-    surfaces_.emplace_back("first surface", settings_.format, size());
-    surfaces_.emplace_back("second surface", settings_.format, size());
+    surfaces_.emplace_back("first surface", settings_.format, size(), size());
+    surfaces_.emplace_back("second surface", settings_.format, size(), size());
   }
-  draw_casters(shaders, geometry, frustum, bias, surfaces_[0].framebuffer, {});
-  surfaces_[0].depth.bind(0);
-  draw_casters(shaders, geometry, frustum, bias, surfaces_[1].framebuffer, {{"BEHIND_FIRST", "1"}});
-  surfaces_[1].depth.bind(1);
-  draw_mean(shaders, layers_[static_cast<std::size_t>(frustum.layer)].framebuffer);
+  draw_casters(shaders, geometry, frustum, bias, surfaces_[0], {});
+  surfaces_[0].texture().bind(0);
+  draw_casters(shaders, geometry, frustum, bias, surfaces_[1], {{"BEHIND_FIRST", "1"}});
+  surfaces_[1].texture().bind(1);
+  draw_mean(shaders, layers_[static_cast<std::size_t>(frustum.layer)]);
 }
 
-void ShadowMap::draw_mean(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const {
+void ShadowMap::draw_mean(ShaderLibrary& shaders, ImageTarget& target) const {
   gl::Program& program = shaders.fullscreen("midpoint.frag", curve_defines(settings_.curve));
   set_curve(program, settings_.curve);
-  framebuffer.bind();
+  target.bind();
   program.use();
   gl::FullscreenTriangle().draw_depth();
 }
 
-void ShadowMap::draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer, int layer) const {
+void ShadowMap::draw_samples(ShaderLibrary& shaders, ImageTarget& target, int layer) const {
   const std::optional<Drawn>& drawn = drawn_[static_cast<std::size_t>(layer)];
   if (drawn && !drawn->bias.midpoint) {
     glEnable(GL_SAMPLE_SHADING);  // each sample has a depth and a hole of its own
     glMinSampleShading(1.0f);
-    draw_casters(shaders, drawn->geometry, drawn->frustum, drawn->bias, framebuffer, {});
+    draw_casters(shaders, drawn->geometry, drawn->frustum, drawn->bias, target, {});
     glDisable(GL_SAMPLE_SHADING);
     return;
   }
-  for (const GLuint unit : {0u, 1u}) layers_[static_cast<std::size_t>(layer)].depth.bind(unit);
-  draw_mean(shaders, framebuffer);
+  for (const GLuint unit : {0u, 1u}) texture(layer).bind(unit);
+  draw_mean(shaders, target);
 }
 
 void ShadowMap::upload(std::span<const float> stored) {
-  layers_.front().depth.upload_floats(stored, 1);
+  layers_.front().texture().upload_floats(stored, 1);
   drawn_.front().reset();
 }
 
@@ -211,14 +206,14 @@ void ShadowMap::bind(gl::Program& reader, int layer) const {
   set_curve(reader, settings_.curve);
   const gl::Sampler* samplers[] = {&plain_, &compare_linear_, &compare_nearest_};
   for (GLuint unit = 0; unit < 3; ++unit) {
-    layers_[static_cast<std::size_t>(layer)].depth.bind(unit);
+    texture(layer).bind(unit);
     samplers[unit]->bind(unit);
   }
 }
 
 filters::DepthMap ShadowMap::read(int layer) const {
   return {.size = size(),
-          .stored = layers_[static_cast<std::size_t>(layer)].depth.read_floats(1),
+          .stored = texture(layer).read_floats(1),
           .curve = settings_.curve,
           .clamps_reference = settings_.format != GL_DEPTH_COMPONENT32F,
           .border = border_,
@@ -229,7 +224,7 @@ images::Image ShadowMap::read_picture() const {
   if (layers() == 1) return read_image(texture(), 1);
   images::Image picture(layers() * size(), size(), 1);
   for (int layer = 0; layer < layers(); ++layer) {
-    const images::Image own = read_image(layers_[static_cast<std::size_t>(layer)].depth, 1);
+    const images::Image own = read_image(texture(layer), 1);
     for (int y = 0; y < size(); ++y) std::copy_n(own.at(0, y), size(), picture.at(layer * size(), y));
   }
   return picture;

@@ -52,9 +52,9 @@ class ShadowMap {
   void draw(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
             const MapBias& bias = {});
 
-  /// Draws what the map holds into a multisampled depth texture of the map's size and format: the same casters, or the
+  /// Draws what the map holds into a multisampled target of the map's size and format: the same casters, or the
   /// map itself where it was uploaded, or where it holds no surface that could be drawn.
-  void draw_samples(ShaderLibrary& shaders, gl::Framebuffer& framebuffer, int layer) const;
+  void draw_samples(ShaderLibrary& shaders, ImageTarget& target, int layer) const;
 
   /// Replaces the first layer's contents by stored depths, row 0 at v = 0. Fixed-point formats clamp them. Requires
   /// size() * size() values.
@@ -71,20 +71,13 @@ class ShadowMap {
   /// see settings().curve.
   images::Image read_picture() const;
 
-  const gl::Texture& texture(int layer = 0) const { return layers_[static_cast<std::size_t>(layer)].depth; }
+  const gl::Texture& texture(int layer = 0) const { return layers_[static_cast<std::size_t>(layer)].texture(); }
   int size() const { return texture().width(); }
   int layers() const { return static_cast<int>(layers_.size()); }
   const MapSettings& settings() const { return settings_; }  ///< as it was drawn last
   std::int64_t bytes() const { return layers() * static_cast<std::int64_t>(texture().bytes()); }
 
  private:
-  /// A depth texture that is drawn into.
-  struct Layer {
-    Layer(const char* label, GLenum format, int size);
-    gl::Texture depth;
-    gl::Framebuffer framebuffer;
-  };
-
   /// What draw() drew last.
   struct Drawn {
     Geometry geometry;
@@ -94,9 +87,9 @@ class ShadowMap {
 
   filters::DepthCurve wanted_;  ///< of depth that no projection has curved
   MapSettings settings_;
-  std::vector<Layer> layers_;
+  std::vector<ImageTarget> layers_;
   std::vector<std::optional<Drawn>> drawn_;  ///< by layer; nothing where it was uploaded
-  std::vector<Layer> surfaces_;              ///< first and second, only for midpoint maps
+  std::vector<ImageTarget> surfaces_;        ///< first and second, only for midpoint maps
   gl::Sampler plain_{"depth, plain"};
   gl::Sampler compare_linear_{"depth, compared, 2x2"};
   gl::Sampler compare_nearest_{"depth, compared, nearest"};
@@ -104,11 +97,11 @@ class ShadowMap {
 
   /// Draws casters into a layer; both faces, but front faces of cullable ones where the bias says so.
   void draw_casters(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
-                    const MapBias& bias, gl::Framebuffer& framebuffer, Defines defines) const;
+                    const MapBias& bias, ImageTarget& target, Defines defines) const;
   void draw_midpoint(ShaderLibrary& shaders, const Geometry& geometry, const scene::LightFrustum& frustum,
                      const MapBias& bias);
   /// Draws the mean of the depths that units 0 and 1 hold.
-  void draw_mean(ShaderLibrary& shaders, gl::Framebuffer& framebuffer) const;
+  void draw_mean(ShaderLibrary& shaders, ImageTarget& target) const;
 };
 
 }  // namespace shadowbench::render
