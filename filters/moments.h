@@ -248,6 +248,18 @@ double change_by_rounding(const std::array<Tracked, 4>& stored, double bias, dou
   return largest;
 }
 
+inline constexpr double kSafety = 2.0;
+
+/// What a function makes of moments, and by how much more than that their roundings may change it.
+template <class T, class Function>
+T track(const std::array<T, 4>& stored, float bias, const Function& function) {
+  const auto seen = function(values_of(stored));
+  if constexpr (std::is_same_v<T, Tracked>)
+    return {seen, kSafety * change_by_rounding(stored, static_cast<double>(bias), seen, function)};
+  else
+    return seen;
+}
+
 /// The map of a filter that blurs four moments.
 template <class T>
 EncodedMap<T, 4> make_map(const ModelInput& input) {
@@ -278,7 +290,6 @@ struct FourMoments {
 
    private:
     using Stored = std::array<double, 4>;
-    static constexpr double kSafety = 2.0;
 
     EncodedMap<T, 4> map_;
     float bias_;
@@ -306,11 +317,10 @@ struct FourMoments {
     /// half of it in no map that was looked at.
     T bound(const Receiver& r, Tally& tally) const {
       map_.fetch(r, tally);
-      const auto middle = map_.fetch_between(r, {});
-      const double seen = light(four_moments::values_of(middle), r);
-      const double by_rounding = four_moments::change_by_rounding(middle, static_cast<double>(bias_), seen,
-                                                                  [&](const Stored& moved) { return light(moved, r); });
-      return {seen, kSafety * (by_rounding + change_by_place(r, seen))};
+      T seen =
+          four_moments::track(map_.fetch_between(r, {}), bias_, [&](const Stored& moved) { return light(moved, r); });
+      seen.bound += four_moments::kSafety * change_by_place(r, seen.value);
+      return seen;
     }
   };
 };

@@ -18,7 +18,7 @@ class MsmSoft {
     const S depth(static_cast<P>(r.depth));
     const auto around = box_.moments(r, box_.search(r), tally);
     const auto finds_some = [&](const Stored& moved) { return find_light(moved, depth) < S(1) ? S(1) : S(0); };
-    const T some = track(around, finds_some);
+    const T some = four_moments::track(around, bias_, finds_some);
     if (value_of(some) == 0.0 && bound_of(some) == 0.0) return T(P(1));
     const T found = light_of_blockers(r, around, tally);
     if (bound_of(some) == 0.0) return found;
@@ -28,7 +28,6 @@ class MsmSoft {
 
  private:
   using Stored = std::array<S, 4>;
-  static constexpr double kSafety = 2.0;
   static constexpr double kUnseen = 2e-3;    // of light
   static constexpr double kUncertain = 0.5;  // texels: a box of a width so far off is any
 
@@ -38,7 +37,8 @@ class MsmSoft {
   /// The light where blockers were found in the moments of the search.
   T light_of_blockers(const Receiver& r, const std::array<T, 4>& around, Tally& tally) const {
     const S depth(static_cast<P>(r.depth));
-    const T above = track(around, [&](const Stored& moved) { return find_blockers(moved, depth); });
+    const T above =
+        four_moments::track(around, bias_, [&](const Stored& moved) { return find_blockers(moved, depth); });
     const T half_width = box_.half_width(r, above, box_.search(r));
     tally.disk_radius_texels = box_.disk_radius(half_width);
     if (bound_of(half_width) > kUncertain) {
@@ -50,7 +50,8 @@ class MsmSoft {
 
   T light_in(const Receiver& r, const T& half_width, Tally& tally) const {
     const S depth(static_cast<P>(r.depth));
-    return track(box_.moments(r, half_width, tally), [&](const Stored& moved) { return find_light(moved, depth); });
+    return four_moments::track(box_.moments(r, half_width, tally), bias_,
+                               [&](const Stored& moved) { return find_light(moved, depth); });
   }
 
   /// The most light that a receiver lacks in the narrowest and the widest box that it may have, and in some between.
@@ -75,16 +76,6 @@ class MsmSoft {
     const auto moments = four_moments::decode(stored, S(bias_));
     const S x = S(2) * depth - S(1);
     return S(0.5) * four_moments::distance_to_blockers(moments, x, four_moments::solve(moments, x));
-  }
-
-  /// What a function makes of moments, and by how much more than that their roundings may change it.
-  template <class Function>
-  T track(const std::array<T, 4>& stored, const Function& function) const {
-    const S seen = function(four_moments::values_of(stored));
-    if constexpr (std::is_same_v<T, Tracked>)
-      return {seen, kSafety * four_moments::change_by_rounding(stored, static_cast<double>(bias_), seen, function)};
-    else
-      return seen;
   }
 };
 
