@@ -1,5 +1,8 @@
 #include "harness/measure/timing.h"
 
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_statistics_double.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -17,11 +20,7 @@ constexpr double kConfidence = 0.95;
 constexpr std::size_t kFewestOrdered = 6;  // of fewer values, the least and the most hold the median less often
 
 double quantile(const std::vector<double>& sorted, double q) {
-  const double position = q * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(std::floor(position));
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  const double fraction = position - static_cast<double>(below);
-  return sorted[below] + fraction * (sorted[above] - sorted[below]);
+  return gsl_stats_quantile_from_sorted_data(sorted.data(), 1, sorted.size(), q);
 }
 
 double median_of(std::vector<double> values) {
@@ -46,13 +45,8 @@ double find_reach(const std::vector<double>& values) {
 
 /// In how many cases of a hundred, as a share, the median lies between the `place`-th smallest and largest of `count`
 /// values.
-double cover(std::size_t count, std::size_t place) {
-  double term = std::exp2(-static_cast<double>(count)), sum = 0.0;  // of as many fair coins, `i` show heads
-  for (std::size_t i = 0; i < place; ++i) {
-    sum += term;
-    term *= static_cast<double>(count - i) / static_cast<double>(i + 1);
-  }
-  return 1.0 - 2.0 * sum;
+double cover(std::size_t count, std::size_t place) {  // of as many fair coins fewer than `place` show heads, or tails
+  return 1.0 - 2.0 * gsl_cdf_binomial_P(static_cast<unsigned>(place - 1), 0.5, static_cast<unsigned>(count));
 }
 
 /// The 95 % interval of the median.
@@ -216,12 +210,6 @@ TimedFilter make_timed(gl::TimerKind timer, std::function<void()> prefilter, std
     return [timer, pass = std::move(pass)] { return gl::time_ms(timer, pass); };
   };
   return {make(std::move(prefilter)), make(std::move(lookup)), make(std::move(screen))};
-}
-
-/// In records.
-std::string name_of(StopReason reason) {
-  constexpr const char* kNames[] = {"rounds", "precise", "budget"};
-  return kNames[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -36,6 +37,7 @@ enum class StopReason {
   kPrecise,  ///< the ratio's interval is as narrow as was asked for
   kBudget,   ///< the time is spent
 };
+constexpr auto names_of(StopReason) { return std::array{"rounds", "precise", "budget"}; }
 
 /// Times of one filter, one entry per round it took part in, from the first on; milliseconds.
 struct FilterTimes {

@@ -1,6 +1,7 @@
 #include "reference/metrics/error_stats.h"
 
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cassert>
@@ -12,10 +13,6 @@ namespace shadowbench::metrics {
 namespace {
 
 using Parts = std::array<double, kErrorParts>;
-
-double find_mean(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 Parts split(const AttributionStations& s, std::size_t i) {
   const double image = static_cast<double>(s.image[i]), kernel = static_cast<double>(s.kernel[i]);
@@ -68,15 +65,13 @@ double find_student_t(std::size_t count, double below) {
 
 double find_standard_error(std::span<const double> values) {
   assert(values.size() >= 2);
-  const double count = static_cast<double>(values.size()), mean = find_mean(values);
-  double squares = 0.0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::sqrt(squares / (count - 1.0) / count);
+  return gsl_stats_sd(values.data(), 1, values.size()) / std::sqrt(static_cast<double>(values.size()));
 }
 
 std::optional<MeanInterval> find_mean_interval(std::span<const double> values) {
   if (values.size() < 2) return std::nullopt;
-  const double mean = find_mean(values), reach = find_student_t(values.size()) * find_standard_error(values);
+  const double mean = gsl_stats_mean(values.data(), 1, values.size()),
+               reach = find_student_t(values.size()) * find_standard_error(values);
   return MeanInterval{mean, mean - reach, mean + reach};
 }
 
