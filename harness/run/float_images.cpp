@@ -223,28 +223,28 @@ images::Rect find_texels(const std::vector<filters::Receiver>& receivers, const 
   return {low.x, low.y, high.x + 1 - low.x, high.y + 1 - low.y};
 }
 
-live::Check make_check(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
-                       measure::SceneAssets& assets, const images::Rect& disputed) {
-  const render::GBuffer& gbuffer = assets.gbuffer(*task.camera);
-  const measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
-  const bool is_whole = renderer.recorder->lacks_vertices();
+live::Check make_check(const measure::TaskRig& rig, const images::Rect& disputed) {
+  const render::GBuffer& gbuffer = rig.gbuffer();
+  const measure::LightMap& light = rig.light();
+  const bool is_whole = rig.renderer.recorder->lacks_vertices();
   const images::Rect rect = is_whole ? images::Rect{0, 0, gbuffer.width(), gbuffer.height()} : disputed;
   live::Check check{rect, {}, is_whole};
   const images::Rect below = flip(rect, gbuffer.height());
   const auto add = [&](const gl::Texture& texture, const std::vector<float>& texels, int channels,
                        const images::Rect& part, float fill) {
-    check.known.push_back(
-        {renderer.recorder->content_of(texture), part, channels, fill, cut(texels, texture.width(), channels, part)});
+    check.known.push_back({rig.renderer.recorder->content_of(texture), part, channels, fill,
+                           cut(texels, texture.width(), channels, part)});
   };
   std::vector<const gl::Texture*> receivers = {&gbuffer.position(), &gbuffer.normal()};
   if (is_whole) receivers.insert(receivers.end(), {&gbuffer.shading_normal(), &gbuffer.albedo()});
   for (const gl::Texture* texture : receivers) add(*texture, texture->read_floats(4), 4, below, 0.0f);
-  for (const render::LightSetup& layer : measure::make_unbiased_light(options, task.scene->light, light.layers)) {
+  for (const render::LightSetup& layer :
+       measure::make_unbiased_light(rig.options, rig.task.scene->light, light.layers)) {
     const int index = layer.frustum.layer;
     const int size = light.map.size();
-    const images::Rect part = is_whole
-                                  ? images::Rect{0, 0, size, size}
-                                  : find_texels(render::read_receivers(renderer.shaders, gbuffer, layer), below, size);
+    const images::Rect part =
+        is_whole ? images::Rect{0, 0, size, size}
+                 : find_texels(render::read_receivers(rig.renderer.shaders, gbuffer, layer), below, size);
     add(light.map.texture(index), light.map.read(index).stored, 1, part, light.map.settings().curve.far_plane());
   }
   return check;
@@ -302,18 +302,16 @@ void note_float_images(const options::RunOptions& options, const measure::SceneT
   }
 }
 
-void write_frames(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
-                  measure::SceneAssets& assets, measure::SceneMeasurement& measured) {
+void write_frames(const measure::TaskRig& rig, measure::SceneMeasurement& measured) {
   std::map<std::string, live::Frame> frames;
   for (measure::MeasuredCell& cell : measured.cells)
     if (cell.frame)
       frames[cell.record.key] = {std::exchange(cell.frame, nullptr), std::exchange(cell.empty_frame, nullptr),
                                  cell.request, cell.light.front().light_size};
   if (frames.empty()) return;
-  const live::Check check =
-      make_check(renderer, options, task, assets,
-                 choose_crop(measured.cells, {std::max(1, options.width / 4), std::max(1, options.height / 4)}));
-  const std::string path = live::write_frames(options.out, frames, check);
+  const images::Size crop{std::max(1, rig.options.width / 4), std::max(1, rig.options.height / 4)};
+  const live::Check check = make_check(rig, choose_crop(measured.cells, crop));
+  const std::string path = live::write_frames(rig.options.out, frames, check);
   for (measure::MeasuredCell& cell : measured.cells)
     if (frames.contains(cell.record.key)) cell.record.images.frames = path;
 }

@@ -43,7 +43,6 @@ void take_float_images(measure::MeasuredCell& cell, std::vector<images::Part>& p
 /// what the run drew of receivers and map around the picture's most disputed edge: a GPU that puts the edges of
 /// triangles elsewhere can still be held against the run there. Where vertices are too many to go with a page, all of
 /// receivers and map goes with the frames: view and light stay the run's then. Throws Error(kOutput).
-void write_frames(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
-                  measure::SceneAssets& assets, measure::SceneMeasurement& measured);
+void write_frames(const measure::TaskRig& rig, measure::SceneMeasurement& measured);
 
 }  // namespace shadowbench::run

@@ -139,47 +139,37 @@ int choose_side(const images::Rect& part) {
 /// A part of one view through one map, drawn with many samples.
 class SampledView {
  public:
-  SampledView(measure::Renderer& renderer, const PlannedScene& planned, const measure::SceneTask& task,
-              measure::SceneAssets& assets, const images::Rect& part, int side)
-      : renderer_(renderer),
-        planned_(planned),
-        task_(task),
-        assets_(assets),
-        part_(part),
-        side_(side),
-        gbuffer_(side * part.width, side * part.height) {
-    const glm::ivec2 size(planned.options.width, planned.options.height);
+  SampledView(const measure::TaskRig& rig, const images::Rect& part, int side)
+      : rig_(rig), part_(part), side_(side), gbuffer_(side * part.width, side * part.height) {
+    const glm::ivec2 size(rig.options.width, rig.options.height);
     const glm::ivec2 corner(part.x, size.y - part.y - part.height);
-    assets.draw_view(gbuffer_, *task.camera, {}, render::PictureWindow{side * corner, side * size});
+    rig.assets.draw_view(gbuffer_, *rig.task.camera, {}, render::PictureWindow{side * corner, side * size});
   }
 
   images::Image draw(const filters::FilterRequest& request) {
-    measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
-    const auto passes = measure::make_filter_passes(renderer_, planned_.options, planned_.scene, light, request);
-    passes->prefilter(light.map);
+    const render::ShadowMap& map = rig_.light().map;
+    const auto passes = rig_.make_passes(request);
+    passes->prefilter(map);
     const auto look = [&](const render::GBuffer& gbuffer) {
       render::ImageTarget target("visibility", GL_R32F, gbuffer.width(), gbuffer.height());
-      passes->lookup(gbuffer, light.map, target);
-      return shade(gbuffer, target.texture(), planned_.options.range);
+      passes->lookup(gbuffer, map, target);
+      return shade(gbuffer, target.texture(), rig_.options.range);
     };
-    return put(look(gbuffer_), look(assets_.gbuffer(*task_.camera)));
+    return put(look(gbuffer_), look(rig_.gbuffer()));
   }
 
   images::Image draw_truth() {
-    return put(shade(gbuffer_, render::upload_image(trace()), {}), assets_.truth(*task_.camera).area_picture);
+    return put(shade(gbuffer_, render::upload_image(trace()), {}), rig_.truth().area_picture);
   }
 
  private:
-  measure::Renderer& renderer_;
-  const PlannedScene& planned_;
-  const measure::SceneTask& task_;
-  measure::SceneAssets& assets_;
+  const measure::TaskRig rig_;
   images::Rect part_;
   int side_;
   render::GBuffer gbuffer_;
 
   images::Image shade(const render::GBuffer& gbuffer, const gl::Texture& visibility, const filters::RangeRule& range) {
-    return render::shade(renderer_.shaders, gbuffer, visibility, planned_.scene, *task_.camera, range);
+    return render::shade(rig_.renderer.shaders, gbuffer, visibility, *rig_.task.scene, *rig_.task.camera, range);
   }
 
   /// The part's mean samples in the whole picture.
@@ -191,13 +181,14 @@ class SampledView {
   /// The light that arrives at the samples. Where a pixel's rays and those of its neighbours all agreed, that is known
   /// of the samples on the pixel's own surface.
   images::Image trace() {
-    const measure::SceneTruth& truth = assets_.truth(*task_.camera);
-    measure::ViewReceivers samples = measure::read_view_receivers(gbuffer_, planned_.scene.light);
+    const measure::SceneTruth& truth = rig_.truth();
+    const scene::Light& light = rig_.task.scene->light;
+    measure::ViewReceivers samples = measure::read_view_receivers(gbuffer_, light);
     const auto pixel_of = [&, side = static_cast<std::size_t>(side_)](std::size_t sample) {
       const auto width = static_cast<std::size_t>(gbuffer_.width());
       const std::size_t x = static_cast<std::size_t>(part_.x) + sample % width / side,
                         y = static_cast<std::size_t>(part_.y) + sample / width / side;
-      return y * static_cast<std::size_t>(planned_.options.width) + x;
+      return y * static_cast<std::size_t>(rig_.options.width) + x;
     };
     std::vector<std::uint8_t> is_known(samples.image.points.size());
     for (std::size_t i = 0; i < is_known.size(); ++i) {
@@ -213,8 +204,7 @@ class SampledView {
     hash.add(samples.image.content);
     hash.add_values(std::span<const std::uint8_t>(is_known));
     samples.image.content = hash.name();
-    std::vector<float> arriving =
-        assets_.tracer().trace_light(samples.image, scene::make_area_light(planned_.scene.light));
+    std::vector<float> arriving = rig_.assets.tracer().trace_light(samples.image, scene::make_area_light(light));
     for (std::size_t i = 0; i < is_known.size(); ++i) {
       if (is_known[i] == 0) continue;
       samples.image.points[i].counts = true;
@@ -301,7 +291,7 @@ void draw_supersampled_pictures(measure::Renderer& renderer, const RunPlan& plan
       view.reset();
       if (!before || before->scene != task->scene)
         assets.emplace(renderer, planned.options, planned.scene, cache, measure::padding_texels(planned.options));
-      view.emplace(renderer, planned, task->task, *assets, part, side);
+      view.emplace(measure::TaskRig{renderer, planned.options, task->task, *assets}, part, side);
       truth = stem + ".truth.supersampled.png";
       images::write_picture_png(out / truth, view->draw_truth());
       before = task;

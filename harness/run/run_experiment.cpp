@@ -108,10 +108,9 @@ class TaskRun {
  public:
   explicit TaskRun(const TaskBench& bench)
       : bench_(bench),
-        renderer_(bench.renderer),
-        options_(bench.planned.options),
-        task_(bench.task.task),
-        assets_(bench.assets),
+        rig_{bench.renderer, bench.planned.options, bench.task.task, bench.assets},
+        options_(rig_.options),
+        task_(rig_.task),
         listener_(bench.listener) {
     for (std::size_t i = 0; i < task_.filters.size(); ++i)
       contents_[measure::make_record(options_, task_, task_.filters[i]).key] = bench.task.contents[i];
@@ -139,10 +138,9 @@ class TaskRun {
   using Requests = std::vector<filters::FilterRequest>;
 
   const TaskBench& bench_;
-  measure::Renderer& renderer_;
+  const measure::TaskRig rig_;
   const options::RunOptions& options_;
   const measure::SceneTask& task_;
-  measure::SceneAssets& assets_;
   const TaskListener& listener_;
   std::map<std::string, std::string> contents_;  ///< by key
   std::optional<measure::CellAnalyser> analyser_;
@@ -153,6 +151,7 @@ class TaskRun {
   measure::SceneTask task_of(const Requests& requests) const {
     return {task_.scene, task_.camera, task_.map_size, requests};
   }
+  measure::TaskRig rig_of(const measure::SceneTask& task) const { return {rig_.renderer, options_, task, rig_.assets}; }
 
   void run_group(const Requests& built_in, const Requests& of_users) {
     const Stopwatch watch;
@@ -160,9 +159,8 @@ class TaskRun {
     for (const filters::FilterRequest& request : of_users) user_cells.push_back(measure_user_cell(request));
     measure::SceneMeasurement measured;
     if (!built_in.empty())
-      measured = measure::measure_scene({renderer_, options_, task_of(built_in), assets_},
-                                        [this](const std::string& what) { begin(what); });
-    const measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
+      measured = measure::measure_scene(rig_of(task_of(built_in)), [this](const std::string& what) { begin(what); });
+    const measure::LightMap& light = rig_.light();
     measured.stored_map = light.map.read_picture();
     measured.depth_map = measure::read_linear_depth(light.map);
     if (!task_.scene->light.name.empty()) measured.ambient = draw_ambient();
@@ -171,18 +169,18 @@ class TaskRun {
       cell.record.measured_s = 0.0;
       cell.record.machine = records::kind_of(bench_.run.machine, bench_.run.gl);
     }
-    Requests all = built_in;
-    all.insert(all.end(), of_users.begin(), of_users.end());
+    measure::SceneTask all = task_of(built_in);
+    all.filters.insert(all.filters.end(), of_users.begin(), of_users.end());
     if (!options_.part.is_worker()) score(measured);
     measure_coverage(measured);
     if (options_.frames > 1) accumulate(measured, built_in.size());
     FilesBeside files;  // after what its jobs read
-    start_pictures(task_of(all), measured, files);
+    start_pictures(all, measured, files);
     if (!options_.gpus.empty()) begin("costs on GPUs");
     if (bench_.gpus.compile(measured.cells)) count_traffic(measured);
     bench_.gpus.add_to(measured.cells);
     if (options_.pictures) begin("pictures");
-    write_images(task_of(all), measured);
+    write_images(rig_of(all), measured);
     files.wait();
     const double shared_s = watch.read_s() - measured.truth_s - measured.attribution_s;
     for (measure::MeasuredCell& cell : measured.cells)
@@ -194,24 +192,25 @@ class TaskRun {
   images::Image draw_ambient() {
     render::ImageTarget dark("no light", GL_R32F, options_.width, options_.height);
     dark.clear(glm::vec4(0.0f));
-    return render::shade(renderer_.shaders, assets_.gbuffer(*task_.camera), dark.texture(), *task_.scene, *task_.camera,
+    return render::shade(rig_.renderer.shaders, rig_.gbuffer(), dark.texture(), *task_.scene, *task_.camera,
                          options_.range);
   }
 
   measure::MeasuredCell measure_user_cell(const filters::FilterRequest& request) {
     begin(request.label());
-    return measure_user_filter(options_, task_, request, {bench_.planned.argument, renderer_.context->info().backend});
+    return measure_user_filter(options_, task_, request,
+                               {bench_.planned.argument, rig_.renderer.context->info().backend});
   }
 
   /// Scores each cell against the truth, and takes its error apart.
   void score(measure::SceneMeasurement& measured) {
     if (options_.truth) begin("truth");
     Stopwatch watch;
-    const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+    const measure::SceneTruth& truth = rig_.truth();
     measured.truth_s = watch.read_s();
     if (options_.truth) begin("artefacts");
     watch = {};
-    if (!analyser_) analyser_.emplace(measure::TaskRig{renderer_, options_, task_, assets_}, truth);
+    if (!analyser_) analyser_.emplace(rig_, truth);
     measured.truth_s += watch.read_s();
     if (options_.truth) begin("errors");
     tbb::parallel_for_each(measured.cells, [&](measure::MeasuredCell& cell) {
@@ -230,17 +229,16 @@ class TaskRun {
       measured.attribution_s += *cell.record.measured_s;
     }
     measured.masks = analyser_->masks();
-    assets_.gbuffer(*task_.camera).forget_receivers();
+    rig_.gbuffer().forget_receivers();
     if (options_.grids) analyser_.reset();  // no other group needs it
     malloc_trim(0);                         // of rays, before the pictures
   }
 
   /// Accumulates the first cells over frames: those that are drawn in this process.
   void accumulate(measure::SceneMeasurement& measured, std::size_t count) {
-    const gl::Recorder::Pause pause(renderer_.recorder.get());
-    const std::string& absent = assets_.truth(*task_.camera).absent;
-    if (absent.empty() && count > 0 && !accumulation_)
-      accumulation_.emplace(measure::TaskRig{renderer_, options_, task_, assets_});
+    const gl::Recorder::Pause pause(rig_.renderer.recorder.get());
+    const std::string& absent = rig_.truth().absent;
+    if (absent.empty() && count > 0 && !accumulation_) accumulation_.emplace(rig_);
     const std::string picture = task_stem(options_, task_) + ".frames.png";
     images::Grid grid;
     grid.title = task_.scene->name + ": visibility accumulated over frames";
@@ -263,14 +261,14 @@ class TaskRun {
   /// Measures how the map's texels are spent on the view.
   void measure_coverage(measure::SceneMeasurement& measured) {
     if (!coverage_) {
-      measure::LightMap& light = assets_.light_map(*task_.camera, task_.map_size);
-      const measure::SceneTruth& truth = assets_.truth(*task_.camera);
+      const measure::LightMap& light = rig_.light();
+      const measure::SceneTruth& truth = rig_.truth();
       std::optional<measure::ViewReceivers> untraced;
       if (truth.receivers.image.points.empty())
-        untraced = measure::read_view_receivers(assets_.gbuffer(*task_.camera), task_.scene->light);
+        untraced = measure::read_view_receivers(rig_.gbuffer(), task_.scene->light);
       coverage_ = measure::measure_coverage(
           untraced ? *untraced : truth.receivers, *task_.camera,
-          measure::list_traced_layers(renderer_.shaders, assets_.gbuffer(*task_.camera),
+          measure::list_traced_layers(rig_.renderer.shaders, rig_.gbuffer(),
                                       measure::make_unbiased_light(options_, task_.scene->light, light.layers)),
           measure::read_linear_depth(light.map));
     }
@@ -284,8 +282,7 @@ class TaskRun {
 
   /// Counts what estimates of GPUs need of the map's reads.
   void count_traffic(measure::SceneMeasurement& measured) {
-    if (!traffic_)
-      traffic_.emplace(measure::TaskRig{renderer_, options_, task_, assets_}, coverage_->record.texels_per_pixel);
+    if (!traffic_) traffic_.emplace(rig_, coverage_->record.texels_per_pixel);
     for (measure::MeasuredCell& cell : measured.cells) traffic_->measure(cell);
     if (options_.grids) traffic_.reset();
   }
@@ -293,17 +290,15 @@ class TaskRun {
   /// Has pictures written from now on, beside what is still to be measured, but for the grid, which says all of it.
   void start_pictures(const measure::SceneTask& task, measure::SceneMeasurement& measured, FilesBeside& files) {
     if (options_.part.is_worker() || (options_.grids && !options_.pictures)) return;
-    files.write(plan_pictures(options_, task, measured, assets_.truth(*task.camera)));
-    if (options_.grids)
-      files.write(
-          plan_map_pictures(options_, task, measured, *coverage_, assets_.light_map(*task.camera, task.map_size)));
+    files.write(plan_pictures(options_, task, measured, rig_.truth()));
+    if (options_.grids) files.write(plan_map_pictures(options_, task, measured, *coverage_, rig_.light()));
   }
 
-  void write_images(const measure::SceneTask& task, measure::SceneMeasurement& measured) {
-    const measure::SceneTruth& truth = assets_.truth(*task.camera);
+  void write_images(const measure::TaskRig& rig, measure::SceneMeasurement& measured) {
+    const measure::SceneTask& task = rig.task;
     if (!options_.part.is_worker() && options_.grids && options_.pictures)
       for (measure::MeasuredCell& cell : measured.cells) cell.record.images.grid = name_grid(options_, task);
-    write_frames(renderer_, options_, task, assets_, measured);
+    write_frames(rig, measured);
     if (!options_.part.is_worker()) {
       for (measure::MeasuredCell& cell : measured.cells) {
         measure::write_stability(options_, task_stem(options_, task), cell);
@@ -313,7 +308,7 @@ class TaskRun {
     }
     note_float_images(options_, task, measured);
     if (options_.border_page) draw_border_page(task);
-    write_float_images(options_, task, measured, truth, renderer_.context->info());
+    write_float_images(options_, task, measured, rig_.truth(), rig_.renderer.context->info());
   }
 
   void draw_border_page(const measure::SceneTask& task) {
@@ -321,7 +316,7 @@ class TaskRun {
     measure::SceneTask built_in = task;
     std::erase_if(built_in.filters,
                   [&](const auto& request) { return request.user_file && !options_.part.is_worker(); });
-    write_border_page(file, renderer_, options_, built_in, assets_);
+    write_border_page(file, rig_of(built_in));
     listener_.note("border page: " + file.string());
   }
 
@@ -611,12 +606,6 @@ class Experiment {
       if (told_.insert(warning).second) warn(warning);
   }
 
-  void compile(const PlannedScene& planned, const measure::SceneTask& task, measure::SceneAssets& assets) {
-    const measure::LightMap& light = assets.light_map(*task.camera, task.map_size);
-    for (const filters::FilterRequest& request : task.filters)
-      measure::make_filter_passes(renderer_, planned.options, planned.scene, light, request);
-  }
-
   void run_scene(const RunPlan& plan, std::size_t index) {
     const PlannedScene& planned = plan.scenes[index];
     std::optional<measure::SceneAssets> assets;
@@ -625,7 +614,8 @@ class Experiment {
       if (!assets)
         assets.emplace(renderer_, planned.options, planned.scene, cache_, measure::padding_texels(planned.options));
       if (options_.part.product == options::Product::kPrograms)
-        compile(planned, each.task, *assets);
+        for (const filters::FilterRequest& request : each.task.filters)
+          measure::TaskRig{renderer_, planned.options, each.task, *assets}.make_passes(request);
       else
         TaskRun({renderer_, planned, each, *assets, run_, listener_, gpus_}).run();
     }

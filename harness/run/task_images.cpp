@@ -156,39 +156,31 @@ const std::array<Variant, 4>& list_variants() {
 /// Draws tiles of one task.
 class TilePainter {
  public:
-  TilePainter(measure::Renderer& renderer, const options::RunOptions& options, const measure::SceneTask& task,
-              measure::SceneAssets& assets)
-      : renderer_(renderer),
-        options_(options),
-        task_(task),
-        light_(assets.light_map(*task.camera, task.map_size)),
-        gbuffer_(assets.gbuffer(*task.camera)),
-        target_("visibility", GL_R32F, options.width, options.height) {}
+  explicit TilePainter(const measure::TaskRig& rig)
+      : rig_(rig), light_(rig.light()), target_("visibility", GL_R32F, rig.options.width, rig.options.height) {}
 
-  ~TilePainter() { light_.map.set_border(options_.range.border); }
+  ~TilePainter() { light_.map.set_border(rig_.options.range.border); }
   TilePainter(const TilePainter&) = delete;
   TilePainter& operator=(const TilePainter&) = delete;
 
   images::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
-    render::LightLayers light = measure::make_filter_light(options_, task_.scene->light, light_.layers, request);
+    const measure::SceneTask& task = rig_.task;
+    render::LightLayers light = measure::make_filter_light(rig_.options, task.scene->light, light_.layers, request);
     for (render::LightSetup& layer : light) layer.range = variant.rule;
     light_.map.set_border(variant.rule.border);
-    render::FilterPasses passes(renderer_.shaders, request, light_.map, light);
+    render::FilterPasses passes(rig_.renderer.shaders, request, light_.map, light);
     images::GridTile tile;
-    tile.visibility = measure::draw_visibility(passes, light_.map, gbuffer_, target_);
+    tile.visibility = measure::draw_visibility(passes, light_.map, rig_.gbuffer(), target_);
     tile.label = request.label();
     tile.caption = variant.caption;
-    tile.picture =
-        render::shade(renderer_.shaders, gbuffer_, target_.texture(), *task_.scene, *task_.camera, variant.rule);
+    tile.picture = render::shade(rig_.renderer.shaders, rig_.gbuffer(), target_.texture(), *task.scene, *task.camera,
+                                 variant.rule);
     return tile;
   }
 
  private:
-  measure::Renderer& renderer_;
-  const options::RunOptions& options_;
-  const measure::SceneTask& task_;
+  const measure::TaskRig& rig_;
   measure::LightMap& light_;
-  render::GBuffer& gbuffer_;
   render::ImageTarget target_;
 };
 
@@ -270,10 +262,9 @@ std::vector<FileJob> plan_map_pictures(const options::RunOptions& options, const
   return jobs;
 }
 
-void write_border_page(const std::filesystem::path& file, measure::Renderer& renderer,
-                       const options::RunOptions& options, const measure::SceneTask& task,
-                       measure::SceneAssets& assets) {
-  TilePainter painter(renderer, options, task, assets);
+void write_border_page(const std::filesystem::path& file, const measure::TaskRig& rig) {
+  TilePainter painter(rig);
+  const measure::SceneTask& task = rig.task;
   images::Grid grid;
   grid.title = fmt::format("{}: what lies outside the map", task.scene->name);
   grid.subtitle =

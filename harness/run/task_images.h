@@ -47,8 +47,6 @@ std::vector<FileJob> plan_map_pictures(const options::RunOptions& options, const
 /// each rule of an orthographic map that is wrong in one thing. Users' own filters, which have a process of their own,
 /// are left out. Leaves the map as the run has it. Writes a PNG file. Throws Error(kOutput). Cost: four untimed lookups
 /// a filter, and its prefilter as often.
-void write_border_page(const std::filesystem::path& file, measure::Renderer& renderer,
-                       const options::RunOptions& options, const measure::SceneTask& task,
-                       measure::SceneAssets& assets);
+void write_border_page(const std::filesystem::path& file, const measure::TaskRig& rig);
 
 }  // namespace shadowbench::run
