@@ -102,7 +102,7 @@ FilterSpec strip(FilterSpec spec) {
   spec.claims.clear();
   spec.teaching = false;
   spec.body_first_line = 1;
-  spec.body = squeeze_blanks(strip_comments(spec.body));
+  spec.body = squeeze_blanks(blank_comments(spec.body));
   return spec;
 }
 

@@ -317,7 +317,7 @@ void read_screens(const TomlTable& root, std::string_view code, std::vector<std:
 }
 
 void inspect_body(const TomlTable& root, const std::vector<std::string>& names, FilterSpec& spec) {
-  const std::string code = strip_comments(spec.body);
+  const std::string code = blank_comments(spec.body);
   read_passes(root, code, names, spec);
   read_screens(root, code, names, spec);
   spec.has_encode = has_function(code, "vec4", "encode");

@@ -51,19 +51,6 @@ std::size_t find_word(std::string_view code, std::string_view word, std::size_t 
   return std::string_view::npos;
 }
 
-/// The text with every comment turned into as many blanks as it has characters, and its line ends.
-std::string blank_comments(const std::string& glsl) {
-  std::string code = glsl;
-  for (std::size_t i = 0; i < code.size(); ++i) {
-    const std::size_t end = end_of_comment(glsl, i);
-    if (end == i) continue;
-    for (; i < end; ++i)
-      if (code[i] != '\n') code[i] = ' ';
-    --i;
-  }
-  return code;
-}
-
 /// Words, and what else is no blank, character by character.
 std::vector<std::string> split_tokens(std::string_view code) {
   std::vector<std::string> tokens;
@@ -126,14 +113,13 @@ Condition find_condition(const std::string& code, std::size_t after_word, bool i
 
 }  // namespace
 
-std::string strip_comments(const std::string& glsl) {
-  std::string code;
-  for (std::size_t i = 0; i < glsl.size();) {
+std::string blank_comments(std::string glsl) {
+  for (std::size_t i = 0; i < glsl.size(); ++i) {
     const std::size_t end = end_of_comment(glsl, i);
-    code += end == i ? glsl[i++] : ' ';
-    i = std::max(i, end);
+    for (std::size_t at = i; at < end; ++at)
+      if (glsl[at] != '\n') glsl[at] = ' ';
   }
-  return code;
+  return glsl;
 }
 
 std::string squeeze_blanks(std::string_view text) {
@@ -173,7 +159,7 @@ std::vector<std::string> list_language_words() {
 std::vector<std::string> list_map_names() { return split_tokens(kMapNames); }
 
 std::vector<std::string> list_declared_names(const std::string& glsl) {
-  const std::vector<std::string> tokens = split_tokens(strip_comments(glsl));
+  const std::vector<std::string> tokens = split_tokens(blank_comments(glsl));
   std::vector<std::string> types = split_tokens(kTypes), names;
   const auto is_capital = [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; };
   for (std::size_t i = 1; i < tokens.size(); ++i) {

@@ -9,8 +9,8 @@ namespace shadowbench::filters {
 // Just enough of GLSL to know what a filter's text has. Regular expressions of the standard library are not used: they
 // recurse, and a long file of a user would end the program.
 
-/// The text with every comment turned into a blank.
-std::string strip_comments(const std::string& glsl);
+/// The text with every comment turned into as many blanks as it has characters, and its line ends.
+std::string blank_comments(std::string glsl);
 
 /// The text with every run of blanks between other characters as one: a line's end where it holds one, or a space.
 std::string squeeze_blanks(std::string_view text);

@@ -238,13 +238,6 @@ std::vector<Metric> list_costs() {
 
 }  // namespace
 
-std::vector<Metric> list_metric_rows() {
-  std::vector<Metric> rows;
-  for (auto* list : {list_errors, list_map_metrics, list_artefacts, list_parts, list_stability, list_costs})
-    std::ranges::move(list(), std::back_inserter(rows));
-  return rows;
-}
-
 std::optional<double> Metric::read(const MetricValues& values) const {
   std::optional<double> number;
   visit_metric(*this, values, [&](const std::string&, const auto& value) {
@@ -254,7 +247,12 @@ std::optional<double> Metric::read(const MetricValues& values) const {
 }
 
 std::span<const Metric> metric_table() {
-  static const std::vector<Metric> table = list_metric_rows();
+  static const std::vector<Metric> table = [] {
+    std::vector<Metric> rows;
+    for (auto* list : {list_errors, list_map_metrics, list_artefacts, list_parts, list_stability, list_costs})
+      std::ranges::move(list(), std::back_inserter(rows));
+    return rows;
+  }();
   return table;
 }
 

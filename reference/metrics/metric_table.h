@@ -193,9 +193,6 @@ void visit_metric(const Metric& metric, Values& values, Visitor&& visit) {
       metric.member);
 }
 
-/// Makes the rows of the table of metrics; metric_table() keeps them.
-std::vector<Metric> list_metric_rows();
-
 /// All metrics, in the order in which they are listed: the one list of metrics that there is.
 std::span<const Metric> metric_table();
 
