@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <tuple>
 
 #include "base/error.h"
@@ -15,24 +16,12 @@
 namespace shadowbench::render {
 namespace {
 
-/// Where a key's amount goes.
-using Target = std::function<double&(BiasRule&)>;
-
-/// One mode: what it switches on, and which amounts it takes.
-struct Mode {
-  std::map<std::string, Target> keys;
-  std::function<void(BiasRule&)> begin = [](BiasRule&) {};
-  bool needs_amount = true;
-};
-
-std::map<std::string, Target> list_units(BiasAmount& (*amount)(BiasRule&)) {
-  return {{"depth", [=](BiasRule& r) -> double& { return amount(r).depth; }},
-          {"texels", [=](BiasRule& r) -> double& { return amount(r).texels; }},
-          {"world", [=](BiasRule& r) -> double& { return amount(r).world; }}};
-}
-
-Target constant_depth() {
-  return [](BiasRule& r) -> double& { return r.constant.depth; };
+/// The amounts of a part of the bias, one for each unit.
+template <BiasAmount records::BiasRecord::*kPart>
+std::map<std::string, BiasMode::Target> list_units() {
+  return {{"depth", [](BiasRule& r) -> double& { return (r.*kPart).depth; }},
+          {"texels", [](BiasRule& r) -> double& { return (r.*kPart).texels; }},
+          {"world", [](BiasRule& r) -> double& { return (r.*kPart).world; }}};
 }
 
 /// The tangent of 89.99 degrees.
@@ -41,39 +30,78 @@ constexpr double kAnySlope = 5730.0;
 /// The slack that rounding needs, unless the user gives one.
 constexpr double kRoundingDepth = 2e-5;
 
-std::map<std::string, Mode> make_modes() {
-  std::map<std::string, Mode> modes;
-  modes["none"].needs_amount = false;
-  modes["constant"].keys = list_units([](BiasRule& r) -> BiasAmount& { return r.constant; });
-  modes["slope"].keys = list_units([](BiasRule& r) -> BiasAmount& { return r.slope; });
-  modes["plane"].keys = {{"kernels", [](BiasRule& r) -> double& { return r.plane_kernels; }},
-                         {"texels", [](BiasRule& r) -> double& { return r.plane_texels; }},
-                         {"depth", constant_depth()}};
-  modes["normal-offset"].keys = list_units([](BiasRule& r) -> BiasAmount& { return r.normal_offset; });
-  modes["normal-offset"].keys.erase("depth");
-  modes["receiver-plane"] = {{{"depth", constant_depth()}}, [](BiasRule& r) { r.receiver_plane = true; }, false};
-  modes["polygon-offset"].keys = {{"factor", [](BiasRule& r) -> double& { return r.map.polygon_factor; }},
-                                  {"units", [](BiasRule& r) -> double& { return r.map.polygon_units; }}};
-  modes["front-cull"] = {{{"depth", constant_depth()}}, [](BiasRule& r) { r.map.cull_front = true; }, false};
-  modes["midpoint"] = {{{"depth", constant_depth()}}, [](BiasRule& r) { r.map.midpoint = true; }, false};
-  return modes;
+std::vector<BiasMode> make_modes() {
+  using Record = records::BiasRecord;
+  const auto depth = [](const BiasTheory& t) { return t.depth(); };
+  const auto slack = [](const BiasTheory&) { return BiasRule().constant.depth; };
+  const BiasMode::Target constant_depth = [](BiasRule& r) -> double& { return r.constant.depth; };
+  std::map<std::string, BiasMode::Target> lengths = list_units<&Record::normal_offset>();
+  lengths.erase("depth");
+  return {
+      {.name = "none"},
+      {.name = "constant",
+       .keys = list_units<&Record::constant>(),
+       .key = "depth",
+       .meaning = "One depth for every receiver.",
+       .amount = depth,
+       .lift_depth = depth},
+      {.name = "slope",
+       .keys = list_units<&Record::slope>(),
+       .key = "depth",
+       .meaning = "An amount times 1 - n.l.",
+       .amount = [](const BiasTheory& t) { return t.depth() / (1.0 - t.n_dot_l); },
+       .lift_depth = depth},
+      {.name = "plane",
+       .keys = {{"kernels", [](BiasRule& r) -> double& { return r.plane_kernels; }},
+                {"texels", [](BiasRule& r) -> double& { return r.plane_texels; }},
+                {"depth", constant_depth}},
+       .key = "texels",
+       .meaning =
+           "The depth that the receiver's own plane gains over so many texels: theory holds at every slope up to 10:1.",
+       .amount = [](const BiasTheory& t) { return t.reach_texels; },
+       .lift_depth = depth},
+      {.name = "normal-offset",
+       .keys = lengths,
+       .key = "texels",
+       .meaning = "The receiver is moved along its normal, by an amount times the sine of its angle to the light.",
+       // Moved along the normal by s r sin(theta), a point lies s r tan(theta) above the plane, measured along the
+       // light.
+       .amount =
+           [](const BiasTheory& t) {
+             return t.depth() / std::hypot(t.larger_slope, t.slope_per_texel - t.larger_slope);
+           },
+       .lift_depth = depth},
+      {.name = "polygon-offset",
+       .keys = {{"factor", [](BiasRule& r) -> double& { return r.map.polygon_factor; }},
+                {"units", [](BiasRule& r) -> double& { return r.map.polygon_units; }}},
+       .key = "factor",
+       .meaning =
+           "glPolygonOffset while the map is drawn: an amount times the larger of the caster's two depth slopes.",
+       .amount = [](const BiasTheory& t) { return t.depth() / t.larger_slope; },
+       .lift_depth = depth},
+      {.name = "receiver-plane",
+       .keys = {{"depth", constant_depth}},
+       .begin = [](BiasRule& r) { r.receiver_plane = true; },
+       .key = "depth",
+       .meaning =
+           "Every tap is compared with the depth of the receiver's plane there; theory asks for no more than the "
+           "slack that rounding needs.",
+       .amount = slack,
+       .lift_depth = slack},
+      {.name = "front-cull",
+       .keys = {{"depth", constant_depth}},
+       .begin = [](BiasRule& r) { r.map.cull_front = true; },
+       .meaning = "The map holds the faces turned away from the light, of objects that allow it; with the slack that "
+                  "rounding needs."},
+      {.name = "midpoint",
+       .keys = {{"depth", constant_depth}},
+       .begin = [](BiasRule& r) { r.map.midpoint = true; },
+       .meaning = "The map holds what lies half-way between the first and the second surface; with the slack that "
+                  "rounding needs."}};
 }
 
-const std::map<std::string, Mode>& modes() {
-  static const std::map<std::string, Mode> table = make_modes();
-  return table;
-}
-
-template <class Table>
-std::vector<std::string> list_names(const Table& table) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : table) names.push_back(name);
-  return names;
-}
-
-template <class Table>
-[[noreturn]] void fail_unknown(const char* what, const std::string& name, const Table& table) {
-  const std::vector<std::string> known = list_names(table);
+[[noreturn]] void fail_unknown(const char* what, const std::string& name, std::vector<std::string> known) {
+  std::ranges::sort(known);
   const std::string hint = known.empty() ? "; this mode takes none" : did_you_mean_or_known(name, known);
   throw Error(ErrorKind::kUsage, fmt::format("--bias: unknown {} '{}'{}", what, name, hint));
 }
@@ -90,24 +118,26 @@ double parse_amount(const std::string& text) {
 void add(BiasRule& rule, const std::string& text) {
   const std::size_t colon = text.find(':');
   const std::string name = text.substr(0, colon);
-  const auto found = modes().find(name);
-  if (found == modes().end()) fail_unknown("mode", name, modes());
-  const Mode& mode = found->second;
-  mode.begin(rule);
+  const auto mode = std::ranges::find(bias_modes(), name, &BiasMode::name);
+  if (mode == bias_modes().end()) {
+    const auto names = bias_modes() | std::views::transform(&BiasMode::name);
+    fail_unknown("mode", name, {names.begin(), names.end()});
+  }
+  if (mode->begin) mode->begin(rule);
   std::vector<std::pair<std::string, std::string>> amounts;
   if (colon != std::string::npos) amounts = split_assignments(text.substr(colon + 1), "--bias " + name);
-  const bool any = !amounts.empty();
   for (const auto& [key, amount] : amounts) {
-    const auto target = mode.keys.find(key);
-    if (target == mode.keys.end()) fail_unknown("amount", key, mode.keys);
+    const auto target = mode->keys.find(key);
+    const auto keys = std::views::keys(mode->keys);
+    if (target == mode->keys.end()) fail_unknown("amount", key, {keys.begin(), keys.end()});
     target->second(rule) += parse_amount(amount);
   }
-  if (!any && mode.needs_amount) {
+  if (!amounts.empty()) return;
+  if (mode->begin) rule.constant.depth += kRoundingDepth;
+  if (mode->needs_amount()) {
     throw Error(ErrorKind::kUsage,
-                fmt::format("--bias {}: no amount given, write {}:{}=VALUE", name, name, mode.keys.begin()->first));
+                fmt::format("--bias {}: no amount given, write {}:{}=VALUE", name, name, mode->keys.begin()->first));
   }
-  const bool has_slack = !mode.needs_amount && mode.keys.contains("depth");
-  if (!any && has_slack) rule.constant.depth += kRoundingDepth;
 }
 
 render::Bias resolve(const BiasRule& rule, const scene::LightFrustum& frustum, double reach_texels) {
@@ -148,12 +178,11 @@ BiasRule parse_bias(const std::vector<std::string>& texts) {
 
 std::string list_bias_modes() {
   std::vector<std::string> texts;
-  for (const auto& [name, mode] : modes()) {
-    const std::vector<std::string> keys = list_names(mode.keys);
-    texts.push_back(keys.empty() ? name
-                                 : fmt::format("{}{}:{}=X{}", name, mode.needs_amount ? "" : "[",
-                                               fmt::join(keys, "=X,"), mode.needs_amount ? "" : "]"));
+  for (const BiasMode& mode : bias_modes()) {
+    const std::string keys = fmt::format(":{}=X", fmt::join(std::views::keys(mode.keys), "=X,"));
+    texts.push_back(mode.name + (mode.begin ? "[" + keys + "]" : mode.needs_amount() ? keys : ""));
   }
+  std::ranges::sort(texts);
   return fmt::format("{}", fmt::join(texts, " | "));
 }
 
@@ -193,46 +222,6 @@ render::Bias resolve_comparison_bias(const BiasRule& rule, const scene::LightFru
   return bias;
 }
 
-namespace {
-
-std::vector<SweptMode> make_swept_modes() {
-  const auto depth = [](const BiasTheory& t) { return t.depth(); };
-  const auto slack = [](const BiasTheory&) { return BiasRule().constant.depth; };
-  return {
-      {"constant", "depth", "One depth for every receiver.", depth, depth},
-      {"slope", "depth", "An amount times 1 - n.l.", [](const BiasTheory& t) { return t.depth() / (1.0 - t.n_dot_l); },
-       depth},
-      {"plane", "texels",
-       "The depth that the receiver's own plane gains over so many texels: theory holds at every slope up to 10:1.",
-       [](const BiasTheory& t) { return t.reach_texels; }, depth},
-      {"normal-offset", "texels",
-       "The receiver is moved along its normal, by an amount times the sine of its angle to the light.",
-       // Moved along the normal by s r sin(theta), a point lies s r tan(theta) above the plane, measured along the
-       // light.
-       [](const BiasTheory& t) { return t.depth() / std::hypot(t.larger_slope, t.slope_per_texel - t.larger_slope); },
-       depth},
-      {"polygon-offset", "factor",
-       "glPolygonOffset while the map is drawn: an amount times the larger of the caster's two depth slopes.",
-       [](const BiasTheory& t) { return t.depth() / t.larger_slope; }, depth},
-      {"receiver-plane", "depth",
-       "Every tap is compared with the depth of the receiver's plane there; theory asks for no more than the slack "
-       "that rounding needs.",
-       slack, slack},
-      {"front-cull",
-       "",
-       "The map holds the faces turned away from the light, of objects that allow it; with the slack that rounding "
-       "needs.",
-       {},
-       {}},
-      {"midpoint",
-       "",
-       "The map holds what lies half-way between the first and the second surface; with the slack that rounding needs.",
-       {},
-       {}}};
-}
-
-}  // namespace
-
 BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver) {
   const glm::dvec2 slopes = glm::abs(glm::dvec2(receiver.depth_per_texel));
   return {.reach_texels = reach_texels,
@@ -242,7 +231,7 @@ BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver) {
           .texel_m = static_cast<double>(receiver.texel_size_ws)};
 }
 
-BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers,
+BiasTheory find_theory(const BiasMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers,
                        double share) {
   struct Need {
     double amount;
@@ -262,12 +251,12 @@ BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::ve
   return place->theory;
 }
 
-BiasRule SweptMode::make_rule(double amount_of_key) const {
+BiasRule BiasMode::make_rule(double amount_of_key) const {
   return parse_bias({key.empty() ? name : fmt::format("{}:{}={}", name, key, amount_of_key)});
 }
 
-const std::vector<SweptMode>& swept_modes() {
-  static const std::vector<SweptMode> modes = make_swept_modes();
+const std::vector<BiasMode>& bias_modes() {
+  static const std::vector<BiasMode> modes = make_modes();
   return modes;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <array>
-#include <functional>
+#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -111,13 +112,20 @@ struct BiasTheory {
 /// The theory of a kernel with this reach on a receiver's plane.
 BiasTheory make_theory(double reach_texels, const filters::Receiver& receiver);
 
-/// One mode of bias as it is swept.
-struct SweptMode {
-  std::string name;                                     ///< as `--bias` has it
-  std::string key;                                      ///< whose amount is swept; empty: the mode takes none
-  std::string meaning;                                  ///< one sentence
-  std::function<double(const BiasTheory&)> amount;      ///< theoretical, in the key's unit
-  std::function<double(const BiasTheory&)> lift_depth;  ///< how far that moves a receiver with these slopes, in depth
+/// One mode of bias: how it is asked for, and how it is swept.
+struct BiasMode {
+  using Target = double& (*)(BiasRule&);
+  using Theory = double (*)(const BiasTheory&);
+
+  std::string name;                         ///< as `--bias` has it
+  std::map<std::string, Target> keys = {};  ///< its amounts, and where they go
+  void (*begin)(BiasRule&) = nullptr;       ///< switches on what needs no amount, but slack for rounding
+  std::string key = {};                     ///< whose amount is swept; empty: the mode takes none
+  std::string meaning = {};                 ///< one sentence
+  Theory amount = nullptr;                  ///< theoretical, in the key's unit
+  Theory lift_depth = nullptr;              ///< how far that moves a receiver with these slopes, in depth
+
+  bool needs_amount() const { return !begin && !keys.empty(); }
 
   /// The rule that `--bias NAME:KEY=amount` stands for; `amount` is not used where the mode takes none.
   BiasRule make_rule(double amount) const;
@@ -125,10 +133,13 @@ struct SweptMode {
 
 /// The theory of the receiver that needs more of a mode than a `share` of all receivers do. Of two that need the same,
 /// the one on the steeper plane counts as needing more. Requires a mode with an amount, and receivers.
-BiasTheory find_theory(const SweptMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers,
+BiasTheory find_theory(const BiasMode& mode, double reach_texels, const std::vector<filters::Receiver>& receivers,
                        double share);
 
-/// Lists all modes: those with an amount first.
-const std::vector<SweptMode>& swept_modes();
+/// All modes: `none`, then those whose amount is swept, then those without one.
+const std::vector<BiasMode>& bias_modes();
+
+/// All but `none`.
+inline std::span<const BiasMode> swept_modes() { return std::span(bias_modes()).subspan(1); }
 
 }  // namespace shadowbench::render

@@ -67,7 +67,7 @@ class BiasSweep {
     make_masks();
     find_lit();
     describe();
-    for (const render::SweptMode& mode : render::swept_modes()) sweep_mode(mode);
+    for (const render::BiasMode& mode : render::swept_modes()) sweep_mode(mode);
     rig_.renderer.context->require_no_gl_errors();
     return std::move(record_);
   }
@@ -119,7 +119,7 @@ class BiasSweep {
               scene_.name));
   }
 
-  render::BiasTheory find_theory(const render::SweptMode& mode, double reach_texels) const {
+  render::BiasTheory find_theory(const render::BiasMode& mode, double reach_texels) const {
     return render::find_theory(mode, reach_texels, lit_, kPercentile);
   }
 
@@ -175,7 +175,7 @@ class BiasSweep {
   }
 
   /// The cells of a filter under a mode, with nothing measured yet.
-  std::vector<records::BiasCell> plan_cells(const render::SweptMode& mode, const filters::FilterRequest& request) {
+  std::vector<records::BiasCell> plan_cells(const render::BiasMode& mode, const filters::FilterRequest& request) {
     records::BiasCell cell{.scene = scene_.name,
                            .light = record_.light,
                            .view = task_.camera->name,
@@ -202,7 +202,7 @@ class BiasSweep {
     return cells;
   }
 
-  void sweep_mode(const render::SweptMode& mode) {
+  void sweep_mode(const render::BiasMode& mode) {
     records::BiasModeRecord record{mode.name, mode.meaning};
     Requests usable;
     for (const filters::FilterRequest& request : options_.filters) {

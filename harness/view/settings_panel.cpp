@@ -391,13 +391,13 @@ void SettingsPanel::show_fit() {
 
 void SettingsPanel::show_bias() {
   const std::vector<std::string>& texts = bench_.state().options.bias_texts;
-  std::vector<std::string> modes = {"default", "none"};
-  for (const render::SweptMode& mode : render::swept_modes()) modes.push_back(mode.name);
+  std::vector<std::string> modes = {"default"};
+  for (const render::BiasMode& mode : render::bias_modes()) modes.push_back(mode.name);
   const std::string current = texts.empty() ? "default" : texts.front().substr(0, texts.front().find(':'));
   std::size_t chosen = find_index(modes, current);
   const bool other = widgets_.choose("bias", "bias", modes, chosen);
-  const auto mode = std::ranges::find(render::swept_modes(), modes[chosen], &render::SweptMode::name);
-  const bool has_amount = mode != render::swept_modes().end() && !mode->key.empty();
+  const auto mode = std::ranges::find(render::bias_modes(), modes[chosen], &render::BiasMode::name);
+  const bool has_amount = mode != render::bias_modes().end() && !mode->key.empty();
   bool changed = other;
   if (has_amount) {
     const Widgets::SliderLimits limits = bias_limits(mode->key);

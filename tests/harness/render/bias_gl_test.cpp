@@ -125,15 +125,15 @@ scene::Scene make_plane(double tilt_deg, double azimuth_deg) {
 }
 
 /// Gives the rule of a mode at `factor` times the theoretical amount, also for planes that the light grazes.
-render::BiasRule make_rule(const render::SweptMode& mode, const render::BiasTheory& theory, double factor) {
+render::BiasRule make_rule(const render::BiasMode& mode, const render::BiasTheory& theory, double factor) {
   render::BiasRule rule = mode.make_rule(factor * mode.amount(theory));
   rule.max_tangent = 1e4;
   return rule;
 }
 
-const render::SweptMode& find_mode(const std::string& name) {
-  const auto& modes = render::swept_modes();
-  return *std::find_if(modes.begin(), modes.end(), [&](const render::SweptMode& mode) { return mode.name == name; });
+const render::BiasMode& find_mode(const std::string& name) {
+  const auto modes = render::swept_modes();
+  return *std::find_if(modes.begin(), modes.end(), [&](const render::BiasMode& mode) { return mode.name == name; });
 }
 
 struct Sweep {
@@ -193,7 +193,7 @@ TEST_P(PlaneSweep, NoAcneAtTheTheoreticalAmount_AcneAtHalfOfIt) {
 std::vector<std::string> mode_names() {
   std::vector<std::string> names;
   // Receiver-plane needs no amount but what rounding asks for.
-  for (const render::SweptMode& mode : render::swept_modes())
+  for (const render::BiasMode& mode : render::swept_modes())
     if (!mode.key.empty() && mode.name != "receiver-plane") names.push_back(mode.name);
   return names;
 }

@@ -96,8 +96,8 @@ filters::Receiver make_receiver(float du, float dv, float n_dot_l) {
   return r;
 }
 
-const SweptMode& find_mode(const std::string& name) {
-  for (const SweptMode& mode : swept_modes())
+const BiasMode& find_mode(const std::string& name) {
+  for (const BiasMode& mode : swept_modes())
     if (mode.name == name) return mode;
   throw std::runtime_error(name);
 }
