@@ -159,11 +159,9 @@ void SceneAssets::require_casters(const LightMap& light) const {
 }
 
 render::GBuffer& SceneAssets::gbuffer(const scene::Camera& camera) {
-  const auto found = gbuffers_.find(&camera);
-  if (found != gbuffers_.end()) return found->second;
-  render::GBuffer& kept = gbuffers_.try_emplace(&camera, options_.width, options_.height).first->second;
-  draw_view(kept, camera);
-  return kept;
+  const auto [kept, is_new] = gbuffers_.try_emplace(&camera, options_.width, options_.height);
+  if (is_new) draw_view(kept->second, camera);
+  return kept->second;
 }
 
 void SceneAssets::draw_view(render::GBuffer& gbuffer, const scene::Camera& camera, const glm::dvec2& jitter,

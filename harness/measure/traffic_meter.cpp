@@ -234,9 +234,17 @@ class CountedLookup final : public filters::Lookup {
   }
 };
 
-/// Nothing without a receiver.
-std::optional<std::vector<double>> count_traffic(const std::vector<TiledLayer>& tiled, std::size_t receivers,
-                                                 std::span<const CacheShape> caches) {
+/// Counts what the lookups that `make_lookup` makes of layers read. Nothing without a receiver.
+template <class Layer, class MakeLookup>
+std::optional<std::vector<double>> count_traffic(const std::vector<Layer>& layers, const ModelView& view,
+                                                 std::span<const CacheShape> caches, const MakeLookup& make_lookup) {
+  std::vector<TiledLayer> tiled;
+  std::size_t receivers = 0;
+  for (const Layer& layer : layers) {
+    if (layer.receivers.empty()) continue;
+    tiled.emplace_back(make_lookup(layer), layer.receivers, view.width, view.height);
+    receivers += layer.receivers.size();
+  }
   if (receivers == 0) return std::nullopt;
   Traffic traffic(caches);
   for (std::size_t tile = 0; tile < tiled.front().receivers.size() / kTilePixels; ++tile) {
@@ -266,27 +274,16 @@ std::optional<std::vector<double>> count_map_traffic(const filters::FilterReques
                                                      std::span<const CacheShape> caches) {
   const filters::ScalarModel* model = filters::find_model(request.spec);
   if (!model) return std::nullopt;
-  std::vector<TiledLayer> tiled;
-  std::size_t receivers = 0;
-  for (const ModelLayer& layer : layers) {
-    if (layer.receivers.empty()) continue;
-    tiled.emplace_back(model->prepare(view.input(request, layer.map), filters::Precision::kFloat), layer.receivers,
-                       view.width, view.height);
-    receivers += layer.receivers.size();
-  }
-  return count_traffic(tiled, receivers, caches);
+  return count_traffic(layers, view, caches, [&](const ModelLayer& layer) {
+    return model->prepare(view.input(request, layer.map), filters::Precision::kFloat);
+  });
 }
 
 std::optional<std::vector<double>> count_map_traffic(const std::vector<CountedLayer>& layers, const ModelView& view,
                                                      std::span<const CacheShape> caches) {
-  std::vector<TiledLayer> tiled;
-  std::size_t receivers = 0;
-  for (const CountedLayer& layer : layers) {
-    if (layer.receivers.empty()) continue;
-    tiled.emplace_back(std::make_unique<CountedLookup>(layer, view.width), layer.receivers, view.width, view.height);
-    receivers += layer.receivers.size();
-  }
-  return count_traffic(tiled, receivers, caches);
+  return count_traffic(
+      layers, view, caches,
+      [&](const CountedLayer& layer) { return std::make_unique<CountedLookup>(layer, view.width); });
 }
 
 TrafficMeter::TrafficMeter(const TaskRig& rig, std::optional<double> texels_per_pixel)
