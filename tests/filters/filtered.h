@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,14 @@ namespace shadowbench::filters {
 inline DepthMap make_edge(int size, int edge, float near, float far) {
   DepthMap map{size, {}};
   for (int i = 0; i < size * size; ++i) map.stored.push_back(i % size < edge ? near : far);
+  return map;
+}
+
+/// A map of depths that are spread evenly over 0 .. 1.
+inline DepthMap make_random_map(int size, unsigned seed) {
+  std::mt19937 random(seed);
+  DepthMap map{size, {}};
+  for (int i = 0; i < size * size; ++i) map.stored.push_back(static_cast<float>(random()) * 0x1p-32f);
   return map;
 }
 

@@ -17,13 +17,6 @@ Kernel kernel_of(const std::string& text) {
   return find_kernel(request.spec, request.values).value();
 }
 
-DepthMap make_random_map(int size, unsigned seed) {
-  std::mt19937 random(seed);
-  DepthMap map{size, {}};
-  for (int i = 0; i < size * size; ++i) map.stored.push_back(static_cast<float>(random()) * 0x1p-32f);
-  return map;
-}
-
 TEST(KernelNames, TellKernelsApart) {
   std::set<std::string> names;
   for (const char* text :

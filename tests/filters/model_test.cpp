@@ -359,8 +359,7 @@ INSTANTIATE_TEST_SUITE_P(Filters, Penumbra,
                          });
 
 TEST_P(ContactHardening, LightOfNoSize_EqualsHardShadow) {
-  std::mt19937 random(3);
-  const DepthMap map = make_map([&](int, int) { return static_cast<float>(random()) * 0x1p-32f; });
+  const DepthMap map = make_random_map(kMapSide, 3);
   const Filtered soft(GetParam(), map), hard("pcf2x2", map);
   for (int i = 0; i < 500; ++i) {
     const Receiver r = make_floor_receiver(2.0 + 0.12 * i, 61.0 - 0.11 * i, 0.0f);
@@ -371,8 +370,7 @@ TEST_P(ContactHardening, LightOfNoSize_EqualsHardShadow) {
 /// A ray to the centre of the light, and rays to a light without a size, compare with the receiver's own texel alone,
 /// however many steps they take.
 TEST(Smrt, OneRay_AndALightOfNoSize_EqualNoFilter) {
-  std::mt19937 random(4);
-  const DepthMap map = make_map([&](int, int) { return static_cast<float>(random()) * 0x1p-32f; });
+  const DepthMap map = make_random_map(kMapSide, 4);
   const Filtered hard("none", map);
   for (const char* text :
        {"smrt:rays=1", "smrt:rays=1,thickness=1,steps=32", "smrt:rays=1,steps=4", "smrt:thickness=1"}) {

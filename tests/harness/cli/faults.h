@@ -48,10 +48,10 @@ class FaultTest : public ProgramTest {
     return {WEXITSTATUS(status), 0};
   }
 
-  /// Waits until something holds, half a minute at most.
+  /// Waits until something holds, a minute at most unless told.
   template <class Condition>
-  static bool wait_until(Condition holds) {
-    for (int i = 0; i < 3000; ++i) {
+  static bool wait_until(const Condition& holds, int hundredths_s = 6000) {
+    for (int i = 0; i < hundredths_s; ++i) {
       if (holds()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

@@ -73,15 +73,6 @@ class SideMeasurementTest : public ViewTest {
     return found;
   }
 
-  template <class Condition>
-  static bool wait_until(const Condition& holds, int hundredths_s = 6000) {
-    for (int i = 0; i < hundredths_s; ++i) {
-      if (holds()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
-  }
-
   /// Killed processes are given a moment.
   void expect_nothing_left() const {
     wait_until([&] { return list_processes().empty(); }, kMoment);

@@ -5,12 +5,12 @@
 #include "filters/catalogue.h"
 #include "harness/measure/scene_assets.h"
 #include "harness/view/view_state.h"
-#include "tests/harness/cli/program.h"
+#include "tests/harness/cli/faults.h"
 
 namespace shadowbench::test {
 
 /// A window's state without a window, in a folder of each test's own.
-class ViewTest : public ProgramTest {
+class ViewTest : public FaultTest {
  protected:
   static measure::Renderer& renderer() {
     static measure::Renderer only = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
