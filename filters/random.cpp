@@ -133,11 +133,11 @@ float interleaved_gradient_turn(glm::ivec2 pixel, std::uint32_t frame) {
 
 float blue_noise_turn(glm::ivec2 pixel, std::uint32_t seed, std::uint32_t frame) {
   constexpr unsigned kRankShift = 20;  // from ranks to 2^-32 of a turn
-  static_assert(kBlueNoise.size() << kRankShift == std::size_t{1} << 32);
+  static_assert(std::tuple_size_v<BlueNoise> << kRankShift == std::size_t{1} << 32);
   const std::uint32_t shift = hash_bits(seed);
   const std::size_t x = (static_cast<std::uint32_t>(pixel.x) + shift) % kBlueNoiseSide;
   const std::size_t y = (static_cast<std::uint32_t>(pixel.y) + (shift >> 16)) % kBlueNoiseSide;
-  return to_turn((std::uint32_t{kBlueNoise[y * kBlueNoiseSide + x]} << kRankShift) + frame_bits(frame));
+  return to_turn((std::uint32_t{blue_noise()[y * kBlueNoiseSide + x]} << kRankShift) + frame_bits(frame));
 }
 
 float turn_of(const std::string& rotation, glm::ivec2 pixel, std::uint32_t seed, std::uint32_t frame) {

@@ -35,7 +35,7 @@ constexpr GLuint kBlueNoiseUnit = 7;  // of lib/random.glsl
 gl::Texture make_blue_noise() {
   constexpr int kSide = static_cast<int>(filters::kBlueNoiseSide);
   std::vector<float> turns;
-  for (const std::uint16_t rank : filters::kBlueNoise) turns.push_back(filters::rank_to_turn(rank));
+  for (const std::uint16_t rank : filters::blue_noise()) turns.push_back(filters::rank_to_turn(rank));
   gl::Texture texture("blue noise", GL_R32F, kSide, kSide);
   texture.upload_floats(turns, 1);
   return texture;

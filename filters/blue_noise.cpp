@@ -1,17 +1,12 @@
-// Prints the source of the blue noise texture. In integers, so that every machine makes the same.
-// Source: Ulichney 1993, The void-and-cluster method for dither array generation, SPIE 1913. The texture repeats and
-// the energy is a sum, so the void among ones is the cluster among zeros, and his last two phases are one.
-
-#include <algorithm>
-#include <cstdint>
-#include <cstdio>
 #include <vector>
 
 #include "filters/random.h"
 
+namespace shadowbench::filters {
 namespace {
 
-using shadowbench::filters::kBlueNoiseSide;
+// In integers, so that every machine makes the same texture. It repeats and the energy is a sum, so the void among ones
+// is the cluster among zeros, and Ulichney's last two phases are one.
 
 constexpr std::size_t kTexels = kBlueNoiseSide * kBlueNoiseSide;
 constexpr std::size_t kFirst = kTexels / 10;  // ones in the pattern to begin with
@@ -85,31 +80,29 @@ Pattern make_first_pattern() {
   return pattern;
 }
 
-std::vector<std::size_t> make_ranks() {
+BlueNoise make_ranks() {
   const Pattern first = make_first_pattern();
-  std::vector<std::size_t> ranks(kTexels);
+  BlueNoise ranks{};
   Pattern pattern = first;
   for (std::size_t rank = kFirst; rank-- > 0;) {
     const std::size_t texel = pattern.find_tightest_cluster();
     pattern.set(texel, false);
-    ranks[texel] = rank;
+    ranks[texel] = static_cast<std::uint16_t>(rank);
   }
   pattern = first;
   for (std::size_t rank = kFirst; rank < kTexels; ++rank) {
     const std::size_t texel = pattern.find_largest_void();
     pattern.set(texel, true);
-    ranks[texel] = rank;
+    ranks[texel] = static_cast<std::uint16_t>(rank);
   }
   return ranks;
 }
 
 }  // namespace
 
-int main() {
-  std::printf(
-      "// Written by filters/make_blue_noise.cpp.\n#include \"filters/random.h\"\n\n"
-      "namespace shadowbench::filters {\n\n"
-      "const std::array<std::uint16_t, kBlueNoiseSide * kBlueNoiseSide> kBlueNoise{");
-  for (const std::size_t rank : make_ranks()) std::printf("%zu,", rank);
-  std::printf("};\n\n}  // namespace shadowbench::filters\n");
+const BlueNoise& blue_noise() {
+  static const BlueNoise ranks = make_ranks();
+  return ranks;
 }
+
+}  // namespace shadowbench::filters
