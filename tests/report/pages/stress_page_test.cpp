@@ -98,7 +98,8 @@ TEST(StressTables, SayWhatIsSafe_AndWhatIsNotAvailable) {
 
 TEST(StressTables, CaseThatNeverChanges_IsOkAllOver) {
   records::StressAxis axis = make_record().axes[0];
-  axis.cases[0].degraded = axis.cases[0].broken = {};
+  axis.cases[0].degraded.reset();
+  axis.cases[0].broken.reset();
   EXPECT_EQ(make_case_table(axis).rows[0][1], "all of the range");
 }
 
