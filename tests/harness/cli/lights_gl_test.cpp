@@ -163,7 +163,8 @@ TEST_F(SeveralLights, EachIsSeenFromItsOwnView_AndOneThatIsNotLitIsNamedAtOnce) 
     EXPECT_THAT(drawn.err, Not(HasSubstr(std::string("city.") + light + ": the light reaches no surface")));
   }
   EXPECT_THAT(drawn.err, HasSubstr("city.lamp: the light reaches no surface in view"));
-  for (const json& cell : read_cells()) EXPECT_EQ("city." + cell["view"].get<std::string>(), cell["scene"]);
+  for (const json& cell : read_cells())
+    EXPECT_EQ("city." + cell["view"].get<std::string>(), cell["scene"].get<std::string>());
   EXPECT_THAT(read("out/index.html"), HasSubstr("2 of 3 lights judged; city.lamp not tested"));
 
   const Outcome advised = run("advise out --json");
