@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/commands.h"
+#include "harness/gl/survey.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::test {
@@ -38,6 +39,12 @@ class ProgramTest : public ::testing::Test {
   void copy_filter(const std::string& id, const std::string& name, const std::string& lines = "") const {
     std::string text = read_source("filters/" + id + ".glsl");
     write(name + ".glsl", text.insert(text.find("title ="), lines));
+  }
+
+  /// The llvmpipe of Mesa 22 ends long loops, that of Mesa 25 does not.
+  static bool does_gl_end_loops() {
+    const auto context = gl::create_context(gl::Backend::kSoftware).context;
+    return gl::measure_loop_turns() > 0;
   }
 
   /// Where the program keeps traced images: a folder of each test's own.

@@ -210,9 +210,13 @@ TEST_F(Suspects, ScreenPasses_AreMeasured_AndJudged) {
       "--size 96x54 --map-size 128 --rounds 3 --filters none,screen_box,screen_box:side=3,"
       "screen_box:spoil=not-finite,screen_box:spoil=endless,atrous,pcss:screen=bilateral --filter-file " +
       user_filter("screen_box.glsl") + " --filter-file " + user_filter("atrous.glsl"));
-  const char* wrong[] = {
-      nullptr, nullptr, "reads 3 pixels away, and declares a reach of 1", "pixels are not finite", "goes on after",
-      nullptr, nullptr};
+  const char* wrong[] = {nullptr,
+                         nullptr,
+                         "reads 3 pixels away, and declares a reach of 1",
+                         "pixels are not finite",
+                         does_gl_end_loops() ? "goes on after" : nullptr,
+                         nullptr,
+                         nullptr};
   for (std::size_t i = 0; i < std::size(wrong); ++i) {
     SCOPED_TRACE(cells[i]["filter"].get<std::string>() + std::to_string(i));
     EXPECT_EQ(cells[i]["status"], wrong[i] ? "suspect" : "ok");
