@@ -140,7 +140,8 @@ T make_uncertain(Position<T> value, [[maybe_unused]] double bound) {
 }
 
 /// Bounds the error of a filtering weight, or of the place that it stands for. Hardware rounds products of weights,
-/// too: on an NVIDIA H200, of 8 bits, `esm` is off by up to 1.85 times 2^-8 of what its texels differ by.
+/// too: on an NVIDIA H200, of 8 bits, `esm` was off by up to 1.85 times its bound where that took 2^-8 for a weight's
+/// error.
 inline double bound_sampler_weight(const GlAccuracy& accuracy, double map_size) {
   // u * size, - 0.5, and the subtraction of the base, each rounded at the map's scale.
   return 3.0 * kUnitRoundoff * map_size + (accuracy.weight_bits < 23.0 ? std::exp2(1.0 - accuracy.weight_bits) : 0.0);
