@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { cpSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { changeFrames, keepContexts, kMesa, openDrawing } from "./live_support.mjs";
-import { folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf, pick, testPage } from "./support.mjs";
+import { folderOf, kNarrow, linkOf, listViolations, measureOverflow, open, pageOf, pick, reopen, testPage } from "./support.mjs";
 
 const kMeasure = "this GPU (measure)";
 const listTitles = (page) => page.locator("select[name=cost] option").allTextContents();
@@ -36,8 +36,9 @@ testPage("ThisGpuIsACost_ThatIsMeasuredWhenItIsChosen", () => openDrawing(pageOf
   assert.equal(await page.evaluate(() => scrollY), top);
   assert.match(await page.locator(".answer code").first().textContent(), / --times gpu-times.json/);
   assert.match(await linkOf(page), /machine0\.moving/);
-  await page.reload();
-  assert.equal(await chosen(page), "moving light, this GPU", "the link holds it");
+  await reopen(page);
+  const kept = await page.evaluate(() => [location.hash, ...Object.keys(localStorage)]);
+  assert.equal(await chosen(page), "moving light, this GPU", `the link holds it: ${kept}`);
 });
 
 testPage("MeasuringThatEnds_LeavesTheChoiceAsItWas_AndSaysWhy", () => openDrawing(pageOf("untrue"), { init: keepContexts }), async ({ page }) => {

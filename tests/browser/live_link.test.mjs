@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { compareShots, makeFolder, measure, openLive } from "./live_support.mjs";
-import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, settle, splitWords, testPage } from "./support.mjs";
+import { dragOver, kNarrow, linkOf, measureOverflow, pageOf, pick, reopen, settle, splitWords, testPage } from "./support.mjs";
 
 const canvasOf = (page) => page.locator(".live-stage canvas");
 const settled = async (page) => {
@@ -44,7 +44,7 @@ testPage("ALink_HoldsAllThatIsSeen", () => openLive(pageOf("several")), async ({
   assert.notEqual(seen, plain);
   const hash = await linkOf(page);
   assert.match(hash, /live=/);
-  await page.reload();
+  await reopen(page);
   await page.waitForSelector(".live-stage canvas");
   assert.equal(await settled(page), seen, "reloaded");
 

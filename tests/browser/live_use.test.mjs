@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { changeFrames, keepContexts, keepTime, kMsPerLetter, loadTimes, makeFolder, openDrawing, openLive, press, readTable } from "./live_support.mjs";
-import { dragOver, folderOf, kNarrow, pageOf, pick, runProgram, settle, testPage } from "./support.mjs";
+import { dragOver, folderOf, kNarrow, pageOf, pick, reopen, runProgram, settle, testPage } from "./support.mjs";
 
 const chooseCost = (page, title) => page.locator("select[name=cost]").selectOption({ label: title });
 
@@ -41,7 +41,7 @@ testPage("Times_AreThoseOfTheGpu_AndItsTimesAreCosts", () => openLive(pageOf("od
     assert.ok(first.startsWith(advice.picks[0].label), `${first}, not ${advice.picks[0].label}`);
     assert.ok(Math.abs(Number(/(-?\d[\d.e-]*) ms/.exec(first)[1]) / advice.picks[0].cost - 1) < 0.01, `${first}, not ${advice.picks[0].cost}`);
   }
-  await page.reload();
+  await reopen(page);
   await chooseCost(page, "moving light, this GPU");
 
   // Times of other machines, and files that are none.
@@ -114,7 +114,7 @@ testPage("Layers_AreVisibility_AndItsErrorAgainstTheTruth", () => openLive(pageO
   context.diagnostic(`${marked} pixels have an error, ${wrong} of them another sign than their colour`);
   assert.ok(marked > 200 && wrong === 0);
   await look("error", 50);
-  await page.reload();
+  await reopen(page);
   await page.waitForSelector(".live-stage canvas");
   assert.equal(await page.locator(".live").getByRole("combobox", { name: "Layer" }).inputValue(), "error");
   await page.waitForFunction(() => document.querySelector(".live").textContent.includes("The colours end at errors of"));

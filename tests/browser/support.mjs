@@ -101,6 +101,12 @@ export const linkOf = async (page) => {
   await settle(page);
   return page.evaluate(() => location.hash);
 };
+// Opens the link that a page has come to, as one who was sent it does.
+export const reopen = async (page) => {
+  const link = await page.evaluate(() => location.href);
+  await page.goto("about:blank");
+  await page.goto(link);
+};
 export const hashOf = async (page) => decodeURIComponent(await linkOf(page));
 // Four channels of 8 bits a pixel.
 export const readPng = (png) => PNG.sync.read(png);
