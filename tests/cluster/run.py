@@ -83,8 +83,8 @@ class Cluster:
         return done.stdout
 
     def lose_node(self):
-        for state in ("down reason=lost", "resume"):
-            self.run("scontrol", "update", f"nodename={self.host}", *f"state={state}".split())
+        self.run("scontrol", "update", f"nodename={self.host}", "state=down", "reason=lost")
+        self.run("scontrol", "update", f"nodename={self.host}", "state=resume", check=False)  # refused where it came back by itself
 
 
 def read_cells(folder):
