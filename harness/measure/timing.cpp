@@ -68,6 +68,8 @@ records::Interval find_interval(std::vector<double> values) {
 }
 
 constexpr int kFewestOfAnyBudget = 3;
+/// Lookups that go untimed after a prefilter: right after it a CPU's are slower.
+constexpr int kSettlingLookups = 3;
 /// Looks at the intervals again after an eighth more rounds: every look is a chance to stop where one is narrow by
 /// chance.
 constexpr int kRoundsPerLook = 8;

@@ -28,9 +28,6 @@ records::Ratio find_ratio(const std::vector<double>& numerator, const std::vecto
 /// least one minuend; of more subtrahends the first are used.
 records::OwnTime find_difference(const std::vector<double>& minuend, const std::vector<double>& subtrahend);
 
-/// Lookups that go untimed after a prefilter: right after it a CPU's are slower.
-inline constexpr int kSettlingLookups = 3;
-
 /// Why no more rounds were timed.
 enum class StopReason {
   kRounds,   ///< as many as were asked for, or as there may be

@@ -77,7 +77,6 @@ Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path o
       input_(bench, window),
       scenes_(bench, Widgets(log)),
       settings_(bench, Widgets(log), [this] { save_state("scene", save_scene); }),
-      meter_(bench),
       magnifier_(bench, display_, Widgets(log)),
       map_(bench, layers_, display_, Widgets(log)),
       full_size_(bench.state().options.width, bench.state().options.height) {}
@@ -170,7 +169,6 @@ void Gui::lay_out_panels() {
   ImGui::Begin("panels", nullptr, kFixed);
   if (const Lesson* lesson = scenes_.lay_out()) start(*lesson);
   settings_.lay_out(look_);
-  show_times(bench_, meter_);
   ImGui::End();
 }
 
@@ -209,7 +207,6 @@ void Gui::lay_out_help() {
 }
 
 void Gui::draw_picture() {
-  is_timing_ = look_.panels && meter_.step();
   const Layer& layer = Layers::list()[look_.layer];
   const PicturePlace at = place();
   // Half a column more than is seen: the divider may stand within one. The magnifier shows both sides anywhere.
@@ -243,7 +240,6 @@ void Gui::lay_out_inspection() {
 }
 
 void Gui::draw_divider() {
-  if (look_.sharing != Sharing::kDivider) return;
   const PicturePlace at = place();
   const float x = at.corner.x + at.magnified * at.divider_column(look_);
   ImGui::GetBackgroundDrawList()->AddLine({x, at.corner.y}, {x, at.corner.y + at.size().y}, kDividerColor,
@@ -269,12 +265,11 @@ void Gui::lay_out_captions() {
   const float edge = 0.6f * ImGui::GetFontSize();
   float below = at.corner.y + edge;
   for (std::size_t side = 0; side < kSides; ++side) {
-    const bool is_hidden = look_.sharing == Sharing::kFlip && side != look_.flipped_to;
     const std::string text = make_caption(side);
     const float room = 0.5f * at.size().x - 2.0f * edge;  // the other side has the rest
     const glm::vec2 size = text_size(text, room);
     const float x = side == 0 ? at.corner.x + edge : at.corner.x + at.size().x - size.x - edge;
-    draw_caption({x, at.corner.y + edge}, text, size, is_hidden);
+    draw_caption({x, at.corner.y + edge}, text, size, look_.hides(side));
     below = std::max(below, at.corner.y + size.y + 2.0f * edge);
   }
   lay_out_scales({at.corner.x + edge, below + 0.3f * ImGui::GetFontSize()});
@@ -285,8 +280,7 @@ std::vector<std::pair<std::size_t, ScaleCaption>> Gui::list_scales() const {
   std::vector<std::pair<std::size_t, ScaleCaption>> scales;
   for (std::size_t side = 0; side < kSides; ++side) {
     const render::DisplayedValues& values = shown_[side].values;
-    const bool is_seen = look_.sharing != Sharing::kFlip || side == look_.flipped_to;
-    if (!is_seen || values.colors == render::Colors::kPicture) continue;
+    if (look_.hides(side) || values.colors == render::Colors::kPicture) continue;
     ScaleCaption scale(Layers::list()[look_.layer], values);
     if (scales.empty() || !(scales.front().second == scale)) scales.emplace_back(side, std::move(scale));
   }
@@ -380,15 +374,9 @@ void Gui::save_picture(const std::filesystem::path& stem) {
 const std::vector<Gui::Key>& Gui::list_keys() {
   static const std::vector<Key> keys = {
       {GLFW_KEY_F1, false, "F1", "show or hide this list", [](Gui& gui) { gui.look_.help = !gui.look_.help; }},
-      {GLFW_KEY_T, false, "T", "divider between the sides, or one side at a time",
-       [](Gui& gui) {
-         gui.look_.sharing = gui.look_.sharing == Sharing::kDivider ? Sharing::kFlip : Sharing::kDivider;
-       }},
-      {GLFW_KEY_SPACE, false, "Space", "one side at a time: flip to the other",
-       [](Gui& gui) {
-         gui.look_.sharing = Sharing::kFlip;
-         gui.look_.flipped_to = 1 - gui.look_.flipped_to;
-       }},
+      {GLFW_KEY_T, false, "T", "both sides, the divider in the middle", [](Gui& gui) { gui.look_.divider = 0.5f; }},
+      {GLFW_KEY_SPACE, false, "Space", "all of one side, then of the other",
+       [](Gui& gui) { gui.look_.divider = gui.look_.divider == 1.0f ? 0.0f : 1.0f; }},
       {GLFW_KEY_X, false, "X", "exchange left and right",
        [](Gui& gui) { gui.bench_.change(Changes::all(), [](ViewSettings& s) { std::swap(s.sides[0], s.sides[1]); }); }},
       {GLFW_KEY_PAGE_DOWN, false, "Page Down", "next layer: picture, visibility, error, ...",

@@ -32,7 +32,7 @@ class Gui {
   void draw_picture();
 
   /// Whether the next frame must not wait for an event.
-  bool is_moving() const { return input_.is_flying() || is_timing_; }
+  bool is_moving() const { return input_.is_flying(); }
 
   /// Saves the picture that was asked for, once all that it shows is there; after the widgets are drawn over it.
   void save_wanted_picture();
@@ -68,11 +68,9 @@ class Gui {
   PictureInput input_;
   ScenePanel scenes_;
   SettingsPanel settings_;
-  TimeMeter meter_;
   Magnifier magnifier_;
   MapPanel map_;
   std::array<ShownLayer, kSides> shown_;
-  bool is_timing_ = false;
   glm::ivec2 full_size_;  ///< of the picture, in pixels, while nothing is dragged
   double moved_s_ = 0.0;  ///< when camera or light moved last
   double last_s_ = 0.0;

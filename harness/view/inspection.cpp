@@ -5,16 +5,11 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <set>
 #include <span>
 #include <string>
 
-#include "filters/map_reader.h"
 #include "harness/gl/objects.h"
-#include "harness/gl/survey.h"
-#include "harness/measure/timing.h"
 #include "harness/render/gbuffer.h"
-#include "report/records/records.h"
 
 namespace shadowbench::view {
 namespace {
@@ -104,7 +99,6 @@ namespace {
 constexpr float kLargestSide = 400.0f, kShareOfWindow = 0.2f;  ///< the map's side is no larger
 constexpr ImU32 kReceiverInk = IM_COL32(255, 60, 60, 255);
 constexpr ImU32 kKernelInk = IM_COL32(255, 200, 40, 255);
-constexpr ImU32 kReadInk = IM_COL32(255, 255, 255, 200);
 
 }  // namespace
 
@@ -195,7 +189,6 @@ void MapPanel::show_map(int side_pixels, int layer) {
   std::string kernel = "kernel: a point";
   if (reach > 0.0)
     kernel = fmt::format("kernel: a {} of {:.3g} texels to each side", footprint_->is_disk ? "disk" : "square", reach);
-  if (!footprint_->reads.empty()) kernel += fmt::format("; {} texels read", footprint_->reads.size());
   ImGui::TextUnformatted(kernel.c_str());
 }
 
@@ -209,10 +202,6 @@ void MapPanel::draw_footprint(const glm::vec2& corner, int side_pixels, const gl
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->PushClipRect({corner.x, corner.y},
                      {corner.x + static_cast<float>(side_pixels), corner.y + static_cast<float>(side_pixels)}, true);
-  if (pixels >= 3.0)
-    for (const glm::ivec2& read : footprint_->reads)
-      list->AddRect(place(glm::dvec2(read) + glm::dvec2(0.08, 0.92)), place(glm::dvec2(read) + glm::dvec2(0.92, 0.08)),
-                    kReadInk);
   const glm::dvec2 centre = footprint_->place_texels;
   const double reach = footprint_->half_width_texels;
   if (footprint_->is_disk)
@@ -241,7 +230,6 @@ std::optional<Footprint> MapPanel::find_footprint(const glm::ivec2& pixel) {
   } else {
     footprint.half_width_texels = filters::radius_texels(request.spec, request.values);
   }
-  add_reads(footprint);
   return footprint;
 }
 
@@ -261,148 +249,6 @@ std::optional<filters::Receiver> MapPanel::find_receiver(const render::LightLaye
   }
   if (found) found->pixel = at;
   return found;
-}
-
-MapPanel::Prepared* MapPanel::prepare(int layer) {
-  if (drawing_ != bench_.drawings()) {
-    drawing_ = bench_.drawings();
-    prepared_.clear();
-    prepared_.resize(kSides);
-  }
-  const render::ShadowMap& map = bench_.stage().light_map().map;
-  prepared_[last_side_].resize(static_cast<std::size_t>(map.layers()));
-  std::unique_ptr<Prepared>& prepared = prepared_[last_side_][static_cast<std::size_t>(layer)];
-  if (prepared) return prepared.get();
-  const filters::FilterRequest& request = bench_.stage().passes(last_side_)->request();
-  const bool reads_depth = !request.spec.has_encode && request.spec.passes.empty();
-  const filters::ScalarModel* model = reads_depth ? filters::find_model(request.spec) : nullptr;
-  if (!model) return nullptr;
-  prepared = std::make_unique<Prepared>(Prepared{request, map.read(layer), nullptr});
-  const ViewState& state = bench_.state();
-  prepared->lookup = model->prepare({.spec = prepared->request.spec,
-                                     .values = prepared->request.values,
-                                     .map = prepared->map,
-                                     .seed = state.options.seed,
-                                     .plane_max_tangent = state.options.bias.plane_max_tangent()},
-                                    filters::Precision::kFloat);
-  return prepared.get();
-}
-
-void MapPanel::add_reads(Footprint& footprint) {
-  const Prepared* prepared = prepare(footprint.receiver.layer);
-  if (prepared == nullptr) return;
-  filters::ReadLog log;
-  const filters::ModelResult result = prepared->lookup->at(footprint.receiver);
-  const auto size = static_cast<std::size_t>(bench_.state().map_size());
-  std::set<std::size_t> texels;  // row by row
-  for (const filters::TexelRead& read : log.reads()) texels.insert(read.texel);
-  for (const std::size_t texel : texels)
-    footprint.reads.emplace_back(static_cast<int>(texel % size), static_cast<int>(texel / size));
-  if (result.disk_radius_texels > 0.0) {
-    footprint.half_width_texels = result.disk_radius_texels + 1.0;  // read through 2x2 texels
-    footprint.is_disk = true;
-  }
-}
-
-namespace {
-
-constexpr std::size_t kRoundsOfADrawing = 40;
-
-void show_history(const std::string& name, const std::vector<float>& history) {
-  ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(name.c_str());
-  ImGui::TableNextColumn();
-  ImGui::Text("%.3f", measure::summarise({history.begin(), history.end()}).median);
-  ImGui::TableNextColumn();
-  ImGui::PushID(name.c_str());
-  ImGui::PlotLines("##history", history.data(), static_cast<int>(history.size()), 0, nullptr, 0.0f,
-                   std::ranges::max(history), {ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight()});
-  ImGui::PopID();
-}
-
-/// Estimates for other GPUs, once both sides were measured.
-void show_gpus(const Workbench& bench) {
-  for (std::size_t side = 0; side < kSides; ++side) {
-    const measure::MeasuredCell* cell = bench.find_measured(side);
-    if (cell == nullptr || !cell->record.gpu) continue;
-    for (const auto& [gpu, record] : *cell->record.gpu) {
-      const char* name = kSideNames[side];
-      if (record.estimate)
-        ImGui::Text("%s on %s: %.3g ms of a frame of %dx%d, static light;\n  moving %.3g ms; bound by %s", name,
-                    gpu.c_str(), records::frame_ms(*record.estimate, false), records::kGpuFrameWidth,
-                    records::kGpuFrameHeight, records::frame_ms(*record.estimate, true),
-                    record.estimate->bound_by.c_str());
-      if (!record.facts.empty())
-        ImGui::TextDisabled("  lookup: %d instructions, %d registers", record.facts.front().facts.instructions,
-                            record.facts.front().facts.vector_registers);
-    }
-  }
-}
-
-}  // namespace
-
-void show_times(const Workbench& bench, const TimeMeter& meter) {
-  if (!ImGui::CollapsingHeader("Times", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  if (ImGui::BeginTable("times", 3)) {
-    ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch, 2.2f);
-    ImGui::TableSetupColumn("ms", ImGuiTableColumnFlags_WidthStretch, 1.0f);
-    ImGui::TableSetupColumn("history", ImGuiTableColumnFlags_WidthStretch, 1.6f);
-    ImGui::TableHeadersRow();
-    for (const auto& [name, history] : meter.histories()) show_history(name, history);
-    ImGui::EndTable();
-  }
-  show_gpus(bench);
-  ImGui::PushTextWrapPos();
-  ImGui::TextDisabled("%s", bench.is_busy()
-                                ? "Timing begins once truth and measurement are finished."
-                                : "Medians while nothing moves. Filter alone: lookup minus an empty lookup.");
-  ImGui::PopTextWrapPos();
-}
-
-bool TimeMeter::step() {
-  if (drawing_ != bench_.drawings()) {
-    drawing_ = bench_.drawings();
-    rounds_ = 0;
-    round_.clear();
-    histories_.clear();
-  }
-  if (bench_.is_busy() || rounds_ == kRoundsOfADrawing) return false;
-  if (round_.empty()) plan_round();
-  const std::function<void()> pass = std::move(round_.back());
-  round_.pop_back();
-  pass();
-  if (round_.empty()) ++rounds_;
-  return rounds_ < kRoundsOfADrawing;
-}
-
-void TimeMeter::plan_round() {
-  round_.emplace_back(
-      [this] { histories_["map"].push_back(time([this] { bench_.stage().redraw_map(bench_.state()); })); });
-  for (std::size_t side = 0; side < kSides; ++side)
-    if (bench_.stage().passes(side) != nullptr) plan_side(side);
-  std::reverse(round_.begin(), round_.end());
-}
-
-void TimeMeter::plan_side(std::size_t side) {
-  Stage& stage = bench_.stage();
-  const std::string name = kSideNames[side];
-  const auto look_up = [this, &stage, side] { return time([&] { stage.look_up(side); }); };
-  if (stage.passes(side)->has_prefilter()) {
-    round_.emplace_back([this, &stage, side, name] {
-      histories_[name + " prefilter"].push_back(time([&] { stage.passes(side)->prefilter(stage.light_map().map); }));
-    });
-    for (int i = 0; i < measure::kSettlingLookups; ++i) round_.emplace_back(look_up);
-  }
-  round_.emplace_back([this, look_up, name] { histories_[name + " lookup"].push_back(look_up()); });
-  round_.emplace_back([this, &stage, side, name] {
-    const float empty = time([&] { stage.look_up_nothing(side); });
-    histories_[name + " filter alone"].push_back(histories_[name + " lookup"].back() - empty);
-  });
-}
-
-float TimeMeter::time(const std::function<void()>& work) const {
-  return static_cast<float>(gl::time_ms(bench_.renderer().timer, work));
 }
 
 }  // namespace shadowbench::view

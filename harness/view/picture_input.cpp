@@ -117,8 +117,7 @@ void PictureInput::take(const PicturePlace& place, Look& look, double seconds) {
     grip_ = find_grip(place, look, pointer);
     pivot_ws_ = find_pivot(place.to_picture(pointer));
   }
-  if (is_free && look.sharing == Sharing::kDivider && find_grip(place, look, pointer) == Grip::kDivider)
-    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (is_free && find_grip(place, look, pointer) == Grip::kDivider) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (grip_ != Grip::kNone) drag(place, look, pointer, by);
   if (is_free && io.MouseWheel != 0.0f)
     set_camera(approach(bench_.state().active_camera(), find_pivot(place.to_picture(pointer)),
@@ -133,8 +132,7 @@ PictureInput::Grip PictureInput::find_grip(const PicturePlace& place, const Look
   if (io.MouseDown[2]) return Grip::kShift;
   if (io.KeyShift) return Grip::kLight;
   const float divider = place.corner.x + place.magnified * place.divider_column(look);
-  const bool on_divider = look.sharing == Sharing::kDivider && std::abs(pointer.x - divider) <= kDividerGrip;
-  return on_divider ? Grip::kDivider : Grip::kOrbit;
+  return std::abs(pointer.x - divider) <= kDividerGrip ? Grip::kDivider : Grip::kOrbit;
 }
 
 void PictureInput::drag(const PicturePlace& place, Look& look, const glm::vec2& pointer, const glm::vec2& by) {

@@ -269,9 +269,6 @@ void SettingsPanel::show_look(Look& look) {
   std::vector<std::string> titles;
   for (const Layer& layer : Layers::list()) titles.push_back(layer.title);
   widgets_.choose("layer", "layer", titles, look.layer, Layers::list()[look.layer].text);
-  std::size_t sharing = look.sharing == Sharing::kDivider ? 0 : 1;
-  if (widgets_.choose("sharing", "sides", {"divider", "one at a time (Space)"}, sharing))
-    look.sharing = sharing == 0 ? Sharing::kDivider : Sharing::kFlip;
   double scale = static_cast<double>(look.error_scale);
   if (widgets_.slide("error_scale", "full colour at", {.min = 0.001, .logarithmic = true}, scale,
                      "The error of visibility that gets the full red or blue."))

@@ -34,9 +34,9 @@ fs::path find_place() { return fs::temp_directory_path() / fmt::format("shadowbe
 options::RunOptions make_quick(options::RunOptions options, Measurand measurand) {
   options.rounds = {.precision = 1.0, .budget_ms = 1.0};
   options.stability = measurand == Measurand::kEverything;
+  options.gpus.clear();
   if (measurand == Measurand::kEverything) return options;
   options.filters.clear();
-  options.gpus.clear();
   options.attribution = false;
   options.phases = 1;
   return options;

@@ -75,23 +75,17 @@ glm::vec2 find_place(const ViewState& state, const glm::vec3& point_ws);
 /// Throws Error(kUsage) for settings that a run would refuse: a bias that a filter or the map cannot have.
 void check(const ViewSettings& settings);
 
-/// How the two sides share the picture.
-enum class Sharing {
-  kDivider,  ///< left and right of a line that can be dragged
-  kFlip,     ///< all of one side; a key changes to the other
-};
-
 /// What the window shows beside the state: nothing of it changes an image.
 struct Look {
-  Sharing sharing = Sharing::kDivider;
-  std::size_t flipped_to = 0;  ///< Sharing::kFlip: the side that is seen
-  float divider = 0.5f;        ///< part of the picture's width
-  std::size_t layer = 0;       ///< index into Layers::list()
-  float error_scale = 0.2f;    ///< the error with the full colour
+  float divider = 0.5f;      ///< part of the picture's width; 0 or 1: all of one side
+  std::size_t layer = 0;     ///< index into Layers::list()
+  float error_scale = 0.2f;  ///< the error with the full colour
   bool panels = true;
   bool magnifier = false;
   bool map = false;
   bool help = false;
+
+  bool hides(std::size_t side) const { return divider == (side == 0 ? 0.0f : 1.0f); }
 };
 
 /// Where the picture lies in the window; pixels of the framebuffer from its upper left corner.
@@ -110,10 +104,7 @@ struct PicturePlace {
   }
 
   /// The column at which the right side begins, in the picture's pixels.
-  float divider_column(const Look& look) const {
-    if (look.sharing == Sharing::kDivider) return look.divider * static_cast<float>(pixels.x);
-    return look.flipped_to == 0 ? static_cast<float>(pixels.x) : 0.0f;
-  }
+  float divider_column(const Look& look) const { return look.divider * static_cast<float>(pixels.x); }
 };
 
 /// Brings the cameras and lights to what a scene file gives back, which takes directions as unit vectors. Of settings

@@ -57,7 +57,6 @@ void Stage::draw_gbuffer(const ViewState& state) {
       side.visibility.emplace("visibility", GL_R32F, width, height);
       side.picture.emplace("picture", GL_RGBA32F, width, height);
     }
-    unseen_.emplace("timed visibility", GL_R32F, width, height);
     truth_.reset();
   }
   gbuffer_->draw(renderer_.shaders, geometry_, state.scene, state.active_camera());
@@ -81,13 +80,9 @@ bool Stage::draw_map(const ViewState& state, bool map_changed) {
   } else {
     light_->layers = std::move(layers);
   }
-  redraw_map(state);
-  return other_map;
-}
-
-void Stage::redraw_map(const ViewState& state) {
   for (const scene::LightFrustum& layer : light_->layers)
-    light_->map.draw(renderer_.shaders, geometry_, layer, state.options.bias.map);
+    light_->map.draw(renderer_.shaders, geometry_, layer, options.bias.map);
+  return other_map;
 }
 
 void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, bool retunes) {
@@ -104,30 +99,24 @@ void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, b
   if (retunes && !compiles) {
     // A filter whose newer code does not compile keeps the values that its older one knows.
     const filters::FilterRequest request = drawing.fault.empty() ? state.sides[side].filter : drawing.passes->request();
-    retune(state, *drawing.passes, request);
-    for (const auto& empty : drawing.empty.passes) retune(state, *empty, empty->request());
+    drawing.passes->retune(request.values,
+                           measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
   }
   if (compiles || retunes) drawing.passes->prefilter(light_->map);
-}
-
-void Stage::retune(const ViewState& state, render::FilterPasses& passes, const filters::FilterRequest& request) {
-  passes.retune(request.values, measure::make_filter_light(state.options, state.scene.light, light_->layers, request));
 }
 
 void Stage::compile(const ViewState& state, std::size_t side) {
   SideDrawing& drawing = sides_[side];
   const auto make = [&](const filters::FilterRequest& request) {
-    auto made = measure::make_filter_passes(renderer_, state.options, state.scene, *light_, request);
-    drawing.empty = measure::make_empty_lookups(renderer_, state.options, state.scene, *light_, {made.get()});
-    drawing.passes = std::move(made);
+    return measure::make_filter_passes(renderer_, state.options, state.scene, *light_, request);
   };
   try {
-    make(state.sides[side].filter);
+    drawing.passes = make(state.sides[side].filter);
     drawing.fault.clear();
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::kFilter) throw;
     drawing.fault = error.what();
-    if (drawing.passes) make(filters::FilterRequest(drawing.passes->request()));
+    if (drawing.passes) drawing.passes = make(drawing.passes->request());
   }
 }
 
@@ -161,12 +150,6 @@ const gl::Texture& Stage::picture(const ViewState& state, std::size_t side, cons
                        columns);
   }
   return drawing.picture->texture();
-}
-
-void Stage::look_up(std::size_t side) { sides_[side].passes->lookup(*gbuffer_, light_->map, *unseen_); }
-
-void Stage::look_up_nothing(std::size_t side) {
-  sides_[side].empty.passes.front()->lookup(*gbuffer_, light_->map, *unseen_);
 }
 
 images::Image Stage::texels_per_pixel(const ViewState& state) {

@@ -68,18 +68,12 @@ class Stage {
   /// A side's passes; null where it shows the truth, or where its filter has never compiled.
   render::FilterPasses* passes(std::size_t side) { return sides_[side].passes.get(); }
 
-  /// Draws again, into textures that nobody sees, for timing.
-  void redraw_map(const ViewState& state);
-  void look_up(std::size_t side);
-  void look_up_nothing(std::size_t side);
-
   /// Texels of the map under each pixel's footprint, rows top to bottom. Cost: see measure::measure_coverage().
   images::Image texels_per_pixel(const ViewState& state);
 
  private:
   struct SideDrawing {
     std::unique_ptr<render::FilterPasses> passes;
-    measure::EmptyLookups empty;
     std::optional<render::ImageTarget> visibility;
     std::optional<render::ImageTarget> picture;
     glm::ivec2 looked_up{0};  ///< columns of the visibility that are valid
@@ -94,13 +88,11 @@ class Stage {
   double pad_texels_ = -1.0;
   std::array<SideDrawing, kSides> sides_;
   std::optional<gl::Texture> truth_;
-  std::optional<render::ImageTarget> unseen_;  ///< what timed lookups draw into
 
   void draw_gbuffer(const ViewState& state);
   bool draw_map(const ViewState& state, bool map_changed);
   void draw_side(const ViewState& state, std::size_t side, bool compile, bool retune);
   void compile(const ViewState& state, std::size_t side);
-  void retune(const ViewState& state, render::FilterPasses& passes, const filters::FilterRequest& request);
 };
 
 /// Sees when files are saved, by looking at them.
@@ -177,7 +169,7 @@ class Workbench {
   const std::string& message() const { return message_; }
   void say(std::string message) { message_ = std::move(message); }
 
-  /// Whether work goes on beside the window, which would disturb times.
+  /// Whether work goes on beside the window.
   bool is_busy() const { return !is_traced() || measured_ == SideMeasurement::State::kRunning; }
 
   /// Whether the truth is there, or will not come; it is traced anew when camera or light change.

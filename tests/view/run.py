@@ -138,10 +138,14 @@ def test_truth_comes_while_the_window_answers(program, folder):
 
 def test_every_key_and_panel(program, folder):
     with Window(program, folder, ["lamp", "--size", "640x800", "--map-size", "256", "--left", "none", "--right", "vsm"]) as window:
-        for key in ("F1", "m", "n", "t", "space", "space", "x", "c", "l", "h", "h", "F1", *["Next"] * 12, *["Prior"] * 3, "r"):
+        for key in ("F1", "m", "n", "space", "space", "t", "x", "c", "l", "h", "h", "F1", *["Next"] * 12, *["Prior"] * 3, "r"):
             window.key(key)
             window.pause(0.25)
         assert window.last()["left"] == "vsm", "X exchanges the sides"
+        window.key("space")
+        window.wait("all of the left side", lambda frame: frame["divider"] == 1.0)
+        window.key("t")
+        window.wait("both sides", lambda frame: frame["divider"] == 0.5)
         window.choose("map_size", "512")
         window.choose("map_format", "d16")
         for filter_id, name in (("ray-traced truth", "truth"), ("pcss", "pcss")):
