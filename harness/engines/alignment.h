@@ -21,11 +21,10 @@ struct OwnView {
   std::vector<std::uint8_t> is_surface;  ///< 0: background
   images::Image depth;                   ///< metres along the camera's axis; 0: background
   images::Image direct;  ///< what the light adds to matt surfaces where nothing is in its way: grey, in any unit
-  std::vector<glm::vec3> normals_ws;      ///< of surfaces, as they are shaded
-  std::optional<glm::vec3> to_light_ws;   ///< of a light at infinity, unit length
-  std::vector<glm::vec3> to_viewer_ws{};  ///< of surfaces, unit length; empty: not known
-  std::vector<std::uint8_t> is_back{};    ///< 1: a surface that is seen from behind; empty: not known
-  std::vector<std::uint8_t> casters{};    ///< kFrontsCast + kBacksCast, 0 but in full shadow; empty: not known
+  std::vector<glm::vec3> normals_ws;     ///< of surfaces, as they are shaded
+  std::optional<glm::vec3> to_light_ws;  ///< of a light at infinity, unit length
+  std::vector<std::uint8_t> is_back{};   ///< 1: a surface that is seen from behind; empty: not known
+  std::vector<std::uint8_t> casters{};   ///< kFrontsCast + kBacksCast, 0 but in full shadow; empty: not known
 };
 
 /// What is wrong with another renderer's pictures, or may be.

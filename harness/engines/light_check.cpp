@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "harness/engines/alignment.h"
@@ -46,16 +45,15 @@ std::optional<double> fit_exponent(const LightPairs& pairs) {
   return (xy / n - x * y / (n * n)) / variance;
 }
 
-/// Whether unlit may be linear light; says so where it is not.
-bool check_encoding(const LightPairs& pairs, std::vector<Finding>& findings) {
+/// Says where unlit is no linear light.
+void check_encoding(const LightPairs& pairs, std::vector<Finding>& findings) {
   const auto exponent = fit_exponent(pairs);
   constexpr double kOfDisplay = 0.45, kNear = 0.1;
-  if (!exponent || std::abs(*exponent - kOfDisplay) > kNear) return true;
+  if (!exponent || std::abs(*exponent - kOfDisplay) > kNear) return;
   findings.push_back({true, fmt::format("unlit goes as the {:.2f}th power of the light that falls on our surfaces: "
                                         "these are values for a display (sRGB), not linear light; write the linear "
                                         "ones, before they are encoded",
                                         *exponent)});
-  return false;
 }
 
 /// Says where their light falls on our surfaces in other proportions than ours.
@@ -74,7 +72,7 @@ void check_proportions(const LightPairs& pairs, std::vector<Finding>& findings) 
   if (!(rest > kMostResidual * kMostResidual * all)) return;
   findings.push_back({false, fmt::format("its light falls on our surfaces in other proportions, by {}: the light's "
                                          "direction is another one (mirrored, or as the way to the light), or the "
-                                         "materials are not matt in the colours of the model",
+                                         "materials shine, or are not in the colours of the model",
                                          records::format_rate(std::sqrt(rest / all)))});
 }
 
@@ -93,73 +91,6 @@ void check_faces(const ExternalImages& images, const OwnView& own, std::vector<F
   findings.push_back({false, fmt::format("{} of the surfaces are lit in one of the two pictures alone: the light's "
                                          "direction is another one (mirrored, or as the way to the light)",
                                          records::format_rate(apart / surfaces))});
-}
-
-/// What a surface that is not matt adds to the light that it scatters evenly, of a light of strength 1.
-/// Source: Walter et al. 2007, Microfacet Models for Refraction through Rough Surfaces, EGSR (GGX); Schlick 1994, An
-/// Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3); put together as glTF 2.0, appendix B.
-struct Lobe {
-  double roughness;  ///< its square is GGX's alpha
-  bool is_metal;     ///< a highlight in the surface's colour, in place of all other light
-
-  double reflect(const glm::dvec3& normal, const glm::dvec3& to_light, const glm::dvec3& to_viewer) const {
-    const glm::dvec3 half = glm::normalize(to_light + to_viewer);
-    const double nl = glm::dot(normal, to_light), nv = std::max(glm::dot(normal, to_viewer), 1e-3);
-    const double squared = std::pow(roughness, 4), nh = glm::dot(normal, half);
-    const double wide = nh * nh * (squared - 1.0) + 1.0;
-    const double facing = squared / (std::numbers::pi * wide * wide);
-    const double seen = 0.5 / (nl * std::sqrt(nv * nv * (1.0 - squared) + squared) +
-                               nv * std::sqrt(nl * nl * (1.0 - squared) + squared));
-    constexpr double kOfGlass = 0.04;
-    const double mirrored = kOfGlass + (1.0 - kOfGlass) * std::pow(1.0 - std::abs(glm::dot(to_viewer, half)), 5);
-    return nl * facing * seen * (is_metal ? 1.0 : mirrored);
-  }
-};
-
-/// Light that is matt surfaces' and a lobe's: theirs = `matt` * ours + `shine` * lobe.
-struct ShineFit {
-  Lobe lobe{};
-  double matt = 0.0, shine = 0.0;
-  double residual = 1.0;  ///< root mean square, as a share of theirs
-  double share = 0.0;     ///< the lobe's, of all their light
-  bool is_best = false;   ///< whether it is much nearer to theirs than matt surfaces under a light from elsewhere
-};
-
-/// What each pair's lobe is; metals reflect in the colour that ours has.
-std::vector<double> list_highlights(const LightPairs& pairs, const OwnView& own, const Lobe& lobe) {
-  const glm::dvec3 to_light(*own.to_light_ws);
-  std::vector<double> highlights;
-  for (std::size_t i = 0; i < pairs.pixels.size(); ++i) {
-    const glm::dvec3 normal(own.normals_ws[pairs.pixels[i]]);
-    const double light = lobe.reflect(normal, to_light, glm::dvec3(own.to_viewer_ws[pairs.pixels[i]]));
-    highlights.push_back(lobe.is_metal ? light * pairs.ours[i] / glm::dot(normal, to_light) : light);
-  }
-  return highlights;
-}
-
-/// Least squares, of strengths that are not negative.
-ShineFit fit_shine(const LightPairs& pairs, const std::vector<double>& highlights) {
-  double aa = 0.0, ab = 0.0, bb = 0.0, at = 0.0, bt = 0.0;
-  for (std::size_t i = 0; i < pairs.ours.size(); ++i) {
-    const double a = pairs.ours[i], b = highlights[i], t = pairs.theirs[i];
-    aa += a * a, ab += a * b, bb += b * b, at += a * t, bt += b * t;
-  }
-  ShineFit fit;
-  const double determinant = aa * bb - ab * ab;
-  if (determinant > 1e-9 * aa * bb) fit.shine = std::max((bt * aa - at * ab) / determinant, 0.0);
-  fit.matt = (at - fit.shine * ab) / aa;
-  if (fit.matt < 0.0) fit.matt = 0.0, fit.shine = bt / bb;
-  double rest = 0.0, all = 0.0, light = 0.0, highlight = 0.0;
-  for (std::size_t i = 0; i < pairs.ours.size(); ++i) {
-    const double shine = fit.shine * highlights[i], gap = pairs.theirs[i] - fit.matt * pairs.ours[i] - shine;
-    rest += gap * gap;
-    all += pairs.theirs[i] * pairs.theirs[i];
-    light += pairs.theirs[i];
-    highlight += shine;
-  }
-  fit.residual = std::sqrt(rest / all);
-  fit.share = highlight / light;
-  return fit;
 }
 
 /// The light, direction times strength, from which matt surfaces of our colours come nearest to theirs.
@@ -194,38 +125,8 @@ std::optional<DirectionFit> fit_direction(const LightPairs& pairs, const OwnView
   return fit;
 }
 
-/// Finds highlights, where with them surfaces under our light are much nearer to theirs.
-std::optional<ShineFit> find_shine(const LightPairs& pairs, const OwnView& own) {
-  if (!own.to_light_ws || own.to_viewer_ws.empty()) return std::nullopt;
-  const std::vector<std::uint8_t> is_inside = find_inside(own, own.counts);
-  LightPairs inside;
-  for (std::size_t i = 0; i < pairs.pixels.size(); ++i) {
-    if (!is_inside[pairs.pixels[i]]) continue;
-    inside.pixels.push_back(pairs.pixels[i]);
-    inside.ours.push_back(pairs.ours[i]);
-    inside.theirs.push_back(pairs.theirs[i]);
-  }
-  if (inside.pixels.empty()) return std::nullopt;
-  const double matt = fit_shine(inside, std::vector<double>(inside.pixels.size(), 0.0)).residual;
-  constexpr double kLeastResidual = 0.002, kMuchLess = 0.7;
-  if (matt < kLeastResidual) return std::nullopt;
-  ShineFit best;
-  for (const bool is_metal : {false, true}) {
-    for (int tenths = 1; tenths <= 10; ++tenths) {
-      const Lobe lobe{0.1 * tenths, is_metal};
-      ShineFit fit = fit_shine(inside, list_highlights(inside, own, lobe));
-      fit.lobe = lobe;
-      if (fit.residual < best.residual) best = fit;
-    }
-  }
-  if (best.residual > kMuchLess * matt) return std::nullopt;
-  const std::optional<DirectionFit> elsewhere = fit_direction(inside, own);
-  best.is_best = !elsewhere || best.residual <= kMuchLess * elsewhere->residual;
-  return best;
-}
-
 /// Finds the direction from which a matt surface of our colours would have their light.
-void check_direction(const LightPairs& pairs, const OwnView& own, bool may_shine, std::vector<Finding>& findings) {
+void check_direction(const LightPairs& pairs, const OwnView& own, std::vector<Finding>& findings) {
   if (!own.to_light_ws) return;
   const std::optional<DirectionFit> fit = fit_direction(pairs, own);
   constexpr double kMostResidual = 0.03, kMostDegrees = 0.25;
@@ -233,9 +134,10 @@ void check_direction(const LightPairs& pairs, const OwnView& own, bool may_shine
   const double cosine = glm::dot(glm::normalize(fit->light), glm::dvec3(*own.to_light_ws));
   const double degrees = glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
   if (degrees < kMostDegrees) return;
-  findings.push_back({false, fmt::format("its surfaces are lit from {:.2g} degrees beside our light: {}the light's "
-                                         "direction is another one, or its target is not where it shines",
-                                         degrees, may_shine ? "its materials shine, or " : "")});
+  findings.push_back({false, fmt::format("its surfaces are lit from {:.2g} degrees beside our light: its materials "
+                                         "shine, or the light's direction is another one, or its target is not where "
+                                         "it shines",
+                                         degrees)});
 }
 
 /// Whether all values are codes of eight bits; also says so, or that they are half floats.
@@ -301,22 +203,9 @@ float least_light(const Image& unlit) {
 void check_light(const ExternalImages& images, const OwnView& own, std::vector<Finding>& findings) {
   const bool is_coded = check_steps(images, findings);
   if (!images.unlit) return;
-  LightPairs pairs = pair_lights(*images.unlit, own);
-  const bool is_linear = check_encoding(pairs, findings) && !is_coded;  // steps look like another direction
-  const std::optional<ShineFit> shine = is_linear ? find_shine(pairs, own) : std::nullopt;
-  if (shine && shine->is_best) {
-    findings.push_back(
-        {false,
-         fmt::format("its materials shine: highlights are {} of unlit. They hardly change visibility, which is a "
-                     "ratio, but hide whether the light's direction is ours: make all materials matt "
-                     "(no specular light, metalness 0)",
-                     records::format_rate(shine->share))});
-    const std::vector<double> highlights = list_highlights(pairs, own, shine->lobe);
-    for (std::size_t i = 0; i < pairs.ours.size(); ++i)
-      pairs.ours[i] = shine->matt * pairs.ours[i] + shine->shine * highlights[i];
-  } else if (!is_coded) {
-    check_direction(pairs, own, shine.has_value(), findings);
-  }
+  const LightPairs pairs = pair_lights(*images.unlit, own);
+  check_encoding(pairs, findings);
+  if (!is_coded) check_direction(pairs, own, findings);  // steps look like another direction
   check_faces(images, own, findings);
   check_samples(pairs, own, findings);
 }

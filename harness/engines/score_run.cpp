@@ -258,7 +258,6 @@ OwnView RunScorer::describe_own_view(const run::PlannedTask& task) {
   for (std::size_t i = 0; i < own.counts.size(); ++i) {
     const glm::vec3 normal(shading.texels[4 * i], shading.texels[4 * i + 1], shading.texels[4 * i + 2]);
     own.normals_ws.push_back(normal);
-    own.to_viewer_ws.push_back(to_viewer(camera, receivers.image.points[i].position_ws));
     own.depth.texels[i] = surfaces.positions.texels[4 * i + 3];
     float ambient = 0.0f, direct = 0.0f;
     for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
