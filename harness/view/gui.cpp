@@ -1,6 +1,7 @@
 #include "harness/view/gui.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -77,7 +78,6 @@ Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path o
       input_(bench, window),
       scenes_(bench, Widgets(log)),
       settings_(bench, Widgets(log), [this] { save_state("scene", save_scene); }),
-      magnifier_(bench, display_, Widgets(log)),
       map_(bench, layers_, display_, Widgets(log)),
       full_size_(bench.state().options.width, bench.state().options.height) {}
 
@@ -180,6 +180,10 @@ void Gui::lay_out_status() {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8.0f, 0.15f * height});
   ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
   ImGui::PopStyleVar();
+  if (!reading_.empty()) {
+    ImGui::TextUnformatted(reading_.c_str());
+    ImGui::SameLine(0.0f, 2.0f * ImGui::GetFontSize());
+  }
   ImGui::TextUnformatted(saved_.empty() ? "F1: keys and mouse" : saved_.c_str());
   ImGui::End();
 }
@@ -209,11 +213,11 @@ void Gui::lay_out_help() {
 void Gui::draw_picture() {
   const Layer& layer = Layers::list()[look_.layer];
   const PicturePlace at = place();
-  // Half a column more than is seen: the divider may stand within one. The magnifier shows both sides anywhere.
+  // Half a column more than is seen: the divider may stand within one.
   const int divider = static_cast<int>(at.divider_column(look_)), all = at.pixels.x;
-  shown_[0] = layers_.show(layer, 0, look_.error_scale, {0, look_.magnifier ? all : std::min(divider + 1, all)});
-  shown_[1] = layers_.show(layer, 1, look_.error_scale, {look_.magnifier ? 0 : std::max(divider - 1, 0), all});
-  lay_out_inspection();
+  shown_[0] = layers_.show(layer, 0, look_.error_scale, {0, std::min(divider + 1, all)});
+  shown_[1] = layers_.show(layer, 1, look_.error_scale, {std::max(divider - 1, 0), all});
+  follow_pointer();
   render::DisplayPass::clear_window(window_.size(), glm::vec3(0.08f));
   display_.draw(bench_.renderer().shaders, {shown_[0].values, shown_[1].values},
                 {.corner = gl_corner(),
@@ -225,18 +229,33 @@ void Gui::draw_picture() {
   lay_out_faults();
 }
 
-/// The windows that follow the pointer.
-void Gui::lay_out_inspection() {
+/// What the layer has at a pixel, row 0 on top, and how far away that is.
+std::string Gui::read_value(const glm::ivec2& pixel, std::size_t side) const {
+  const Layer& layer = Layers::list()[look_.layer];
+  const ShownLayer& shown = shown_[side];
+  const glm::ivec2 at(pixel.x, bench_.state().options.height - 1 - pixel.y);
+  std::string text = fmt::format("pixel {}, {}", pixel.x, pixel.y);
+  if (shown.absent.empty()) {
+    const bool is_picture = shown.values.colors == render::Colors::kPicture;
+    std::vector<float> values = shown.values.values->read_texel(at.x, at.y, is_picture ? 3 : shown.values.channel + 1);
+    if (!is_picture) values = {values.back()};
+    if (shown.values.less) values.front() -= shown.values.less->read_texel(at.x, at.y, 1).front();
+    text += fmt::format(", {} {:.6g} {}", layer.title, fmt::join(values, " "), layer.unit);
+  }
+  if (const auto place = bench_.stage().find_surface(pixel)) text += fmt::format(", {:.4g} m away", place->w);
+  return text;
+}
+
+/// The status line reads the layer under the pointer, and the map's window the receiver.
+void Gui::follow_pointer() {
   const PicturePlace at = place();
   const ImGuiIO& io = ImGui::GetIO();
   const glm::vec2 pointer(io.MousePos.x, io.MousePos.y);
   std::optional<glm::ivec2> pixel;
   if (!io.WantCaptureMouse && at.holds(pointer)) pixel = glm::ivec2(at.to_picture(pointer));
-  const bool is_left = !pixel || static_cast<float>(pixel->x) < at.divider_column(look_);
-  if (look_.magnifier)
-    magnifier_.lay_out(look_, Layers::list()[look_.layer], shown_, pixel,
-                       at.corner + glm::vec2(at.size().x - 8.0f, 40.0f), window_.scale());
-  if (look_.map) map_.lay_out(look_, pixel, is_left ? 0 : 1, window_.scale());
+  const std::size_t side = !pixel || static_cast<float>(pixel->x) < at.divider_column(look_) ? 0 : 1;
+  reading_ = pixel ? read_value(*pixel, side) : "";
+  if (look_.map) map_.lay_out(look_, pixel, side, window_.scale());
 }
 
 void Gui::draw_divider() {
@@ -383,8 +402,6 @@ const std::vector<Gui::Key>& Gui::list_keys() {
        [](Gui& gui) { gui.look_.layer = (gui.look_.layer + 1) % Layers::list().size(); }},
       {GLFW_KEY_PAGE_UP, false, "Page Up", "previous layer",
        [](Gui& gui) { gui.look_.layer = (gui.look_.layer + Layers::list().size() - 1) % Layers::list().size(); }},
-      {GLFW_KEY_M, false, "M", "magnifier, with the values under the pointer",
-       [](Gui& gui) { gui.look_.magnifier = !gui.look_.magnifier; }},
       {GLFW_KEY_N, false, "N", "the depth map and the stored map", [](Gui& gui) { gui.look_.map = !gui.look_.map; }},
       {GLFW_KEY_H, false, "H", "show or hide the panels", [](Gui& gui) { gui.look_.panels = !gui.look_.panels; }},
       {GLFW_KEY_C, false, "C", "next camera of the scene",
@@ -457,6 +474,7 @@ ViewLog::Frame describe_frame(const Gui& gui, Workbench& bench, double begun_s, 
   frame.texts["message"] = bench.message();
   frame.texts["scene"] = bench.state().scene.name;
   frame.texts["lesson"] = gui.lesson();
+  frame.texts["reading"] = gui.reading();
   frame.numbers["width"] = bench.state().options.width;
   for (std::size_t side = 0; side < kSides; ++side) {
     const std::string name = kSideNames[side];

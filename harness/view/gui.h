@@ -43,6 +43,7 @@ class Gui {
   void start(const std::string& lesson);
 
   std::string lesson() const { return scenes_.lesson(); }
+  const std::string& reading() const { return reading_; }
 
   /// What the panels take of the window's size, in pixels.
   static glm::ivec2 panel_size(float scale);
@@ -68,12 +69,12 @@ class Gui {
   PictureInput input_;
   ScenePanel scenes_;
   SettingsPanel settings_;
-  Magnifier magnifier_;
   MapPanel map_;
   std::array<ShownLayer, kSides> shown_;
   glm::ivec2 full_size_;  ///< of the picture, in pixels, while nothing is dragged
   double moved_s_ = 0.0;  ///< when camera or light moved last
   double last_s_ = 0.0;
+  std::string reading_;         ///< what the picture shows under the pointer; empty: it is elsewhere
   std::string saved_;           ///< what was saved last
   bool wants_picture_ = false;  ///< it is saved when all that it shows is there
 
@@ -94,7 +95,8 @@ class Gui {
   std::vector<std::pair<std::size_t, ScaleCaption>> list_scales() const;
   void lay_out_scales(glm::vec2 corner);
   void lay_out_faults();
-  void lay_out_inspection();
+  void follow_pointer();
+  std::string read_value(const glm::ivec2& pixel, std::size_t side) const;
   void draw_divider();
   void save(const std::string& what, const std::function<void(const std::filesystem::path& stem)>& write);
   void save_state(const std::string& what, void (*write)(const ViewState& state, const std::filesystem::path& file));

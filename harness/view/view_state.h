@@ -81,7 +81,6 @@ struct Look {
   std::size_t layer = 0;     ///< index into Layers::list()
   float error_scale = 0.2f;  ///< the error with the full colour
   bool panels = true;
-  bool magnifier = false;
   bool map = false;
   bool help = false;
 

@@ -8,6 +8,7 @@ Needs Xvfb, xdotool and oiiotool.
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -129,6 +130,11 @@ def test_truth_comes_while_the_window_answers(program, folder):
         assert "scale.right" not in window.widgets, "what means the same on both sides is said once"
         error = window.picture("truth.area")[2]
         assert min(error) == 0.0 and max(error) == 1.0, "shadow and light"
+        window.move(120, 200)
+        reading = window.wait("a value under the pointer", lambda frame: "signed error" in frame["reading"])["reading"]
+        x, y, shown = map(float, re.match(r"pixel (\d+), (\d+), signed error (\S+) visibility, \S+ m away$", reading).groups())
+        place = int(y) * 480 + int(x)
+        assert abs(shown - (window.picture("left.visibility")[2][place] - error[place])) < 1e-5, reading
         # A moment after a drag there is no truth yet: the picture waits for it.
         window.drag((120, 200), (40, -20))
         assert window.last()["truth"] == 0.0
@@ -138,7 +144,7 @@ def test_truth_comes_while_the_window_answers(program, folder):
 
 def test_every_key_and_panel(program, folder):
     with Window(program, folder, ["lamp", "--size", "640x800", "--map-size", "256", "--left", "none", "--right", "vsm"]) as window:
-        for key in ("F1", "m", "n", "space", "space", "t", "x", "c", "l", "h", "h", "F1", *["Next"] * 12, *["Prior"] * 3, "r"):
+        for key in ("F1", "n", "space", "space", "t", "x", "c", "l", "h", "h", "F1", *["Next"] * 12, *["Prior"] * 3, "r"):
             window.key(key)
             window.pause(0.25)
         assert window.last()["left"] == "vsm", "X exchanges the sides"
