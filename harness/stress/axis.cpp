@@ -296,8 +296,6 @@ records::StressCase find_onsets(const Case& item, const Axis& axis) {
           search.find_recovery(breaks ? Verdict::kBroken : Verdict::kDegraded, breaks ? "broken" : "degraded"))
     record.notes.push_back(*note);
   record.samples = observer.samples();
-  if (!item.remark) return record;
-  for (std::string& sentence : item.remark(record)) record.notes.push_back(std::move(sentence));
   return record;
 }
 

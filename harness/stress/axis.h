@@ -65,8 +65,6 @@ struct Case {
   std::vector<Theory> theories = {};  ///< none: no limit is known
   /// Explains from what was measured why a theory is not met; empty where no known reason applies. May be null.
   std::function<std::string(const Disagreement&)> explain = {};
-  /// What else a record shows, where its numbers bear that out; printed with the axis. May be null.
-  std::function<std::vector<std::string>(const records::StressCase&)> remark = {};
   /// Null where `not_available` gives a reason. A case whose first value throws Error is not available; a later value
   /// that throws is broken.
   std::function<Observation(double)> observe = {};

@@ -64,6 +64,13 @@ bool is_all(const std::vector<double>& values, double of) {
       values, [of](double value) { return std::abs(value - of) < kNearlyLit; });
 }
 
+/// The largest difference of two lists of one length.
+double find_largest_error(const std::vector<double>& seen, const std::vector<double>& expected) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < seen.size(); ++i) largest = std::max(largest, std::abs(seen[i] - expected[i]));
+  return largest;
+}
+
 /// The largest fall within a run from any receiver to a later one.
 double find_largest_fall(const std::vector<double>& values, std::size_t run) {
   double largest = 0.0;
@@ -137,12 +144,6 @@ double look_at_one_depth(const AxisInputs& inputs, const filters::FilterRequest&
 
 SyntheticLookup make_lookup(const AxisInputs& inputs, const filters::FilterRequest& request, Level level) {
   return level == Level::kGl ? make_gl_lookup(inputs, request) : make_model_lookup(inputs, request);
-}
-
-double find_largest_error(const std::vector<double>& seen, const std::vector<double>& expected) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < seen.size(); ++i) largest = std::max(largest, std::abs(seen[i] - expected[i]));
-  return largest;
 }
 
 Observation judge(const LookupResult& result, const Expected& expected) {

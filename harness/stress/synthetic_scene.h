@@ -133,9 +133,6 @@ struct Expected {
 /// A fall of more than this along a run that must rise makes a case broken.
 inline constexpr double kLargestFall = 0.1;
 
-/// The largest difference of two lists of one length.
-double find_largest_error(const std::vector<double>& seen, const std::vector<double>& expected);
-
 /// Judges a result by its largest error. It is broken where texels of the map overflowed, where a visibility is NaN or
 /// infinite, where all is lit or all is dark although it should not be, and where a run falls. It is degraded where the
 /// error is over the bound.

@@ -82,7 +82,7 @@ struct StressCase {
   std::optional<StressOnset> degraded;
   std::optional<StressOnset> broken;
   std::vector<StressLimit> limits;
-  std::vector<std::string> notes;  ///< verdicts that got better again, and the axis' remarks
+  std::vector<std::string> notes;  ///< verdicts that got better again
 };
 
 /// What is said of an axis before anything is measured.

@@ -65,20 +65,6 @@ std::vector<double> expect_visibility(const EdgeScene& edge, const Setting& sett
   return visibility;
 }
 
-/// Where the GL flushes denormals, all is dark from where exp(-c z) of the lookup underflows. That is before exp(c z)
-/// of the map overflows.
-std::vector<std::string> remark_underflow(const Setting& setting, const records::StressCase& record) {
-  constexpr double kSmallestNormal = 87.3365;  // -ln(2^-126)
-  constexpr double kLargest = 88.7228;         // ln(2^128)
-  if (is_log(setting) || !record.broken) return {};
-  const double exponent = record.broken->value * static_cast<double>(setting.largest_depth);
-  if (exponent < (1.0 - kOnsetPrecision) * kSmallestNormal || exponent > kLargest) return {};
-  return {
-      fmt::format("all is dark from {:.4g} on, before the map overflows: there exp(-c z) of the lookup leaves the "
-                  "normal 32-bit numbers ({:.2f} / {:g}), and is flushed to 0",
-                  record.broken->value, kSmallestNormal, setting.largest_depth)};
-}
-
 std::string name(const Setting& setting) {
   return fmt::format("{}{}{}, depths to {:g}{}", setting.store, setting.combine.empty() ? "" : ", ", setting.combine,
                      setting.largest_depth, setting.radius == 0 ? ", no blur" : "");
@@ -94,7 +80,6 @@ Case make_case(const AxisInputs& inputs, filters::FilterRequest request, const S
   item.params.erase(param);
   item.theories = {make_overflow(setting, level)};
   if (is_log(setting)) item.theories.push_back(make_rounding(setting));
-  item.remark = [setting](const records::StressCase& record) { return remark_underflow(setting, record); };
   const EdgeScene edge = make_edge_scene(setting.radius, {{kOccluder * setting.largest_depth, setting.largest_depth}});
   item.observe = [lookup = make_lookup(inputs, request, level), edge, setting, values = request.values,
                   param](double c) mutable {

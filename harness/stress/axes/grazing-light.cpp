@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "filters/model.h"
@@ -63,23 +62,6 @@ Observation observe_plane(TiltedPlane& plane, const PlaneTilt& tilt, const Reach
   return {Verdict::kOk, texels, {}};
 }
 
-/// How near the bias came to theory, over all angles.
-std::vector<std::string> remark_ratio(const records::StressCase& record, const Reach& reach, bool diagonal) {
-  double least = std::numeric_limits<double>::infinity(), most = 0.0, steepest = 0.0;
-  for (const records::StressSample& sample : record.samples) {
-    const double theory = find_gain_m({sample.value, diagonal}, reach.texels()) / kPlaneTexel_m;
-    if (!sample.measured || theory <= 0.0) continue;
-    least = std::min(least, *sample.measured / theory);
-    most = std::max(most, *sample.measured / theory);
-    steepest = *sample.measured;
-  }
-  if (most == 0.0) return {};
-  const std::string low = fmt::format("{:.3f}", least), high = fmt::format("{:.3f}", most);
-  return {fmt::format("needs {} times {} at every angle, and {:.4g} texels at {:g} degrees",
-                      low == high ? low : low + " to " + high, describe_theory(reach, diagonal), steepest,
-                      record.samples.back().value)};
-}
-
 /// Where hardware filters with weights of few bits: what weighs less is not read, and needs no bias.
 std::string explain_by_weights(const Disagreement& missed, const Reach& reach, bool diagonal, double weight_bits) {
   if (weight_bits >= 23.0) return {};
@@ -102,7 +84,6 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
   item.explain = [reach, diagonal, renderer = inputs.renderer](const Disagreement& missed) {
     return explain_by_weights(missed, reach, diagonal, measure::measure_accuracy(*renderer).weight_bits);
   };
-  item.remark = [reach, diagonal](const records::StressCase& record) { return remark_ratio(record, reach, diagonal); };
   return item;
 }
 

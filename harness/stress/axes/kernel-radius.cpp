@@ -21,14 +21,6 @@ bool averages_comparisons(const filters::FilterSpec& spec) {
   return !spec.has_encode && spec.kind != filters::FilterKind::kOther;
 }
 
-/// What a filter is without a kernel.
-std::string name_base(const filters::FilterSpec& spec, const filters::Kernel& kernel) {
-  const bool nearest = kernel.reconstruction() == filters::Reconstruction::kNearest;
-  if (!averages_comparisons(spec))
-    return nearest ? "its formula on one texel" : "its formula on one texel, read between texels";
-  return nearest ? "one comparison with the nearest texel" : "one hardware 2x2 comparison";
-}
-
 /// The filter's own arithmetic in extended precision; without a radius the base comparison, which needs none of
 /// the filter's code.
 std::vector<double> expect_visibility(const filters::FilterRequest& request, double radius, const SyntheticScene& scene,
@@ -47,11 +39,6 @@ Observation observe_radius(const filters::FilterRequest& request, double radius,
   return {
       Verdict::kBroken, seen.measured,
       fmt::format("radius 0 is off by {:.2g} from what the filter is without a kernel", seen.measured.value_or(1.0))};
-}
-
-std::vector<std::string> remark_base(const records::StressCase& record, const std::string& base) {
-  if (record.samples.empty() || record.samples.front().value != 0.0 || !record.samples.front().measured) return {};
-  return {fmt::format("radius 0 is {}, within {:.2g}", base, *record.samples.front().measured)};
 }
 
 /// A radius of which the front matter lists the values takes no others; each of them is a shader of its own.
@@ -80,11 +67,6 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
     if (is_const) lookup = make_lookup(inputs, request, level);
     return observe_radius(request, radius, lookup, exact);
   };
-  if (!item.values.empty() && item.values.front() > 0.0) return item;
-  filters::ParamValues without = request.values;
-  without[param] = 0.0;
-  const std::string base = name_base(request.spec, *filters::find_kernel(request.spec, without));
-  item.remark = [base](const records::StressCase& record) { return remark_base(record, base); };
   return item;
 }
 

@@ -104,13 +104,7 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
   if (!item.is_available()) return item;
   const int radius = filters::prefilter_radius_texels(request.spec, request.values);
   const ClosedForm form = find_closed_form(request);
-  if (form.visibility)
-    item.theories = {make_theory(form, radius, occluders)};
-  else
-    item.remark = [](const records::StressCase&) {
-      return std::vector<std::string>{
-          "its front matter tells of no formula: there is nothing to hold it against but truth"};
-    };
+  if (form.visibility) item.theories = {make_theory(form, radius, occluders)};
   item.explain = [exact = make_model_lookup(inputs, request, filters::Precision::kExtended), request, occluders](
                      const Disagreement& missed) { return explain_by_model(missed, exact, request, occluders); };
   item.observe = [lookup = make_lookup(inputs, request, level), values = request.values, radius,

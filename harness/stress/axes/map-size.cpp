@@ -1,8 +1,5 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "harness/stress/synthetic_scene.h"
 
@@ -43,15 +40,12 @@ std::vector<double> keep_clear(SyntheticScene& scene, const AxisInputs& inputs, 
 }
 
 /// The lookup is made for each size and given up again, and with it the map.
-Observation observe(const AxisInputs& inputs, const filters::FilterRequest& request, int size, double& lost) {
+Observation observe(const AxisInputs& inputs, const filters::FilterRequest& request, int size) {
   SyntheticScene scene = make_halves(size);
-  const filters::Precision precision = expected_precision(request.spec);
-  const auto see = [&](filters::Precision of) {
-    return make_model_lookup(inputs, request, of)(scene, request.values).visibility;
-  };
-  const std::vector<double> expected = size <= kLargestModelled ? see(precision) : keep_clear(scene, inputs, request);
-  if (size <= kLargestModelled && precision != filters::Precision::kDouble)
-    lost = std::max(lost, find_largest_error(expected, see(filters::Precision::kDouble)));
+  const std::vector<double> expected =
+      size <= kLargestModelled
+          ? make_model_lookup(inputs, request, expected_precision(request.spec))(scene, request.values).visibility
+          : keep_clear(scene, inputs, request);
   if (scene.receivers.empty()) return {};  // the kernel meets the edge or the border everywhere
   return judge(make_gl_lookup(inputs, request)(scene, request.values), {expected, kVisibleError, 0});
 }
@@ -61,17 +55,7 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request) 
   if (!item.is_available()) return item;
   item.theories = {
       {std::nullopt, TheoryKind::kQuantum, "none: a map of one texel is a map", "by definition", Verdict::kDegraded}};
-  const auto lost = std::make_shared<double>(0.0);  // by what the filter packs
-  item.observe = [&inputs, request, lost](double size) {
-    return observe(inputs, request, static_cast<int>(size), *lost);
-  };
-  item.remark = [lost](const records::StressCase&) {
-    return *lost <= kVisibleError
-               ? std::vector<std::string>()
-               : std::vector{fmt::format("what the filter packs is off from exact arithmetic by up to {:.2g}, as its "
-                                         "scalar model packs it; the map's size adds nothing to that",
-                                         *lost)};
-  };
+  item.observe = [&inputs, request](double size) { return observe(inputs, request, static_cast<int>(size)); };
   return item;
 }
 

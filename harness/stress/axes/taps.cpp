@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,33 +44,6 @@ Observation observe_taps(const AxisInputs& inputs, const filters::FilterRequest&
   return judge_edge(make_lookup(inputs, request, level)(scene, request.values), expected, request.spec.kind);
 }
 
-/// How far the taps are from the kernel that they stand for, root mean square over an edge.
-double find_noise(const AxisInputs& inputs, const filters::FilterRequest& request) {
-  const SyntheticScene scene = make_scene(request);
-  const std::vector<double> seen =
-      make_model_lookup(inputs, request, filters::Precision::kDouble)(scene, request.values).visibility;
-  const std::vector<double> whole = compare_whole_kernel(scene, *filters::find_kernel(request.spec, request.values));
-  double sum = 0.0;
-  for (std::size_t i = 0; i < seen.size(); ++i) sum += (seen[i] - whole[i]) * (seen[i] - whole[i]);
-  return std::sqrt(sum / static_cast<double>(seen.size()));
-}
-
-std::vector<std::string> remark_noise(const AxisInputs& inputs, const filters::FilterRequest& request,
-                                      const filters::ParamSpec& param, const records::StressCase& record) {
-  std::vector<std::string> parts;
-  double before = 0.0;
-  for (const records::StressSample& sample : record.samples) {
-    const double count = choose_count(param, sample.value);
-    if (count == before) continue;
-    parts.push_back(fmt::format("{:.2g} with {:g}", find_noise(inputs, with_count(request, param, count)), count));
-    before = count;
-  }
-  return {
-      fmt::format("taps that it allows are off the whole kernel by, root mean square over the edge: {}; counts in "
-                  "between stand for the next lower one",
-                  fmt::join(parts, ", "))};
-}
-
 Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, const filters::ParamSpec& param,
                Level level) {
   const std::string variant =
@@ -86,10 +58,6 @@ Case make_case(const AxisInputs& inputs, const filters::FilterRequest& request, 
   item.observe = [&inputs, request, param, level](double taps) {
     return observe_taps(inputs, with_count(request, param, taps), level);
   };
-  if (level == Level::kModel && filters::find_kernel(request.spec, request.values))
-    item.remark = [&inputs, request, param](const records::StressCase& record) {
-      return remark_noise(inputs, request, param, record);
-    };
   return item;
 }
 

@@ -313,18 +313,6 @@ TEST(Explain, WhatBreaksWithinTheRange_IsNotBrokenThroughout) {
   EXPECT_THAT(explain_broken_throughout({theory, 2.0, record}), HasSubstr("overflow"));
 }
 
-TEST(KernelRadius, RadiusZero_IsNamedForWhatItIs) {
-  const Axis axis = choose_axes("kernel-radius")[0];
-  const records::StressCase disk =
-      find_onsets(find_case("kernel-radius", "disk of comparisons", Level::kModel, "poisson"), axis);
-  ASSERT_EQ(disk.notes.size(), 1u);
-  EXPECT_THAT(disk.notes[0], HasSubstr("one hardware 2x2 comparison"));
-  const records::StressCase blurred =
-      find_onsets(find_case("kernel-radius", "blurred map", Level::kModel, "vsm"), axis);
-  ASSERT_EQ(blurred.notes.size(), 1u);
-  EXPECT_THAT(blurred.notes[0], HasSubstr("its formula on one texel"));
-}
-
 /// Its front matter lists radii 1, 2 and 3, and no other is a filter.
 TEST(KernelRadius, ListedRadii_AreTheOnlyOnesAskedFor) {
   const Axis axis = choose_axes("kernel-radius")[0];
@@ -335,14 +323,6 @@ TEST(KernelRadius, ListedRadii_AreTheOnlyOnesAskedFor) {
     EXPECT_EQ(found.samples[i].value, static_cast<double>(i + 1));
     EXPECT_LT(found.samples[i].measured.value(), 1e-5);
   }
-}
-
-TEST(Taps, MoreOfThem_AreNearerToTheDisk) {
-  const records::StressCase found =
-      find_onsets(find_case("taps", "taps at radius 3", Level::kModel, "poisson"), choose_axes("taps")[0]);
-  ASSERT_EQ(found.notes.size(), 1u);
-  for (const char* count : {"with 4,", "with 8,", "with 16,", "with 32;"})
-    EXPECT_THAT(found.notes[0], HasSubstr(count));
 }
 
 TEST(Axes, FiltersThatTheyHaveNothingToAsk_AreReported) {
