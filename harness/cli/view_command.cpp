@@ -48,7 +48,7 @@ Command make_view_command() {
   Command command{"view", "Compare two filters, or one and the truth, in a window"};
   command.about =
       "A divider between two filters, or a filter and ray-traced truth. Camera, light, map and every parameter by "
-      "mouse; errors and their causes; lessons on what goes wrong. F1 lists the keys. A filter's file is recompiled "
+      "mouse; errors, causes, times; lessons on what goes wrong. F1 lists the keys. A filter's file is recompiled "
       "whenever it is saved.";
   auto a = std::make_shared<ViewArguments>();
   a->out = "report/out/view";

@@ -78,6 +78,7 @@ Gui::Gui(Window& window, Workbench& bench, ViewLog& log, std::filesystem::path o
       input_(bench, window),
       scenes_(bench, Widgets(log)),
       settings_(bench, Widgets(log), [this] { save_state("scene", save_scene); }),
+      meter_(bench),
       map_(bench, layers_, display_, Widgets(log)),
       full_size_(bench.state().options.width, bench.state().options.height) {}
 
@@ -169,6 +170,7 @@ void Gui::lay_out_panels() {
   ImGui::Begin("panels", nullptr, kFixed);
   if (const Lesson* lesson = scenes_.lay_out()) start(*lesson);
   settings_.lay_out(look_);
+  meter_.lay_out();
   ImGui::End();
 }
 
@@ -211,6 +213,7 @@ void Gui::lay_out_help() {
 }
 
 void Gui::draw_picture() {
+  is_timing_ = look_.panels && meter_.step();
   const Layer& layer = Layers::list()[look_.layer];
   const PicturePlace at = place();
   // Half a column more than is seen: the divider may stand within one.

@@ -32,7 +32,7 @@ class Gui {
   void draw_picture();
 
   /// Whether the next frame must not wait for an event.
-  bool is_moving() const { return input_.is_flying(); }
+  bool is_moving() const { return input_.is_flying() || is_timing_; }
 
   /// Saves the picture that was asked for, once all that it shows is there; after the widgets are drawn over it.
   void save_wanted_picture();
@@ -69,6 +69,8 @@ class Gui {
   PictureInput input_;
   ScenePanel scenes_;
   SettingsPanel settings_;
+  TimeMeter meter_;
+  bool is_timing_ = false;
   MapPanel map_;
   std::array<ShownLayer, kSides> shown_;
   glm::ivec2 full_size_;  ///< of the picture, in pixels, while nothing is dragged

@@ -4,10 +4,13 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <functional>
 #include <span>
 #include <string>
 
 #include "harness/gl/objects.h"
+#include "harness/gl/survey.h"
+#include "harness/measure/timing.h"
 #include "harness/render/gbuffer.h"
 
 namespace shadowbench::view {
@@ -166,6 +169,35 @@ std::optional<filters::Receiver> MapPanel::find_receiver(const render::LightLaye
   }
   if (found) found->pixel = at;
   return found;
+}
+
+bool TimeMeter::step() {
+  constexpr std::size_t kRounds = 10;
+  if (drawing_ != bench_.drawings()) times_ms_.clear();
+  drawing_ = bench_.drawings();
+  if (bench_.is_busy() || times_ms_["map"].size() == kRounds) return false;
+  Stage& stage = bench_.stage();
+  const auto time = [&](const std::string& pass, const std::function<void()>& draw) {
+    times_ms_[pass].push_back(gl::time_ms(bench_.renderer().timer, draw));
+  };
+  for (std::size_t side = 0; side < kSides; ++side) {
+    render::FilterPasses* passes = stage.passes(side);
+    if (passes == nullptr) continue;
+    const std::string name = kSideNames[side];
+    time(name + " lookup", [&] { stage.look_up(side); });  // first: right after a prefilter a CPU's are slower
+    if (passes->has_prefilter()) time(name + " prefilter", [&] { passes->prefilter(stage.light_map().map); });
+  }
+  time("map", [&] { stage.redraw_map(bench_.state()); });
+  return true;
+}
+
+void TimeMeter::lay_out() const {
+  if (!ImGui::CollapsingHeader("Times", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  for (const auto& [pass, times_ms] : times_ms_)
+    if (!times_ms.empty())
+      ImGui::TextUnformatted(fmt::format("{}: {:.3f} ms", pass, measure::summarise(times_ms).median).c_str());
+  ImGui::TextDisabled("%s",
+                      bench_.is_busy() ? "Timing begins after the measurement." : "Medians, while nothing moves.");
 }
 
 }  // namespace shadowbench::view

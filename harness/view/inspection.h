@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,6 +59,23 @@ class MapPanel {
   images::Image read_content(int layer) const;
   void show_map(int side_pixels, int layer);
   void draw_footprint(const glm::vec2& corner, int side_pixels, const glm::dvec2& first_texel) const;
+};
+
+/// Times the passes of what is shown, only while nothing moves and nothing else works: such times compare.
+class TimeMeter {
+ public:
+  explicit TimeMeter(Workbench& bench) : bench_(bench) {}
+
+  /// Times each pass once, unless enough rounds were timed since the last drawing. Whether more rounds wait.
+  bool step();
+
+  /// Lays out the medians in the current ImGui window.
+  void lay_out() const;
+
+ private:
+  Workbench& bench_;
+  std::map<std::string, std::vector<double>> times_ms_;  ///< since the last drawing, by pass: "left lookup"
+  std::uint64_t drawing_ = 0;
 };
 
 }  // namespace shadowbench::view

@@ -57,6 +57,7 @@ void Stage::draw_gbuffer(const ViewState& state) {
       side.visibility.emplace("visibility", GL_R32F, width, height);
       side.picture.emplace("picture", GL_RGBA32F, width, height);
     }
+    unseen_.emplace("timed visibility", GL_R32F, width, height);
     truth_.reset();
   }
   gbuffer_->draw(renderer_.shaders, geometry_, state.scene, state.active_camera());
@@ -80,10 +81,16 @@ bool Stage::draw_map(const ViewState& state, bool map_changed) {
   } else {
     light_->layers = std::move(layers);
   }
-  for (const scene::LightFrustum& layer : light_->layers)
-    light_->map.draw(renderer_.shaders, geometry_, layer, options.bias.map);
+  redraw_map(state);
   return other_map;
 }
+
+void Stage::redraw_map(const ViewState& state) {
+  for (const scene::LightFrustum& layer : light_->layers)
+    light_->map.draw(renderer_.shaders, geometry_, layer, state.options.bias.map);
+}
+
+void Stage::look_up(std::size_t side) { sides_[side].passes->lookup(*gbuffer_, light_->map, *unseen_); }
 
 void Stage::draw_side(const ViewState& state, std::size_t side, bool compiles, bool retunes) {
   SideDrawing& drawing = sides_[side];

@@ -68,6 +68,10 @@ class Stage {
   /// A side's passes; null where it shows the truth, or where its filter has never compiled.
   render::FilterPasses* passes(std::size_t side) { return sides_[side].passes.get(); }
 
+  /// Draw again, into textures that nobody sees, for timing.
+  void redraw_map(const ViewState& state);
+  void look_up(std::size_t side);
+
   /// Texels of the map under each pixel's footprint, rows top to bottom. Cost: see measure::measure_coverage().
   images::Image texels_per_pixel(const ViewState& state);
 
@@ -88,6 +92,7 @@ class Stage {
   double pad_texels_ = -1.0;
   std::array<SideDrawing, kSides> sides_;
   std::optional<gl::Texture> truth_;
+  std::optional<render::ImageTarget> unseen_;  ///< what timed lookups draw into
 
   void draw_gbuffer(const ViewState& state);
   bool draw_map(const ViewState& state, bool map_changed);
@@ -169,7 +174,7 @@ class Workbench {
   const std::string& message() const { return message_; }
   void say(std::string message) { message_ = std::move(message); }
 
-  /// Whether work goes on beside the window.
+  /// Whether work goes on beside the window, which would disturb times.
   bool is_busy() const { return !is_traced() || measured_ == SideMeasurement::State::kRunning; }
 
   /// Whether the truth is there, or will not come; it is traced anew when camera or light change.
