@@ -243,7 +243,8 @@ std::string Gui::read_value(const glm::ivec2& pixel, std::size_t side) const {
     std::vector<float> values = shown.values.values->read_texel(at.x, at.y, is_picture ? 3 : shown.values.channel + 1);
     if (!is_picture) values = {values.back()};
     if (shown.values.less) values.front() -= shown.values.less->read_texel(at.x, at.y, 1).front();
-    text += fmt::format(", {} {:.6g} {}", layer.title, fmt::join(values, " "), layer.unit);
+    const std::string& unit = layer.unit;
+    text += fmt::format(", {} {:.4g}{}", layer.title, fmt::join(values, " "), unit.empty() ? unit : " " + unit);
   }
   if (const auto place = bench_.stage().find_surface(pixel)) text += fmt::format(", {:.4g} m away", place->w);
   return text;
