@@ -6,8 +6,8 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <span>
 #include <tuple>
+#include <utility>
 
 #include "base/files.h"
 #include "report/records/cell_key.h"
@@ -57,15 +57,11 @@ std::vector<TradeScope> make_trade_scopes(const std::vector<records::CellRecord>
   const std::vector<LeftOutPlace> left_out = list_left_out(all);
   CellList counted = all;
   std::erase_if(counted, [&](const auto* cell) { return is_left_out(*cell, left_out); });
-  for (const CellList& picture : pivot(counted, {"filter", "params", "map_size", "scene", "view"}))
+  for (const CellList& picture : pivot(counted, {"filter", "params", "map_size", "fit", "scene", "view"}))
     if (list_places(picture).size() > 1) scopes.push_back(make_joint_scope(picture));
-  for (const CellList& place : pivot(all, {"filter", "params", "map_size"})) scopes.push_back(make_place_scope(place));
+  for (const CellList& place : pivot(all, {"filter", "params", "map_size", "fit"}))
+    scopes.push_back(make_place_scope(place));
   std::erase_if(scopes, [](const TradeScope& scope) { return scope.configurations.empty(); });
-  std::set<std::string> fits;
-  for (const records::CellRecord& cell : cells) fits.insert(cell.fit);
-  for (TradeScope& scope : scopes)
-    if (fits.size() > 1)
-      scope.title += " · " + records::name_fit(scope.configurations.front().cells.front()->fit, fits);
   make_unique(scopes);
   return scopes;
 }
@@ -182,44 +178,24 @@ std::vector<CostCurve> join_curves(const std::vector<Timed>& all) {
   return curves;
 }
 
-std::vector<CostCurve> make_width_curves(const TradeScope& scope, const std::vector<Quantity>& costs, int map_size) {
+/// A size and a fit.
+using Map = std::pair<int, std::string>;
+
+Map map_of(const Configuration& configuration) {
+  const records::CellRecord& cell = *configuration.cells.front();
+  return {cell.map_size, cell.fit};
+}
+
+std::vector<CostCurve> make_width_curves(const TradeScope& scope, const std::vector<Quantity>& costs, const Map& map) {
   std::vector<Timed> timed;
   for (const Configuration& each : scope.configurations) {
     const records::CellRecord& cell = *each.cells.front();
     const Measured moving = measure(each, costs[kMovingCost]), still = measure(each, costs[kStaticCost]);
-    if (cell.map_size == map_size && cell.kernel.sigma_texels && moving.estimate && still.estimate)
+    if (map_of(each) == map && cell.kernel.sigma_texels && moving.estimate && still.estimate)
       timed.push_back(
           {&cell, {*cell.kernel.sigma_texels, {*moving.estimate, *still.estimate}}, records::named_params(cell)});
   }
   return join_curves(timed);
-}
-
-bool has_several_fits(std::span<const MapPoint> maps) {
-  return std::ranges::any_of(
-      maps, [&](const MapPoint& map) { return map.name != maps.front().name; });
-}
-
-/// The maps that all families have.
-MapFamily join_families(const std::vector<MapFamily>& families, const Quantity& cost) {
-  std::map<std::pair<std::string, int>, std::vector<MapPoint>> by_map;
-  for (const MapFamily& family : families)
-    for (const MapPoint& each : family.maps) by_map[{each.name, each.size}].push_back(each);
-  MapFamily joined{"all filters", {}};
-  for (const auto& [map, points] : by_map) {
-    if (points.size() < families.size()) continue;
-    MapPoint& all = joined.maps.emplace_back(points.front());
-    std::vector<Estimate> costs, errors;
-    for (const MapPoint& each : points) {
-      all.bytes = std::min(all.bytes, each.bytes);
-      all.seam = std::max(all.seam, each.seam);
-      costs.push_back(each.cost);
-      errors.push_back(each.rmse);
-    }
-    all.cost = cost.combine(costs);
-    all.rmse = list_error_measures().front().combine(errors);
-  }
-  std::ranges::stable_sort(joined.maps, {}, &MapPoint::bytes);
-  return joined;
 }
 
 }  // namespace
@@ -235,58 +211,24 @@ std::vector<CostChart> make_width_charts(const std::vector<TradeScope>& scopes, 
   std::vector<CostChart> charts;
   for (const TradeScope& scope : scopes) {
     if (scope.is_joint) continue;
-    std::set<int> map_sizes;
-    for (const Configuration& each : scope.configurations) map_sizes.insert(each.cells.front()->map_size);
-    for (const int map_size : map_sizes) {
-      CostChart chart{fmt::format("{}.map{}", scope.id, map_size), fmt::format("{} · map {}", scope.title, map_size),
-                      make_width_curves(scope, costs, map_size)};
+    std::set<Map> maps;
+    std::set<std::string> fits;
+    for (const Configuration& each : scope.configurations) {
+      maps.insert(map_of(each));
+      fits.insert(map_of(each).second);
+    }
+    for (const auto& [size, fit] : maps) {
+      CostChart chart{fmt::format("{}.map{}", scope.id, size), fmt::format("{} · map {}", scope.title, size),
+                      make_width_curves(scope, costs, {size, fit})};
+      if (fits.size() > 1) {
+        chart.id += "." + records::make_fit_stem(fit, fits);
+        chart.title += ", " + records::name_fit(fit, fits);
+      }
       const auto has_several = [](const CostCurve& curve) { return curve.points.size() > 1; };
       if (std::ranges::any_of(chart.curves, has_several)) charts.push_back(std::move(chart));
     }
   }
   return charts;
-}
-
-Quantity make_map_measure(const std::vector<const records::CellRecord*>& cells) {
-  return make_frame_measure(CostKind::kTime, LightMotion::kMoving, cells);
-}
-
-std::vector<MapFamily> list_map_families(const std::vector<const records::CellRecord*>& cells) {
-  std::set<std::string> fits;
-  for (const records::CellRecord* cell : cells) fits.insert(cell->fit);
-  if (fits.size() < 2) return {};
-  const Quantity cost = make_map_measure(cells);
-  const auto places = list_places(cells);
-  const std::vector<CellList> filters = pivot(cells, {"scene", "view", "fit", "map_size"});
-  std::vector<records::CellRecord> plain;  // without their maps, which are in no name
-  for (const CellList& each : filters) {
-    plain.push_back(*each.front());
-    plain.back().fit.clear();
-    plain.back().map_size = 0;
-  }
-  const records::CellNames names(point_to(plain));
-  std::vector<MapFamily> families;
-  for (std::size_t i = 0; i < filters.size(); ++i) {
-    std::vector<MapFamily> own;
-    for (const Place& place : places)
-      own.push_back({fmt::format("{} on {}", names.name(plain[i]), describe_place(place, places)), {}});
-    for (const records::CellRecord* each : filters[i]) {
-      const records::CellRecord& cell = *each;
-      const Measured paid = read_cost(cell, cost), rmse = read_error(cell, list_error_measures()[0]);
-      if (cell.status != records::CellStatus::kOk || !paid.estimate || !rmse.estimate || !cell.cost.map_bytes) continue;
-      own[find_place(places, cell)].maps.push_back({records::name_fit(cell.fit, fits), cell.map_size,
-                                                    static_cast<double>(*cell.cost.map_bytes), *paid.estimate,
-                                                    *rmse.estimate, cell.artefact.seam});
-    }
-    for (MapFamily& family : own) {
-      std::ranges::stable_sort(family.maps, {}, &MapPoint::bytes);
-      if (has_several_fits(family.maps)) families.push_back(std::move(family));
-    }
-  }
-  if (families.size() > 1)
-    if (MapFamily joined = join_families(families, cost); has_several_fits(joined.maps))
-      families.insert(families.begin(), std::move(joined));
-  return families;
 }
 
 }  // namespace shadowbench::analysis

@@ -12,7 +12,7 @@
 namespace shadowbench::analysis {
 
 /// What may be compared on one front: all cells of one scene, view and picture size, or all scenes and views
-/// together. Map format, bias, fit, light and range rule are the same throughout.
+/// together. Map format, bias, light and range rule are the same throughout; maps and fits compete, as in advise().
 struct TradeScope {
   std::string id;                             ///< fit for a file name, and unique
   std::string title;                          ///< "cubes · view main · 480 × 270"
@@ -70,7 +70,7 @@ struct CostCurve {
   bool prefiltered = false;        ///< blurs the map beforehand: cost.prefilter_texels > 0
 };
 
-/// The curves of one scene, view, map size and picture size.
+/// The curves of one scene, view, map size, fit and picture size.
 struct CostChart {
   std::string id;     ///< "cubes.main.480x270.map512"
   std::string title;  ///< "cubes · view main · 480 × 270 · map 512"
@@ -82,28 +82,5 @@ struct CostChart {
 
 /// Makes charts over the width, of what has both `costs`. Those in which no filter has several widths are left out.
 std::vector<CostChart> make_width_charts(const std::vector<TradeScope>& scopes, const std::vector<Quantity>& costs);
-
-/// What a filter got and paid with one map, in a frame that draws the map.
-struct MapPoint {
-  std::string name;  ///< of its fit: "4 cascades, split 0.8"
-  int size = 0;      ///< texels along a side
-  double bytes = 0.0;
-  Estimate cost, rmse;
-  std::optional<double> seam;  ///< between cascades
-};
-
-/// The maps of one filter in one scene and view, all else being equal; or of all filters everywhere: least bytes, mean
-/// cost, root mean square of errors, worst seam.
-struct MapFamily {
-  std::string title;           ///< "vsm (radius 4) on cubes"
-  std::vector<MapPoint> maps;  ///< by ascending bytes
-};
-
-/// The cost of map families: time of map, prefilter and filter.
-Quantity make_map_measure(const std::vector<const records::CellRecord*>& cells);
-
-/// Lists the families with maps of several fits; of several the first is that of all filters, with the maps that all
-/// have. Suspect cells, and those without error, bytes or time, are left out.
-std::vector<MapFamily> list_map_families(const std::vector<const records::CellRecord*>& cells);
 
 }  // namespace shadowbench::analysis

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "base/files.h"
 #include "filters/kernel.h"
 #include "report/analysis/cells.h"
 #include "report/analysis/trade.h"
@@ -180,77 +179,26 @@ document::ChartAxis choose_y_axis(const std::vector<ChartSeries>& series) {
 }
 
 /// Cost over the kernel's width, of one state of the light: kMovingCost or kStaticCost.
-class WidthChart {
- public:
-  WidthChart(const analysis::CostChart& chart, std::size_t light, const analysis::Quantity& cost,
-             const records::GlRecord& gl)
-      : chart_(chart), light_(light), cost_(cost), gl_(gl) {}
-
-  document::Chart make(const std::vector<std::string>& filters) const {
-    document::Chart made;
-    const char* state = light_ == analysis::kStaticCost ? "static" : "moving";
-    made.id = fmt::format("{}.width.{}", chart_.id, state);
-    made.title = chart_.title;
-    made.x_name = "kernel width (standard deviation), texels";
-    made.y_name = analysis::name_axis(cost_, gl_);
-    for (const analysis::CostCurve& curve : chart_.curves)
-      made.series.push_back(make_series(curve, style_among(filters, curve.filter)));
-    made.x = document::choose_axis(chart_.widths(), {}, document::TickKind::kNumber);
-    made.y = choose_y_axis(made.series);
-    made.notes = {"solid: prefiltered", "dashed: read at every lookup"};
-    return made;
-  }
-
- private:
-  ChartSeries make_series(const analysis::CostCurve& curve, const document::ChartStyle& style) const {
-    ChartSeries series = start_series(curve.label, style);
+document::Chart make_width_chart(const analysis::CostChart& chart, std::size_t light, const analysis::Quantity& cost,
+                                 const std::vector<std::string>& filters, const records::GlRecord& gl) {
+  document::Chart made;
+  made.id = fmt::format("{}.width.{}", chart.id, light == analysis::kStaticCost ? "static" : "moving");
+  made.title = chart.title;
+  made.x_name = "kernel width (standard deviation), texels";
+  made.y_name = analysis::name_axis(cost, gl);
+  for (const analysis::CostCurve& curve : chart.curves) {
+    ChartSeries& series = made.series.emplace_back(start_series(curve.label, style_among(filters, curve.filter)));
     if (!curve.prefiltered) series.line = document::LineStyle::kDashed;
     for (const analysis::CurvePoint& p : curve.points)
       series.points.push_back({exactly(p.sigma_texels),
-                               p.costs[light_],
+                               p.costs[light],
                                {},
                                {curve.label, fmt::format("kernel {} texels", records::format_number(p.sigma_texels)),
-                                say_value(cost_, p.costs[light_], gl_)}});
-    return series;
+                                say_value(cost, p.costs[light], gl)}});
   }
-
-  const analysis::CostChart& chart_;
-  std::size_t light_;
-  const analysis::Quantity& cost_;
-  const records::GlRecord& gl_;
-};
-
-/// The maps of a filter: RMSE over their bytes, a curve for each fit.
-document::Chart make_map_chart(const analysis::MapFamily& family, const analysis::Quantity& cost,
-                               const records::GlRecord& gl) {
-  document::Chart made;
-  made.title = family.title;
-  made.id = "maps." + make_file_stem(made.title);
-  made.x_name = "bytes of the map, all layers";
-  made.y_name = analysis::list_error_measures()[0].title;
-  std::vector<double> bytes;
-  std::map<std::string, double> least;
-  for (const analysis::MapPoint& map : family.maps) {
-    bytes.push_back(map.bytes);
-    auto series = std::ranges::find(made.series, map.name, &ChartSeries::title);
-    if (series == made.series.end()) {
-      made.series.push_back(start_series(map.name, document::style_of(made.series.size())));
-      series = std::prev(made.series.end());
-    }
-    series->points.push_back({exactly(map.bytes),
-                              map.rmse,
-                              fmt::format("{}", map.size),
-                              {map.name, fmt::format("{0} × {0} texels a layer", map.size),
-                               fmt::format("RMSE {}{}", records::format_number(map.rmse.value),
-                                           map.seam ? ", seam " + records::format_number(map.seam) : ""),
-                               say_value(cost, map.cost, gl)}});
-    least[map.name] = -map.rmse.value;  // of its largest map
-  }
-  made.x = document::choose_axis(bytes, bytes, document::TickKind::kBytes);
+  made.x = document::choose_axis(chart.widths(), {}, document::TickKind::kNumber);
   made.y = choose_y_axis(made.series);
-  std::vector<std::pair<double, std::string>> weights;
-  for (const auto& [name, weight] : least) weights.emplace_back(weight, name);
-  document::show_most_telling(made, weights);
+  made.notes = {"solid: prefiltered", "dashed: read at every lookup"};
   return made;
 }
 
@@ -281,30 +229,15 @@ document::ChartChoice make_width_choice(const std::vector<analysis::CostChart>& 
   for (const analysis::CostChart& chart : charts) {
     choice.selectors[0].options.push_back(chart.title);
     for (const std::size_t light : {analysis::kStaticCost, analysis::kMovingCost})
-      choice.charts.push_back(WidthChart(chart, light, costs[light], gl).make(filters));
+      choice.charts.push_back(make_width_chart(chart, light, costs[light], filters, gl));
   }
   return choice;
 }
-
-document::ChartChoice make_map_choice(const std::vector<analysis::MapFamily>& families, const analysis::Quantity& cost,
-                                      const records::GlRecord& gl) {
-  document::ChartChoice choice{"maps", {{"filter", {}}}, {}};
-  for (const analysis::MapFamily& family : families) {
-    choice.charts.push_back(make_map_chart(family, cost, gl));
-    choice.selectors[0].options.push_back(choice.charts.back().title);
-  }
-  return choice;
-}
-
-using Blocks = std::vector<document::Block>;
 
 constexpr const char* kFrontsNote =
     "Lower left is better. Line: the Pareto front of a class of width. Hollow: tied with a cheaper one of the front. "
     "Pale: beaten. Ringed: the answers.";
 constexpr const char* kLargeNote = "The run has more than {} cells: beaten ones are left out of these charts.";
-constexpr const char* kMapsNote =
-    "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
-    "stand still; every other fit follows a camera, and is drawn anew whenever it moves.";
 
 /// How fronts are read: what beaten and tied mean, what the intervals are, how scenes are combined, and what each of
 /// `costs` is.
@@ -319,7 +252,9 @@ std::vector<std::string> explain_fronts(const std::vector<analysis::Quantity>& c
       "named. It is tied with a cheaper cell of the front where neither differs clearly: errors where the 95 % "
       "interval "
       "of their difference, which is taken group by group of the phases that all cells share, does not hold 0; times "
-      "whose 95 % intervals do not overlap; everything else where the numbers differ."};
+      "whose 95 % intervals do not overlap; everything else where the numbers differ.",
+      "A map that is fitted to the scene (tight, sphere) serves every camera, and can be kept while light and casters "
+      "stand still; every other fit follows a camera, and is drawn anew whenever it moves."};
   const auto explain = [&](const analysis::Quantity& measure) {
     sentences.push_back(
         fmt::format("{}: {}. All scenes together: {}.", measure.title, measure.meaning, measure.over_scenes));
@@ -329,38 +264,23 @@ std::vector<std::string> explain_fronts(const std::vector<analysis::Quantity>& c
   return sentences;
 }
 
-void add_charts(Blocks& blocks, const char* heading, document::ChartChoice charts, const char* note) {
-  if (charts.charts.empty()) return;
-  document::Details details{heading, {std::move(charts)}};
-  if (note) details.blocks.emplace_back(document::Paragraph{note, true});
-  blocks.emplace_back(std::move(details));
-}
-
 }  // namespace
 
 std::optional<document::Section> make_trade_section(const records::RunRecord& run,
                                                     const std::vector<records::CellRecord>& cells) {
   const std::vector<analysis::Quantity> costs = analysis::list_cost_measures(cells);
   const std::vector<analysis::TradeScope> scopes = analysis::make_trade_scopes(cells);
-  const auto all = analysis::point_to(cells);
-  const std::vector<analysis::MapFamily> families = analysis::list_map_families(all);
-  const bool has_fronts = analysis::has_trade(scopes, costs);
-  if (!has_fronts && families.empty()) return std::nullopt;
-  document::Section section{"trade", "The trade", {}};
-  if (has_fronts) {
-    const bool is_large = cells.size() > kMostCellsInDetail;
-    section.blocks = {document::Paragraph{kFrontsNote, true}};
-    if (is_large) section.blocks.emplace_back(document::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
-    section.blocks.emplace_back(make_front_choice(scopes, costs, is_large, run.gl));
-    section.blocks.emplace_back(
-        document::Details{"How to read the fronts", {document::Sentences{{}, explain_fronts(costs)}}});
-    add_charts(
-        section.blocks, "Cost over the kernel width",
-        make_width_choice(analysis::make_width_charts(scopes, costs), costs, analysis::list_filters(cells), run.gl),
-        nullptr);
-  }
-  add_charts(section.blocks, "Error of maps of several fits, over their bytes",
-             make_map_choice(families, analysis::make_map_measure(all), run.gl), kMapsNote);
+  if (!analysis::has_trade(scopes, costs)) return std::nullopt;
+  document::Section section{"trade", "The trade", {document::Paragraph{kFrontsNote, true}}};
+  const bool is_large = cells.size() > kMostCellsInDetail;
+  if (is_large) section.blocks.emplace_back(document::Paragraph{fmt::format(kLargeNote, kMostCellsInDetail), true});
+  section.blocks.emplace_back(make_front_choice(scopes, costs, is_large, run.gl));
+  section.blocks.emplace_back(
+      document::Details{"How to read the fronts", {document::Sentences{{}, explain_fronts(costs)}}});
+  document::ChartChoice widths =
+      make_width_choice(analysis::make_width_charts(scopes, costs), costs, analysis::list_filters(cells), run.gl);
+  if (!widths.charts.empty())
+    section.blocks.emplace_back(document::Details{"Cost over the kernel width", {std::move(widths)}});
   return section;
 }
 

@@ -41,14 +41,16 @@ TEST(TradeScopes, APlaceThatTheAnswerLeavesOut_IsInNoMeanOverScenes) {
   EXPECT_THAT(make_trade_scopes(cells)[0].configurations[0].cells, ElementsAre(&cells[0], &cells[1]));
 }
 
-TEST(TradeScopes, MapSizesShareAFront_PicturesDoNot) {
-  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({}), make_sweep_cell({})};
+TEST(TradeScopes, MapSizesAndFitsShareAFront_PicturesDoNot) {
+  std::vector<CellRecord> cells(4, make_sweep_cell({}));
   cells[1].map_size = 2048;
-  cells[2].width = 480;
+  cells[2].fit = "view";
+  cells[3].width = 480;
   const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(2));
-  ASSERT_THAT(scopes[0].configurations, SizeIs(2));
-  EXPECT_EQ(scopes[0].configurations[1].name, "none, map 2048");
+  ASSERT_THAT(scopes[0].configurations, SizeIs(3));
+  EXPECT_EQ(scopes[0].configurations[1].name, "none, map 2048, tight fit");
+  EXPECT_EQ(scopes[0].configurations[2].name, "none, map 1024, view fit");
 }
 
 TEST(TradeScopes, OfAll_HoldOnlyWhatEverySceneHas) {
@@ -60,15 +62,11 @@ TEST(TradeScopes, OfAll_HoldOnlyWhatEverySceneHas) {
 
 TEST(TradeScopes, ScopesThatDifferOtherwise_HaveTheirOwnNames) {
   std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({})};
-  cells[1].fit = "sphere";
+  cells[1].range.border = filters::Border::kRepeat;
   const auto scopes = make_trade_scopes(cells);
   ASSERT_THAT(scopes, SizeIs(2));
   EXPECT_NE(scopes[0].id, scopes[1].id);
-  EXPECT_THAT(scopes[0].title, EndsWith(" · tight fit"));
-  EXPECT_THAT(scopes[1].title, EndsWith(" · sphere fit"));
-  cells[1].fit = cells[0].fit;
-  cells[1].range.border = filters::Border::kRepeat;
-  EXPECT_THAT(make_trade_scopes(cells)[1].title, EndsWith(" · other settings (2)"));
+  EXPECT_THAT(scopes[1].title, EndsWith(" · other settings (2)"));
 }
 
 TEST(TradeMeasures, Time_IsTheFiltersOwn_NotTheWholeLookup) {
@@ -242,56 +240,6 @@ TEST(WidthCharts, OtherParameters_MakeOtherCurves) {
   EXPECT_THAT(charts[0].curves, SizeIs(4));
   EXPECT_EQ(charts[0].curves[1].label, "poisson (taps 16)");
   EXPECT_THAT(charts[0].curves[3].points, SizeIs(3));
-}
-
-CellRecord make_map_cell(const std::string& fit, int size, const std::string& filter = "vsm", double rmse = 0.1) {
-  CellRecord cell = make_sweep_cell({.scene = "avenue", .filter = filter, .rmse = rmse, .map_size = size});
-  cell.fit = fit;
-  cell.cost.map_bytes = std::int64_t{4} * size * size;
-  return cell;
-}
-
-TEST(MapFamilies, HoldTheMapsOfOneFilterInOnePlace) {
-  const std::vector<CellRecord> cells = {make_map_cell("tight", 2048),        make_map_cell("tight", 1024),
-                                         make_map_cell("view", 1024),         make_map_cell("tight", 1024, "esm"),
-                                         make_map_cell("view", 512, "esm"),   make_map_cell("tight", 1024, "none"),
-                                         make_map_cell("tight", 2048, "none")};
-  const auto families = list_map_families(point_to(cells));
-  ASSERT_THAT(families, SizeIs(2)) << "none has one fit alone, and no two fits are common to both";
-  EXPECT_EQ(families[0].title, "vsm on avenue");
-  ASSERT_THAT(families[0].maps, SizeIs(3));
-  EXPECT_EQ(families[0].maps[0].size, 1024);
-  EXPECT_EQ(families[0].maps[1].name, "view fit");
-  EXPECT_EQ(families[0].maps[2].size, 2048);
-  EXPECT_NEAR(families[0].maps[0].cost.value, 4.0, 1e-9);
-  EXPECT_NEAR(families[0].maps[0].rmse.value, 0.1, 1e-9);
-}
-
-TEST(MapFamilies, WithoutErrorTimesOrTrust_CellsAreLeftOut) {
-  std::vector<CellRecord> cells(4, make_map_cell("tight", 1024));
-  cells[1].fit = cells[2].fit = cells[3].fit = "view";
-  cells[1].error.rmse.reset();
-  cells[2].time_ms = {};
-  cells[3].status = CellStatus::kSuspect;
-  EXPECT_THAT(list_map_families(point_to(cells)), IsEmpty());
-}
-
-/// A map of four cascades, as large as one of twice the side.
-CellRecord make_cascades(const std::string& split, const std::string& filter, double rmse) {
-  CellRecord cell = make_map_cell("cascades:count=4,split=" + split, 1024, filter, rmse);
-  cell.cost.map_bytes = 4 * *cell.cost.map_bytes - 3;
-  return cell;
-}
-
-TEST(MapFamilies, OfSeveralFilters_TakeTheRootMeanSquareOfTheMapsThatAllHave) {
-  const std::vector<CellRecord> cells = {make_map_cell("view", 2048, "vsm", 0.03), make_cascades("1", "vsm", 0.04),
-                                         make_map_cell("view", 2048, "esm", 0.05), make_cascades("1", "esm", 0.01),
-                                         make_cascades("0.5", "vsm", 0.001)};
-  const auto families = list_map_families(point_to(cells));
-  ASSERT_THAT(families, SizeIs(3));
-  EXPECT_EQ(families[0].title, "all filters");
-  ASSERT_THAT(families[0].maps, SizeIs(2)) << "esm was not measured with a split of 0.5";
-  EXPECT_NEAR(families[0].maps[0].rmse.value, std::sqrt(0.5 * (0.04 * 0.04 + 0.01 * 0.01)), 1e-9);
 }
 
 }  // namespace

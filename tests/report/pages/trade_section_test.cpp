@@ -106,14 +106,27 @@ TEST(TradeSection, CostOverWidth_IsAChartOfEachStateOfTheLight) {
   EXPECT_EQ(choice.charts[0].series[2].line, document::LineStyle::kSolid) << "prefiltered";
 }
 
-TEST(TradeSection, MapsOfSeveralFits_AreACurveEach) {
-  std::vector<CellRecord> cells = {make_sweep_cell({}), make_sweep_cell({.map_size = 2048}), make_sweep_cell({})};
-  cells[2].fit = "view";
+TEST(TradeSection, MapsOfSeveralFits_CompeteForTheirBytes_AndHaveChartsOverTheWidthOfTheirOwn) {
+  auto cells = make_crossing_cells("cubes");
+  const std::size_t own = cells.size();
+  for (std::size_t i = 0; i < own; ++i) {
+    cells.push_back(cells[i]);
+    cells.back().fit = "view";
+  }
   const document::Section section = *make_trade_section(make_run(), cells);
-  const document::Chart& chart = find_choice(section, "maps").charts.at(0);
-  EXPECT_THAT(list_titles(chart), ElementsAre("tight fit", "view fit"));
-  EXPECT_THAT(chart.series[0].points, SizeIs(2));
-  EXPECT_EQ(chart.series[0].points[1].label, "2048");
+  const document::Chart& chart = find_choice(section, "front").charts.at(3);
+  EXPECT_EQ(chart.id, "cubes.main.960x540.rmse.bytes");
+  std::vector<std::string> labels;
+  for (const document::ChartSeries& series : chart.series)
+    for (const document::ChartPoint& point : series.points)
+      if (!point.label.empty()) labels.push_back(point.label);
+  EXPECT_THAT(labels, SizeIs(2 * own));
+  EXPECT_THAT(labels, ::testing::IsSupersetOf({"none, tight fit", "none, view fit"}));
+  EXPECT_THAT(list_each(find_choice(section, "width").charts, &document::Chart::id),
+              ElementsAre("cubes.main.960x540.map1024.tight-fit.width.static",
+                          "cubes.main.960x540.map1024.tight-fit.width.moving",
+                          "cubes.main.960x540.map1024.view-fit.width.static",
+                          "cubes.main.960x540.map1024.view-fit.width.moving"));
 }
 
 TEST(TradeSection, HostileTexts_EndNoElement) {
