@@ -76,7 +76,6 @@ bool stand_together(const records::CellRecord& a, const records::CellRecord& b) 
 void copy_shared_paths(records::ImagesRecord& to, const records::ImagesRecord& from) {
   to.depth_map = from.depth_map;
   to.texel_density = from.texel_density;
-  to.texel_grid = from.texel_grid;
   to.truth_picture = from.truth_picture;
   to.truth_values = from.truth_values;
 }

@@ -338,10 +338,11 @@ std::optional<records::AccumulationRecord> AccumulationMeter::measure(const filt
   return record;
 }
 
-std::vector<images::GridTile> AccumulationMeter::show(const std::string& label, const AccumulatedImages& images) const {
-  std::vector<images::GridTile> tiles;
+std::vector<images::ErrorTile> AccumulationMeter::show(const std::string& label,
+                                                       const AccumulatedImages& images) const {
+  std::vector<images::ErrorTile> tiles;
   const auto add = [&](const std::string& caption, const images::Image& visibility, const images::Image& truth) {
-    tiles.push_back({label, caption, {}, visibility, make_error_image(visibility, truth, truth_.mask), ""});
+    tiles.push_back({label, caption, visibility, make_error_image(visibility, truth, truth_.mask)});
   };
   for (std::size_t i = 0; i < images.resolved.size(); ++i)
     add(fmt::format("{}, after {} frames with jitter", list_resolve_rules()[i].name, rig_.options.frames),

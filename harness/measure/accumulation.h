@@ -8,7 +8,7 @@
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/render/picture_passes.h"
-#include "report/images/grid.h"
+#include "report/images/heat_figures.h"
 
 namespace shadowbench::measure {
 
@@ -103,7 +103,7 @@ class AccumulationMeter {
   std::optional<records::AccumulationRecord> measure(const filters::FilterRequest& request, AccumulatedImages& images);
 
   /// Shows them, as errors and as visibility.
-  std::vector<images::GridTile> show(const std::string& label, const AccumulatedImages& images) const;
+  std::vector<images::ErrorTile> show(const std::string& label, const AccumulatedImages& images) const;
 
  private:
   TaskRig rig_;

@@ -14,7 +14,7 @@
 #include "reference/metrics/artefacts.h"
 #include "reference/metrics/metric_table.h"
 #include "reference/truth/occluders.h"
-#include "report/images/grid.h"
+#include "report/images/crop.h"
 #include "report/images/picture_io.h"
 #include "report/records/format.h"
 

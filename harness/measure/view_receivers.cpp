@@ -359,7 +359,7 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
   std::vector<PixelProjector> projectors;
   for (const TracedLayer& each : layers) projectors.emplace_back(camera, each.frustum, height, map_size);
   std::vector<CoverageCells> cells(layers.size(), CoverageCells(map_size));
-  MapCoverage coverage{images::Image(width, height, 1), images::Image(width, height, 2), {}, {}};
+  MapCoverage coverage{images::Image(width, height, 1), {}, {}};
   std::vector<std::vector<float>> of_layers(layers.size());
   for (std::size_t i = 0; i < receivers.image.points.size(); ++i) {
     const truth::ReceiverPoint& point = receivers.image.points[i];
@@ -372,8 +372,6 @@ MapCoverage measure_coverage(const ViewReceivers& receivers, const scene::Camera
     if (!projectors[layer].is_in_map(footprint)) continue;
     cells[layer].mark(footprint);
     coverage.density.texels[i] = static_cast<float>(footprint.area());
-    coverage.texel.texels[2 * i] = static_cast<float>(footprint.centre.x + static_cast<double>(layer) * map_size);
-    coverage.texel.texels[2 * i + 1] = static_cast<float>(footprint.centre.y);
     of_layers[layer].push_back(coverage.density.texels[i]);
   }
   std::vector<float> densities;

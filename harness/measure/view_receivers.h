@@ -151,8 +151,6 @@ struct MapCoverage {
   /// Map texels under each pixel's footprint; 0 on a surface turned away from the light or outside the
   /// map, -1 on the background.
   images::Image density;
-  /// Place of each receiver in the map, two channels, in texels from its first row and column; 0 elsewhere.
-  images::Image texel;
   std::vector<std::optional<double>> texels_per_pixel;  ///< median of each layer
   records::CoverageRecord record;                       ///< empty fields where no receiver in the map faces the light
 };

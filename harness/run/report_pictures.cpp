@@ -22,7 +22,7 @@
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
 #include "report/images/canvas.h"
-#include "report/images/grid.h"
+#include "report/images/heat_figures.h"
 #include "report/images/picture_io.h"
 #include "report/pages/answer.h"
 #include "report/records/format.h"
@@ -107,24 +107,27 @@ double choose_exposure(const images::Image& picture) {
   return 1.0 / std::max(static_cast<double>(*place), 1.0);
 }
 
-images::Grid make_grid(const std::vector<Lit>& lights, const records::GlRecord& gl) {
-  images::Grid grid;
+images::Figure make_figure(const std::vector<Lit>& lights, const records::GlRecord& gl) {
+  images::Figure figure;
+  figure.columns = 3;
   std::vector<std::string> names;
   for (const Lit& lit : lights) names.push_back(lit.scene->scene.light.name);
-  grid.title = fmt::format("{}: all lights at once", scene::name_without_light(lights.front().scene->scene));
-  grid.subtitle = fmt::format("{}: {}; ambient light counts once. Each is measured by itself", names.size(),
-                              fmt::join(names, ", "));
+  figure.title = fmt::format("{}: all lights at once", scene::name_without_light(lights.front().scene->scene));
+  figure.note = fmt::format("{}: {}; ambient light counts once. Each is measured by itself", names.size(),
+                            fmt::join(names, ", "));
+  double exposure = 1.0;
   const auto add = [&](const std::string& label, const std::string& caption, const std::string& part) {
-    images::Image picture = add_up(lights, part);
-    if (!picture.empty()) grid.tiles.push_back({label, caption, std::move(picture), {}, {}, ""});
+    const images::Image picture = add_up(lights, part);
+    if (picture.empty()) return;
+    if (figure.stacks.empty()) exposure = choose_exposure(picture);
+    figure.stacks.push_back({{label, caption, images::show_picture(picture, exposure)}});
   };
   add("truth, area", "rays to each light", kTruthPicturePart);
   for (const records::CellRecord& cell : lights.front().cells) {
     const std::string label = cell.images.parts.value_or("");
     if (!label.empty()) add(label, describe_frame(lights, label, gl), picture_part(label));
   }
-  if (!grid.tiles.empty()) grid.exposure = choose_exposure(grid.tiles.front().picture);
-  return grid;
+  return figure;
 }
 
 /// Samples of a part: their G-buffer takes 268 MB.
@@ -258,13 +261,13 @@ std::vector<ShownCell> list_shown(const RunPlan& plan, std::vector<records::Cell
 void draw_all_lights(const options::RunOptions& options, const RunPlan& plan, const records::GlRecord& gl) {
   for (std::vector<Lit>& lights : group_lights(plan)) {
     if (!std::ranges::all_of(lights, [&](Lit& lit) { return read_lights(lit, options); })) continue;
-    const images::Grid grid = make_grid(lights, gl);
-    if (grid.tiles.empty()) continue;
+    const images::Figure figure = make_figure(lights, gl);
+    if (figure.stacks.empty()) continue;
     const Lit& first = lights.front();
     const std::string stem = task_stem(first.scene->options, first.task->task);
     const std::string file = make_file_stem(scene::name_without_light(first.scene->scene)) +
                              stem.substr(make_file_stem(first.scene->scene.name).size()) + ".all_lights.grid.png";
-    images::write_grid(options.out / file, grid);
+    images::write_figure(options.out / file, figure);
     for (Lit& lit : lights) {
       for (records::CellRecord& cell : lit.cells) {
         cell.images.all_lights = file;

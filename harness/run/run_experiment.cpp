@@ -240,9 +240,7 @@ class TaskRun {
     const std::string& absent = rig_.truth().absent;
     if (absent.empty() && count > 0 && !accumulation_) accumulation_.emplace(rig_);
     const std::string picture = task_stem(options_, task_) + ".frames.png";
-    images::Grid grid;
-    grid.title = task_.scene->name + ": visibility accumulated over frames";
-    grid.columns = 6;
+    std::vector<images::ErrorTile> tiles;
     for (std::size_t i = 0; i < count; ++i) {
       measure::MeasuredCell& cell = measured.cells[i];
       begin("frames of " + cell.label);
@@ -252,10 +250,12 @@ class TaskRun {
         cell.record.absent["accumulation"] = absent.empty() ? "visibility is finite at no receiver" : absent;
       } else if (options_.grids && options_.pictures && !options_.part.is_worker()) {
         cell.record.accumulation->picture = picture;
-        std::ranges::move(accumulation_->show(cell.label, drawn), std::back_inserter(grid.tiles));
+        std::ranges::move(accumulation_->show(cell.label, drawn), std::back_inserter(tiles));
       }
     }
-    if (!grid.tiles.empty()) images::write_grid(options_.out / picture, grid);
+    if (!tiles.empty())
+      images::write_figure(options_.out / picture,
+                           images::show_errors(task_.scene->name + ": visibility accumulated over frames", tiles));
   }
 
   /// Measures how the map's texels are spent on the view.

@@ -10,7 +10,7 @@
 #include "base/files.h"
 #include "harness/render/picture_passes.h"
 #include "report/images/color_values.h"
-#include "report/images/grid.h"
+#include "report/images/crop.h"
 #include "report/images/heat_figures.h"
 #include "report/images/picture_io.h"
 #include "report/images/value_file.h"
@@ -95,17 +95,6 @@ FileJob plan_truth_pictures(const std::filesystem::path& out, const std::string&
   };
 }
 
-/// The picture to lay the texels over: unfiltered where there is one, so that aliasing shows; null where nothing was
-/// drawn.
-const measure::MeasuredCell* choose_background(const std::vector<measure::MeasuredCell>& cells) {
-  const measure::MeasuredCell* chosen = nullptr;
-  for (const measure::MeasuredCell& cell : cells) {
-    if (cell.picture.empty()) continue;
-    if (!chosen || cell.record.filter == "none") chosen = &cell;
-  }
-  return chosen;
-}
-
 std::string name_layer(const scene::LayerShare& share) {
   constexpr std::array<const char*, 6> kFaces = {"+x", "-x", "+y", "-y", "+z", "-z"};
   if (const auto* face = std::get_if<scene::CubeFace>(&share))
@@ -128,8 +117,8 @@ void write_depth(const std::filesystem::path& path, const std::string& scene, co
   std::vector<images::DepthLayer> layers;
   const int side = measured.stored_map.height;  // all layers stand side by side
   for (const scene::LightFrustum& layer : light.layers)
-    layers.push_back({images::cut_image(measured.stored_map, {layer.layer * side, 0, side, side}), layer.depth_range_ws,
-                      name_layer(layer.share)});
+    layers.push_back(
+        {images::cut_image(measured.stored_map, {layer.layer * side, 0, side, side}), name_layer(layer.share)});
   images::write_figure(
       path, {scene + ": the depth map, as the light sees the scene",
              settings + " · " + describe_range(light.map.settings(), light.layers),
@@ -153,7 +142,7 @@ const std::array<Variant, 4>& list_variants() {
   return variants;
 }
 
-/// Draws tiles of one task.
+/// Draws pictures and visibility of one task.
 class TilePainter {
  public:
   explicit TilePainter(const measure::TaskRig& rig)
@@ -163,19 +152,17 @@ class TilePainter {
   TilePainter(const TilePainter&) = delete;
   TilePainter& operator=(const TilePainter&) = delete;
 
-  images::GridTile draw(const filters::FilterRequest& request, const Variant& variant) {
+  images::Stack draw(const filters::FilterRequest& request, const Variant& variant) {
     const measure::SceneTask& task = rig_.task;
     render::LightLayers light = measure::make_filter_light(rig_.options, task.scene->light, light_.layers, request);
     for (render::LightSetup& layer : light) layer.range = variant.rule;
     light_.map.set_border(variant.rule.border);
     render::FilterPasses passes(rig_.renderer.shaders, request, light_.map, light);
-    images::GridTile tile;
-    tile.visibility = measure::draw_visibility(passes, light_.map, rig_.gbuffer(), target_);
-    tile.label = request.label();
-    tile.caption = variant.caption;
-    tile.picture = render::shade(rig_.renderer.shaders, rig_.gbuffer(), target_.texture(), *task.scene, *task.camera,
-                                 variant.rule);
-    return tile;
+    const images::Image visibility = measure::draw_visibility(passes, light_.map, rig_.gbuffer(), target_);
+    const images::Image picture = render::shade(rig_.renderer.shaders, rig_.gbuffer(), target_.texture(), *task.scene,
+                                                *task.camera, variant.rule);
+    return {{request.label(), variant.caption, images::show_picture(picture)},
+            {"", "", images::show_visibility(visibility)}};
   }
 
  private:
@@ -235,46 +222,35 @@ std::vector<FileJob> plan_map_pictures(const options::RunOptions& options, const
                                        measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,
                                        const measure::LightMap& light) {
   const std::string base = "images/" + task_stem(options, task);
-  const std::string depth = base + ".depth_map.png", density = base + ".texel_density.png",
-                    grid = base + ".texel_grid.png";
+  const std::string depth = base + ".depth_map.png", density = base + ".texel_density.png";
   const std::string& scene = task.scene->name;
   const std::string settings = records::describe_settings(measured.cells.front().record);
   const std::string note = settings + " · " + records::describe_coverage(coverage.record);
-  const measure::MeasuredCell* background = choose_background(measured.cells);
   for (measure::MeasuredCell& cell : measured.cells) {
     cell.record.images.depth_map = depth;
     cell.record.images.texel_density = density;
-    if (background) cell.record.images.texel_grid = grid;
   }
-  std::vector<FileJob> jobs = {
+  return {
       [file = options.out / depth, scene, settings, &measured, &light] {
         write_depth(file, scene, settings, measured, light);
       },
       [file = options.out / density, scene, note, &coverage] {
         images::write_figure(file, {scene + ": map texels per pixel", note, {images::show_density(coverage.density)}});
       }};
-  if (!background) return jobs;
-  jobs.emplace_back([file = options.out / grid, scene, note, background, &coverage] {
-    images::write_figure(file, {fmt::format("{}: the map's texels on the surfaces, over {}", scene, background->label),
-                                note,
-                                {images::show_texels(background->picture, coverage.texel, coverage.density)}});
-  });
-  return jobs;
 }
 
 void write_border_page(const std::filesystem::path& file, const measure::TaskRig& rig) {
   TilePainter painter(rig);
   const measure::SceneTask& task = rig.task;
-  images::Grid grid;
-  grid.title = fmt::format("{}: what lies outside the map", task.scene->name);
-  grid.subtitle =
-      fmt::format("{} · view {} · map {} × {}", task.scene->title, task.camera->name, task.map_size, task.map_size);
-  grid.columns = static_cast<int>(list_variants().size());
+  images::Figure figure{
+      fmt::format("{}: what lies outside the map", task.scene->name),
+      fmt::format("{} · view {} · map {} × {}", task.scene->title, task.camera->name, task.map_size, task.map_size)};
+  figure.columns = static_cast<int>(list_variants().size());
   for (const filters::FilterRequest& request : task.filters) {
     if (request.user_file) continue;
-    for (const Variant& variant : list_variants()) grid.tiles.push_back(painter.draw(request, variant));
+    for (const Variant& variant : list_variants()) figure.stacks.push_back(painter.draw(request, variant));
   }
-  if (!grid.tiles.empty()) images::write_grid(file, grid);
+  if (!figure.stacks.empty()) images::write_figure(file, figure);
 }
 
 }  // namespace shadowbench::run

@@ -37,7 +37,7 @@ std::vector<FileJob> plan_pictures(const options::RunOptions& options, const mea
 std::string name_grid(const options::RunOptions& options, const measure::SceneTask& task);
 
 /// Notes the paths of what shows how a light's map lies on the scene, one file each for all cells of the task, and
-/// returns what writes them: the depth map with its histogram, the texels per pixel, and the texels on the surfaces.
+/// returns what writes them: the depth map, and the texels per pixel.
 /// What it is given must outlive the jobs.
 std::vector<FileJob> plan_map_pictures(const options::RunOptions& options, const measure::SceneTask& task,
                                        measure::SceneMeasurement& measured, const measure::MapCoverage& coverage,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "base/error.h"
@@ -21,7 +22,8 @@
 #include "harness/run/merge.h"
 #include "harness/run/provenance.h"
 #include "harness/run/run_plan.h"
-#include "report/images/grid.h"
+#include "report/images/crop.h"
+#include "report/images/heat_figures.h"
 #include "report/pages/bias_page.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
@@ -215,49 +217,63 @@ class BiasSweep {
     const filters::FilterRequest* shown = choose_shown(usable);
     for (const filters::FilterRequest* request : usable) {
       listener_(fmt::format("{} · {}", mode.name, request->label()));
-      images::Grid grid;
+      std::vector<ShownAmount> amounts;
       for (records::BiasCell& cell : plan_cells(mode, *request)) {
         images::Image visibility = draw(*request, mode.make_rule(cell.setting.value_or(0.0)));
         cell.acne = metrics::rate_acne(visibility.texels, rig_.truth().rays.area.visibility, masks_.acne);
         cell.contact_gap = metrics::rate_contact_gap(visibility.texels, find_unbiased(*request).texels, masks_);
         if (request == shown && (!cell.factor || std::ranges::count(kShownFactors, *cell.factor) > 0))
-          grid.tiles.push_back(make_tile(cell, std::move(visibility)));
+          amounts.push_back(show_amount(cell, std::move(visibility)));
         record_.cells.push_back(std::move(cell));
       }
-      if (request == shown) write_pictures(record, request->label(), std::move(grid));
+      if (request == shown) write_pictures(record, request->label(), amounts);
     }
     record_.modes.push_back(std::move(record));
   }
 
-  images::GridTile make_tile(const records::BiasCell& cell, images::Image visibility) {
-    images::GridTile tile;
-    tile.label = cell.factor ? pages::name_factor(*cell.factor) + " of theory" : cell.mode;
-    tile.caption = fmt::format("{} · acne {} · contact gap {}", cell.bias, records::format_rate(cell.acne),
-                               records::format_rate(cell.contact_gap));
-    tile.picture =
+  /// What an amount draws.
+  struct ShownAmount {
+    images::Cell picture;
+    images::Image visibility;  ///< infinite where no receiver is
+  };
+
+  ShownAmount show_amount(const records::BiasCell& cell, images::Image visibility) {
+    const images::Image picture =
         render::shade(rig_.renderer.shaders, rig_.gbuffer(), render::upload_image(visibility), scene_, *task_.camera);
-    tile.visibility = std::move(visibility);
-    return tile;
+    for (std::size_t i = 0; i < visibility.texels.size(); ++i)
+      if (!rig_.truth().mask[i]) visibility.texels[i] = HUGE_VALF;
+    return {{cell.factor ? pages::name_factor(*cell.factor) + " of theory" : cell.mode,
+             fmt::format("{} · acne {} · contact gap {}", cell.bias, records::format_rate(cell.acne),
+                         records::format_rate(cell.contact_gap)),
+             images::show_picture(picture)},
+            std::move(visibility)};
   }
 
-  void write_pictures(records::BiasModeRecord& mode, const std::string& filter, images::Grid grid) {
-    grid.title = fmt::format("{}: {}", mode.mode, filter);
-    grid.subtitle = fmt::format("visibility on {}, map {}", scene_.name, task_.map_size);
+  void write_pictures(records::BiasModeRecord& mode, const std::string& filter,
+                      const std::vector<ShownAmount>& amounts) {
     const images::Image& truth = rig_.truth().area;
-    std::vector<const images::Image*> images;
-    for (const images::GridTile& tile : grid.tiles) images.push_back(&tile.visibility);
-    images.push_back(&truth);
-    grid.mask = images::make_image(truth.width, truth.height, rig_.truth().mask);
-    grid.crop =
-        images::find_disputed_edge(images, images.size() - 1, images::choose_crop_size({truth.width, truth.height}));
-    grid.columns = static_cast<int>(grid.tiles.size());
+    std::vector<const images::Image*> images = {&truth};
+    for (const ShownAmount& amount : amounts) images.push_back(&amount.visibility);
+    const images::Rect part =
+        images::find_disputed_edge(images, 0, images::choose_crop_size({truth.width, truth.height}));
+    images::Figure figure{fmt::format("{}: {}", mode.mode, filter),
+                          fmt::format("picture and visibility on {}, map {}; grey: no receiver; below, magnified: the "
+                                      "outlined part",
+                                      scene_.name, task_.map_size)};
+    figure.columns = static_cast<int>(amounts.size());
+    const auto color = [](float value) { return std::isinf(value) ? images::kFrame : images::map_grey(value); };
+    const auto badness = [](float value) { return std::isinf(value) ? -1.0f : images::distance_from_lit(value); };
+    for (const ShownAmount& amount : amounts) {
+      images::Stack& stack = figure.stacks.emplace_back(images::Stack{amount.picture});
+      std::ranges::move(images::show_part({}, amount.visibility, part, badness, color), std::back_inserter(stack));
+    }
     const std::string light = scene_.light.name.empty() ? "" : make_file_stem(scene_.light.name) + ".";
     mode.picture = fmt::format("bias.{}{}.png", light, mode.mode);
     mode.picture_caption = fmt::format(
-        "{} under {}: picture, visibility, and the crop where it differs most; full "
+        "{} under {}: picture, visibility, and the part where it differs most; full "
         "size behind the link",
         filter, mode.mode);
-    images::write_grid(options_.out / mode.picture, grid);
+    images::write_figure(options_.out / mode.picture, figure);
   }
 };
 

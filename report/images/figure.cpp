@@ -24,18 +24,8 @@ int measure_head(const Cell& cell, int width) {
          measure_height(cell.warning, kText, width);
 }
 
-/// How far the ticks beside a picture reach above it and below.
-int measure_slack(const Cell& cell) { return cell.beside.empty() ? 0 : line_height(kText) / 2; }
-
-/// The room left of a picture for its ticks.
-int measure_beside(const Cell& cell) {
-  int widest = 0;
-  for (const Tick& tick : cell.beside) widest = std::max(widest, measure_text(tick.label, kText) + 2 * kTickLength);
-  return widest;
-}
-
 int widen(int width, const Stack& stack) {
-  for (const Cell& cell : stack) width = std::max(width, measure_beside(cell) + cell.picture.width);
+  for (const Cell& cell : stack) width = std::max(width, cell.picture.width);
   return width;
 }
 
@@ -94,30 +84,13 @@ class Builder {
     y = add_text(cell.words, kText, kSecondInk, {column.x, y, column.width, 0});
     add_text(cell.warning, kText, kWarningInk, {column.x, y, column.width, 0});
     if (cell.picture.empty()) return column.y + head;
-    const Rect box{column.x + measure_beside(cell),
-                   column.y + head + (head > 0 ? kRowGap / 2 : 1) + measure_slack(cell), cell.picture.width,
-                   cell.picture.height};
+    const Rect box{column.x, column.y + head + (head > 0 ? kRowGap / 2 : 1), cell.picture.width, cell.picture.height};
     layout_.pictures.push_back({box, &cell.picture});
-    add_ticks_beside(cell, box);
-    return cell.below.empty() ? box.y + box.height + 1 + measure_slack(cell) : add_ticks_below(cell, box, column);
-  }
-
-  void add_ticks_beside(const Cell& cell, const Rect& box) {
-    int end = box.y + box.height + line_height(kText);
-    for (const Tick& tick : cell.beside) {
-      const int y = box.y + static_cast<int>(std::lround((1.0 - tick.place) * (box.height - 1)));
-      const int top = y - line_height(kText) / 2;
-      layout_.marks.push_back({{box.x - 1 - kTickLength, y, kTickLength, 1}, kSecondInk});
-      if (top + line_height(kText) > end) continue;
-      const int width = measure_text(tick.label, kText);
-      layout_.texts.push_back(
-          {{box.x - 2 * kTickLength - width, top, width, line_height(kText)}, tick.label, kText, kSecondInk});
-      end = top;
-    }
+    return cell.below.empty() ? box.y + box.height + 1 : add_ticks_below(cell, box, column);
   }
 
   int add_ticks_below(const Cell& cell, const Rect& box, const Rect& column) {
-    const int under = box.y + box.height + 1, top = under + std::max(kTickLength, measure_slack(cell));
+    const int under = box.y + box.height + 1, top = under + kTickLength;
     int end = column.x;
     for (const Tick& tick : cell.below) {
       const int x = box.x + static_cast<int>(std::lround(tick.place * (box.width - 1)));
@@ -165,11 +138,6 @@ void write_layout(const std::filesystem::path& path, const Layout& layout) {
   write_display_rows(
       path, layout.canvas,
       [&](int top) { return draw_rows(layout, top, std::min(kBand, layout.canvas.height - top)); });
-}
-
-Image draw_figure(const Figure& figure) {
-  const Layout layout = layout_figure(figure);
-  return draw_rows(layout, 0, layout.canvas.height);
 }
 
 void write_figure(const std::filesystem::path& path, const Figure& figure) {

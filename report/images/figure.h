@@ -15,9 +15,9 @@ inline constexpr int kColumnWidth = 468;
 inline constexpr Rgb kInk{0.11f, 0.12f, 0.14f}, kSecondInk{0.33f, 0.35f, 0.39f}, kWarningInk{0.70f, 0.15f, 0.05f};
 inline constexpr Rgb kFrame{0.68f, 0.70f, 0.73f};
 
-/// A place on a picture's edge, and what stands beside it.
+/// A place on a picture's edge, and what stands below it.
 struct Tick {
-  double place = 0.0;  ///< from the picture's left or lower end, 0, to the other, 1
+  double place = 0.0;  ///< from the picture's left end, 0, to the other, 1
   std::string label;
 };
 
@@ -25,9 +25,8 @@ struct Tick {
 struct Cell {
   std::string title = {};
   std::string words = {};
-  Image picture = {};             ///< display values, 3 channels; shown pixel by pixel
-  std::vector<Tick> below = {};   ///< along the picture's lower edge, from left to right
-  std::vector<Tick> beside = {};  ///< along its left edge, from below
+  Image picture = {};            ///< display values, 3 channels; shown pixel by pixel
+  std::vector<Tick> below = {};  ///< along the picture's lower edge, from left to right
   std::string warning = {};
 };
 
@@ -91,9 +90,6 @@ Image draw_rows(const Layout& layout, int top, int rows);
 
 /// Draws a canvas into an 8-bit PNG file, a band of it at a time. Throws Error(kOutput).
 void write_layout(const std::filesystem::path& path, const Layout& layout);
-
-/// Draws a figure: display values, 3 channels. Throws as layout_figure().
-Image draw_figure(const Figure& figure);
 
 /// Draws a figure into an 8-bit PNG file. Throws Error(kOutput).
 void write_figure(const std::filesystem::path& path, const Figure& figure);

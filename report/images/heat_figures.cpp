@@ -15,7 +15,9 @@
 namespace shadowbench::images {
 namespace {
 
-constexpr Size kHeatBox{640, 1280};
+constexpr Size kPictureBox{kColumnWidth, 560}, kHeatBox{640, 1280};
+constexpr Size kPartBox{540, 1080};  // a crop of 45 pixels fills its width
+constexpr Rgb kOutline{0.87f, 0.31f, 0.07f};
 constexpr Rgb kZeroTexel{0.93f, 0.94f, 0.95f};
 constexpr Rgb kNotCounted{0.72f, 0.74f, 0.77f};
 constexpr Rgb kGround{0.90f, 0.91f, 0.92f};
@@ -85,9 +87,7 @@ float rank_difference(float value) {
 
 constexpr int kMapSide = 768;  // pixels, of the only map; of one of several, a column
 constexpr int kBarWidth = 640;
-constexpr int kPlotHeight = 220, kAxisWidth = 90, kBinWidth = 4;
 constexpr Rgb kEmpty{0.80f, 0.87f, 0.95f};
-constexpr Rgb kBars{0.20f, 0.36f, 0.60f}, kLines{0.72f, 0.74f, 0.77f};
 constexpr double kOctaves = 6.0;  // on either side of one texel per pixel
 constexpr Rgb kAway{0.62f, 0.62f, 0.62f};
 constexpr Rgb kNoSurface{0.93f, 0.94f, 0.95f};
@@ -101,42 +101,15 @@ Image draw_map(const Image& depth, float far_plane, int side, float least, float
   });
 }
 
-/// Draws texels per bin, with a line for each decade; one texel still shows: it stands on the axis two pixels high.
-Image draw_histogram(const std::vector<std::int64_t>& counts, int decades) {
-  Image plot(static_cast<int>(counts.size()) * kBinWidth, kPlotHeight, 3);
-  fill_rect(plot, {0, 0, plot.width, plot.height}, {1.0f, 1.0f, 1.0f});
-  for (int decade = 1; decade < decades; ++decade)
-    fill_rect(plot, {0, kPlotHeight - decade * kPlotHeight / decades, plot.width, 1}, kLines);
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0) continue;
-    const int height = 2 + static_cast<int>(std::log10(static_cast<double>(counts[i])) / decades * (kPlotHeight - 2));
-    fill_rect(plot, {static_cast<int>(i) * kBinWidth, kPlotHeight - height, kBinWidth - 1, height}, kBars);
-  }
-  return plot;
-}
-
-Cell show_histogram(const DepthHistogram& histogram, const filters::DepthCurve& curve, double range_m) {
-  const auto most = static_cast<double>(std::max<std::int64_t>(1, *std::ranges::max_element(histogram.counts)));
-  const int decades = std::max(1, static_cast<int>(std::ceil(std::log10(most))));
-  Cell cell{"", fmt::format("texels per 1/{} of the values (logarithmic)", histogram.counts.size()),
-            draw_histogram(histogram.counts, decades)};
-  for (const double value : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-    cell.below.push_back({value, fmt::format("{} ({} m)", records::format_number(value),
-                                             records::format_number(curve.linear(value) * range_m))});
-  }
-  for (int decade = 0; decade <= decades; ++decade)
-    cell.beside.push_back(
-        {static_cast<double>(decade) / decades, fmt::format("{}", static_cast<std::int64_t>(std::pow(10.0, decade)))});
-  return cell;
-}
-
-/// Shows depths, stretched over the values that occur, over their histogram.
-Stack show_layer(const std::string& title, const Image& depth, const filters::DepthCurve& curve, double range_m,
-                 int side) {
-  const DepthHistogram histogram = count_depths(depth, (side - kAxisWidth) / kBinWidth, curve.far_plane());
+/// Shows depths, stretched over the values that occur.
+Stack show_layer(const std::string& title, const Image& depth, const filters::DepthCurve& curve, int side) {
   float least = 1.0f, most = 0.0f;
+  std::size_t empty = 0;
   for (const float d : depth.texels) {
-    if (d == curve.far_plane()) continue;
+    if (d == curve.far_plane()) {
+      ++empty;
+      continue;
+    }
     least = std::min(least, d);
     most = std::max(most, d);
   }
@@ -144,9 +117,8 @@ Stack show_layer(const std::string& title, const Image& depth, const filters::De
   return {{title,
            fmt::format("black: {} · light grey: {} · blue: nothing drawn, {} of {} texels",
                        records::format_number(static_cast<double>(least)),
-                       records::format_number(static_cast<double>(most)), histogram.empty, depth.texels.size()),
-           draw_map(depth, curve.far_plane(), side, least, most)},
-          show_histogram(histogram, curve, range_m)};
+                       records::format_number(static_cast<double>(most)), empty, depth.texels.size()),
+           draw_map(depth, curve.far_plane(), side, least, most)}};
 }
 
 /// Places texels per pixel on octaves around one; surfaces that see no light and the background are not on the bar.
@@ -165,21 +137,6 @@ ColorScale make_density_scale() {
                     {64.0, "≥ 64"}}};
   scale.off_bar = [](float density) { return density < 0.0f ? kNoSurface : kAway; };
   return scale;
-}
-
-/// How strong the chessboard is where this many fields fall on a pixel.
-float grid_strength(float density) {
-  constexpr float kStrength = 0.45f;
-  constexpr float kFull = 1.0f / 16.0f, kGone = 1.0f / 4.0f;  // fields of 4 and 2 pixels a side
-  if (!(density > 0.0f)) return 0.0f;
-  return kStrength * std::clamp(std::log2(kGone / density) / std::log2(kGone / kFull), 0.0f, 1.0f);
-}
-
-bool is_dark_field(const float* texel, int field_texels) {
-  const auto odd = [&](float place) {
-    return (static_cast<std::int64_t>(std::floor(place / static_cast<float>(field_texels))) & 1) != 0;
-  };
-  return odd(texel[0]) != odd(texel[1]);
 }
 
 }  // namespace
@@ -202,6 +159,42 @@ std::vector<Stack> show_stability(const StabilityImages& images, const std::arra
   return stacks;
 }
 
+Image show_picture(const Image& picture, double exposure) {
+  Image shown = fit_image(picture, kPictureBox);
+  for (float* texel = shown.texels.data(); texel != shown.texels.data() + shown.texels.size(); texel += 3)
+    if (std::all_of(texel, texel + 3, [](float value) { return std::isfinite(value); }))
+      std::transform(texel, texel + 3, texel, [&](float v) { return encode_srgb(v * static_cast<float>(exposure)); });
+    else
+      std::ranges::copy(kMagenta, texel);
+  return shown;
+}
+
+Image show_visibility(const Image& visibility) { return color_values(fit_image(visibility, kPictureBox), map_grey); }
+
+Stack show_part(const Cell& head, const Image& values, const Rect& part, const Badness& badness, const Colors& colors) {
+  const auto magnify = [&](const Image& image) { return color_values(fit_worst(image, kPartBox, badness), colors); };
+  Cell whole = head;
+  whole.picture = magnify(values);
+  const auto scaled = [&](int place) { return place * whole.picture.width / values.width; };
+  outline_rect(whole.picture, {scaled(part.x), scaled(part.y), scaled(part.width), scaled(part.height)}, 1, kOutline);
+  return {whole, {"", "", frame_image(magnify(cut_image(values, part)), 1, kOutline)}};
+}
+
+float distance_from_lit(float visibility) { return std::isfinite(visibility) ? 1.0f - visibility : 2.0f; }
+
+Figure show_errors(const std::string& title, const std::vector<ErrorTile>& tiles) {
+  std::vector<const Image*> errors;
+  for (const ErrorTile& tile : tiles) errors.push_back(&tile.error);
+  const ColorScale scale = make_signed_scale(choose_error_scale(errors));
+  Figure figure{title};
+  for (const ErrorTile& tile : tiles)
+    figure.stacks.push_back({{tile.title, tile.words, show_visibility(tile.visibility)},
+                             {"", "", color_values(fit_image(tile.error, kPictureBox), scale)}});
+  figure.legend = {
+      make_color_bar(scale, "below visibility: its error, visibility less truth; blue too dark, red too bright")};
+  return figure;
+}
+
 std::vector<Stack> show_difference(const Image& difference, const Image& flip) {
   ColorScale scale = make_signed_scale(choose_error_scale({&difference}));
   scale.off_bar = [](float value) { return std::isnan(value) ? kMagenta : kNotCounted; };
@@ -215,16 +208,6 @@ std::vector<Stack> show_difference(const Image& difference, const Image& flip) {
   return stacks;
 }
 
-DepthHistogram count_depths(const Image& depth, int bins, float far_plane) {
-  assert(depth.channels == 1 && bins > 0);
-  DepthHistogram histogram{std::vector<std::int64_t>(static_cast<std::size_t>(bins)), 0};
-  for (const float d : depth.texels) {
-    const int bin = std::clamp(static_cast<int>(d * static_cast<float>(bins)), 0, bins - 1);
-    ++(d == far_plane ? histogram.empty : histogram.counts[static_cast<std::size_t>(bin)]);
-  }
-  return histogram;
-}
-
 std::vector<Stack> show_depth(const std::vector<DepthLayer>& layers, const filters::DepthCurve& curve) {
   std::vector<Stack> stacks;
   const int side = layers.size() > 1 ? kColumnWidth : kMapSide;
@@ -233,13 +216,13 @@ std::vector<Stack> show_depth(const std::vector<DepthLayer>& layers, const filte
     return layer.name.empty() ? what : layer.name + ": " + what;
   };
   for (const DepthLayer& layer : layers)
-    stacks.push_back(show_layer(title(layer, is_linear ? "depth, linear as it is stored" : "as stored"), layer.stored,
-                                curve, layer.range_m, side));
+    stacks.push_back(
+        show_layer(title(layer, is_linear ? "depth, linear as it is stored" : "as stored"), layer.stored, curve, side));
   if (is_linear) return stacks;
   for (const DepthLayer& layer : layers) {
     Image linear = layer.stored;
     for (float& depth : linear.texels) depth = curve.linear(depth);
-    stacks.push_back(show_layer(title(layer, "linearised: over the light's range"), linear, {}, layer.range_m, side));
+    stacks.push_back(show_layer(title(layer, "linearised: over the light's range"), linear, {}, side));
   }
   return stacks;
 }
@@ -252,33 +235,6 @@ Stack show_density(const Image& density) {
                          "map texels per pixel · white: background; grey: turned away from the light, or "
                          "outside its cone or map",
                          kBarWidth)};
-}
-
-int choose_field_texels(const Image& density) {
-  constexpr float kFieldPixels = 36.0f;
-  std::vector<float> receivers;
-  std::copy_if(density.texels.begin(), density.texels.end(), std::back_inserter(receivers),
-               [](float d) { return d > 0.0f; });
-  if (receivers.empty()) return 1;
-  const auto middle = receivers.begin() + static_cast<std::ptrdiff_t>(receivers.size() / 2);
-  std::nth_element(receivers.begin(), middle, receivers.end());
-  int field = 1;
-  while (static_cast<float>(field) * static_cast<float>(field) < kFieldPixels * *middle && field < (1 << 14))
-    field *= 2;
-  return field;
-}
-
-Stack show_texels(const Image& picture, const Image& texel, const Image& density) {
-  assert(picture.channels == 3 && texel.channels == 2);
-  Image shown = picture;
-  const int field = choose_field_texels(density);
-  for (std::size_t i = 0; i < density.texels.size(); ++i) {
-    const float fields_per_pixel = density.texels[i] / static_cast<float>(field * field);
-    const float strength = is_dark_field(&texel.texels[2 * i], field) ? grid_strength(fields_per_pixel) : 0.0f;
-    for (std::size_t c = 0; c < 3; ++c)
-      shown.texels[3 * i + c] = (1.0f - strength) * encode_srgb(picture.texels[3 * i + c]);
-  }
-  return {{"", fmt::format("each field of the chessboard is {0} × {0} texels", field), std::move(shown)}};
 }
 
 }  // namespace shadowbench::images

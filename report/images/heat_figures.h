@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "filters/depth_map.h"
+#include "report/images/color_values.h"
 #include "report/images/figure.h"
-#include "report/images/image.h"
 
 namespace shadowbench::images {
 
@@ -37,6 +37,29 @@ const std::array<StabilityImage, 5>& list_stability_images();
 /// rounding explains. `captions` are those of the first four.
 std::vector<Stack> show_stability(const StabilityImages& images, const std::array<std::string, 4>& captions);
 
+/// Shows a linear picture, reduced in linear light, its values multiplied by `exposure`. A texel that is not finite
+/// becomes magenta.
+Image show_picture(const Image& picture, double exposure = 1.0);
+
+/// Shows visibility from black, blocked, to white, lit, reduced by means.
+Image show_visibility(const Image& visibility);
+
+/// Shows an image of one channel, with a part of it outlined and magnified below. Where pixels fall together, the worst
+/// is shown.
+Stack show_part(const Cell& head, const Image& values, const Rect& part, const Badness& badness, const Colors& colors);
+
+/// How dark a value is, for show_part(); what is not finite is worst.
+float distance_from_lit(float visibility);
+
+/// Visibility, and its error, signed.
+struct ErrorTile {
+  std::string title, words;
+  Image visibility, error;
+};
+
+/// Shows tiles side by side, visibility above errors, which share one scale.
+Figure show_errors(const std::string& title, const std::vector<ErrorTile>& tiles);
+
 /// Shows how two pictures differ: the signed difference and, where there is one, the FLIP map, each with its scale.
 /// `difference`: 1 channel; NaN where a picture is not finite, infinite where a pixel does not count.
 /// `flip`: 1 channel, [0,1], or empty.
@@ -44,38 +67,17 @@ std::vector<Stack> show_difference(const Image& difference, const Image& flip);
 
 /// A layer of a depth map: all of it, a cascade, or a face of a cube.
 struct DepthLayer {
-  Image stored;          ///< one channel, [0,1], row 0 on top; the curve's far plane: nothing was drawn
-  double range_m = 0.0;  ///< metres from depth 0 to depth 1
+  Image stored;  ///< one channel, [0,1], row 0 on top; the curve's far plane: nothing was drawn
   std::string name = {};
 };
 
-/// How often depths occur.
-struct DepthHistogram {
-  std::vector<std::int64_t> counts;  ///< of texels, in equal bins over [0,1]
-  std::int64_t empty = 0;            ///< texels that hold `far_plane`, in no bin
-};
-
-/// Counts depths. Requires one channel and at least one bin; depths outside [0,1] go to the nearest bin.
-DepthHistogram count_depths(const Image& depth, int bins, float far_plane = 1.0f);
-
 /// Shows every layer of a depth map as it is stored and, where that is not linear depth, after them each linearised:
-/// stretched over the values that occur, with its histogram below, texels per bin on a logarithmic axis over value and
-/// metres. One of several layers is smaller than the only one.
+/// stretched over the values that occur. One of several layers is smaller than the only one.
 std::vector<Stack> show_depth(const std::vector<DepthLayer>& layers, const filters::DepthCurve& curve);
 
 /// Shows texels per pixel as colours on a logarithmic scale, 1/64 to 64, with a colour bar. `density`: one channel; 0:
 /// turned away from the light or outside the map, -1: background.
 Stack show_density(const Image& density);
-
-/// Chooses how many texels a side of a chessboard's field has: the smallest power of two, 1 or more, for which the
-/// median field of a receiver covers 36 pixels; 1 where no receiver faces the light.
-int choose_field_texels(const Image& density);
-
-/// Shows the map's texels on the surfaces as a chessboard whose dark fields darken the picture, each of
-/// choose_field_texels() a side, which the words say. Where fields are smaller than 4 pixels the pattern fades, and it
-/// is gone where they are smaller than 2: it would show the pixels' grid instead.
-/// `picture`: linear RGB; `texel`: place in the map in texels, two channels; `density`: as show_density().
-Stack show_texels(const Image& picture, const Image& texel, const Image& density);
 
 /// In UncertaintyImages::rounding: a comparison may flip here, or another texel be read.
 inline constexpr float kMayFlip = 2.0f;

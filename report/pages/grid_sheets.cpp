@@ -17,7 +17,7 @@
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
 #include "report/images/color_values.h"
-#include "report/images/grid.h"
+#include "report/images/crop.h"
 #include "report/images/picture_io.h"
 #include "report/pages/answer.h"
 #include "report/records/format.h"

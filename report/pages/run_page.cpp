@@ -166,16 +166,14 @@ void add_pictures(std::vector<document::Block>& blocks, const analysis::CellGrou
       gallery.pictures.push_back({sheet, "filters on " + group.scene + " by their error, first phase"});
     blocks.emplace_back(std::move(gallery));
   }
-  for (document::Gallery& gallery : std::array{
-           make_gallery("All lights of the scene at once", group,
-                        {{&records::ImagesRecord::all_lights,
-                          "the truth and each filter, with what a frame costs whose lights all move"}}),
-           make_stability_gallery(group),
-           make_gallery(
-               "The shadow map: its depths, and where its texels fall", group,
-               {{&records::ImagesRecord::depth_map, "depth map, as the light sees the scene, with its histogram"},
-                {&records::ImagesRecord::texel_density, "how many map texels fall on each pixel"},
-                {&records::ImagesRecord::texel_grid, "the map's texels on the surfaces"}})})
+  for (document::Gallery& gallery :
+       std::array{make_gallery("All lights of the scene at once", group,
+                               {{&records::ImagesRecord::all_lights,
+                                 "the truth and each filter, with what a frame costs whose lights all move"}}),
+                  make_stability_gallery(group),
+                  make_gallery("The shadow map: its depths, and where its texels fall", group,
+                               {{&records::ImagesRecord::depth_map, "depth map, as the light sees the scene"},
+                                {&records::ImagesRecord::texel_density, "how many map texels fall on each pixel"}})})
     if (!gallery.pictures.empty()) blocks.emplace_back(std::move(gallery));
   if (const auto exr = find_path(group, &records::ImagesRecord::exr))
     blocks.emplace_back(document::Links{"The float images of all filters, first phase:", {{*exr, *exr}}});

@@ -279,8 +279,6 @@ void visit_fields(Is<ImagesRecord> auto& images, auto&& visit) {
         {.text = "what the names of the cell's parts in `exr` begin with: '<parts>.visibility'"});
   visit("texel_density", images.texel_density,
         path("map texels per pixel, one per view and map; relative to the report folder"));
-  visit("texel_grid", images.texel_grid,
-        path("the map's texels on the surfaces, one per view and map; relative to the report folder"));
   visit("all_lights", images.all_lights,
         path("all lights of the scene at once, one per view and map; relative to the report folder"));
   visit("stability", images.stability,

@@ -130,7 +130,6 @@ struct ImagesRecord {
   std::optional<std::string> grid;                          ///< one per scene, view and map settings
   std::optional<std::string> exr;                           ///< one per scene
   std::optional<std::string> texel_density = std::nullopt;  ///< texels per pixel; one per scene, view and map settings
-  std::optional<std::string> texel_grid = std::nullopt;     ///< the map's texels on the surfaces, for the same settings
   std::optional<std::string> all_lights = std::nullopt;     ///< one per scene of several lights, view and map settings
   std::optional<std::string> stability = std::nullopt;      ///< where the cell's numbers break, per texel and per pixel
   std::optional<std::string> values = std::nullopt;         ///< visibility, error parts and FLIP, for the page's viewer

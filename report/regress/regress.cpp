@@ -15,7 +15,8 @@
 #include "base/folder_lock.h"
 #include "base/text.h"
 #include "report/images/color_values.h"
-#include "report/images/grid.h"
+#include "report/images/crop.h"
+#include "report/images/heat_figures.h"
 #include "report/images/picture_io.h"
 #include "report/pages/write_page.h"
 #include "report/records/format.h"
@@ -92,10 +93,6 @@ constexpr int kMostPictures = 50;
 using images::Image;
 using images::Rect;
 
-constexpr images::Size kBox{540, 1080};  // a crop of 45 pixels fills its width
-constexpr images::Rgb kOutline{0.87f, 0.31f, 0.07f};
-
-float distance_from_lit(float v) { return std::isfinite(v) ? 1.0f - v : 2.0f; }
 float magnitude(float v) { return std::isfinite(v) ? std::abs(v) : 2.0f; }
 
 /// The place where the images differ most.
@@ -118,16 +115,6 @@ std::string describe_change(const Comparison& comparison) {
       change.excused_rounding);
 }
 
-/// An image with the crop's outline, over the crop, magnified.
-images::Stack show(const std::string& title, const Image& values, const Rect& crop, const images::Badness& badness,
-                   const images::Colors& colors) {
-  Image whole = images::color_values(images::fit_worst(values, kBox, badness), colors);
-  const auto scaled = [&](int place) { return place * whole.width / values.width; };
-  images::outline_rect(whole, {scaled(crop.x), scaled(crop.y), scaled(crop.width), scaled(crop.height)}, 1, kOutline);
-  const Image part = images::color_values(images::fit_worst(images::cut_image(values, crop), kBox, badness), colors);
-  return {{title, "", std::move(whole)}, {"", "", images::frame_image(part, 1, kOutline)}};
-}
-
 /// Draws what was expected, what was drawn, and the difference, side by side, with the worst place magnified, into a
 /// PNG file. Requires two images of one size, not empty, of one channel. Throws Error(kOutput).
 void write_regress_picture(const std::filesystem::path& path, const Comparison& comparison, const Image& expected,
@@ -138,9 +125,9 @@ void write_regress_picture(const std::filesystem::path& path, const Comparison& 
   const Rect crop = crop_worst(difference);
   images::Figure figure{fmt::format("{} on {}: {}", comparison.label, comparison.scene, name_of(comparison.outcome)),
                         comparison.settings + " · " + describe_change(comparison)};
-  figure.stacks = {show("expected", expected, crop, distance_from_lit, images::map_grey),
-                   show("actual", actual, crop, distance_from_lit, images::map_grey),
-                   show("difference", difference, crop, magnitude, scale)};
+  figure.stacks = {images::show_part({"expected"}, expected, crop, images::distance_from_lit, images::map_grey),
+                   images::show_part({"actual"}, actual, crop, images::distance_from_lit, images::map_grey),
+                   images::show_part({"difference"}, difference, crop, magnitude, scale)};
   figure.legend = {images::make_color_bar(
       scale,
       "actual less expected: darker now (blue), brighter now (red); below: the outlined part, with the largest "

@@ -89,7 +89,7 @@ TEST_F(Command, MapAndLightSettings_AreRecordedAndReachUserFilters) {
     EXPECT_LT(cell["coverage"]["fewest_texels_per_pixel"], cell["coverage"]["texels_per_pixel"]);
     EXPECT_GT(cell["coverage"]["map_used"], 0.05);
     EXPECT_LE(cell["coverage"]["map_filled"], 1.0);
-    for (const char* image : {"depth_map", "texel_density", "texel_grid"}) {
+    for (const char* image : {"depth_map", "texel_density"}) {
       EXPECT_TRUE(has_image(cell, image)) << image;
       EXPECT_THAT(read("out/index.html"), HasSubstr(cell["images"][image].get<std::string>()));
     }

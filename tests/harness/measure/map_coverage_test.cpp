@@ -98,15 +98,6 @@ TEST(MapCoverage, PerspectiveFootprints_AddUpToWhatThePictureShows) {
   EXPECT_LT(*c.record.fewest_texels_per_pixel, *c.record.texels_per_pixel);
 }
 
-TEST(MapCoverage, ReceiversPlaceInTheMap_IsWhereTheFrustumPutsIt) {
-  const scene::Camera camera = camera_above(5.0f, 3.0f);
-  const MapCoverage c =
-      measure_coverage(look_at_floor(camera), camera, {{light_from_above(12.8, 256)}}, half_filled_map(256));
-  // The left upper pixel lies at x = -1.95 m, z = -1.45 m; +v is -z.
-  EXPECT_NEAR(c.texel.at(0, 0)[0], 128.0 - 1.95 / 0.05, 1e-3);
-  EXPECT_NEAR(c.texel.at(0, 0)[1], 128.0 + 1.45 / 0.05, 1e-3);
-}
-
 TEST(MapCoverage, SurfacesTurnedAwayAndBackground_HaveNoSay) {
   const scene::Camera camera = camera_above(5.0f, 3.0f);
   ViewReceivers view = look_at_floor(camera);

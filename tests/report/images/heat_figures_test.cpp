@@ -1,8 +1,6 @@
 #include "report/images/heat_figures.h"
 
-#include <numeric>
-
-#include "report/images/color_values.h"
+#include "report/images/crop.h"
 #include "report/images/picture_io.h"
 #include "report/images/text.h"
 #include "tests/report/records/synthetic.h"
@@ -151,35 +149,14 @@ Image make_depth_map(int side) {
   return depth;
 }
 
-TEST(DepthHistogram, CountsEveryTexelOnce_EmptyOnesApart) {
-  const DepthHistogram histogram = count_depths(make_depth_map(64), 10);
-  EXPECT_EQ(histogram.empty, 64 * 32);
-  EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), std::int64_t{0}), 64 * 32);
-  EXPECT_EQ(histogram.counts[1], 0);
-  EXPECT_EQ(histogram.counts[7], 0);
-  for (std::size_t bin = 2; bin < 7; ++bin)
-    EXPECT_NEAR(static_cast<double>(histogram.counts[bin]), 64 * 32 / 5.0, 40.0) << bin;
-}
-
-TEST(DepthHistogram, DepthsOutsideTheRange_GoToTheNearestBin) {
-  Image depth(2, 1, 1);
-  depth.texels = {-0.5f, 2.0f};
-  const DepthHistogram histogram = count_depths(depth, 4);
-  EXPECT_EQ(histogram.counts, (std::vector<std::int64_t>{1, 0, 0, 1}));
-}
-
 Image draw_depth(const Image& stored, const filters::DepthCurve& curve) {
-  return draw_figure({"map", "note", show_depth({{stored, 12.0}}, curve)});
+  return draw_figure({"map", "note", show_depth({{stored}}, curve)});
 }
 
-TEST(DepthPicture, ShowsTheMapAndABarForEveryFilledBin) {
-  const Image drawn = draw_depth(make_depth_map(256), {});
-  EXPECT_EQ(count_color(drawn, {0.80f, 0.87f, 0.95f}), 768 * 384) << "the empty half";
-  const int bars = count_color(drawn, {0.20f, 0.36f, 0.60f});
-  EXPECT_GT(bars, 5000);
-  Image flat = make_depth_map(256);
-  for (float& depth : flat.texels) depth = depth < 1.0f ? 0.4f : 1.0f;
-  EXPECT_LT(count_color(draw_depth(flat, {}), {0.20f, 0.36f, 0.60f}), bars / 20) << "one bin instead of many";
+TEST(DepthPicture, ShowsTheMap_AndCountsWhatIsEmpty) {
+  const Stack stack = show_depth({{make_depth_map(256)}}, {}).front();
+  EXPECT_THAT(stack.at(0).words, HasSubstr("blue: nothing drawn, 32768 of 65536 texels"));
+  EXPECT_EQ(count_color(stack.at(0).picture, {0.80f, 0.87f, 0.95f}), 768 * 384) << "the empty half";
 }
 
 TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLinearised) {
@@ -188,7 +165,7 @@ TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLineari
        {filters::DepthCurve{true}, filters::DepthCurve{false, 50.0}, filters::DepthCurve{true, 50.0}}) {
     Image stored = depth;
     for (float& d : stored.texels) d = curve.store(d);
-    const Figure figure{"map", "note", show_depth({{stored, 12.0}}, curve)};
+    const Figure figure{"map", "note", show_depth({{stored}}, curve)};
     const Image drawn = draw_figure(figure);
     EXPECT_GT(drawn.width, 3 * draw_depth(depth, {}).width / 2);
     EXPECT_EQ(count_color(drawn, {0.80f, 0.87f, 0.95f}), 2 * 768 * 384) << "the empty half, twice";
@@ -197,7 +174,7 @@ TEST(DepthPicture, MapThatDoesNotHoldLinearDepth_IsShownTwice_AsStoredAndLineari
     ASSERT_GE(placed.size(), 2u);
     EXPECT_EQ(placed[0].box.y, placed[1].box.y);
     EXPECT_GT(placed[1].box.x, placed[0].box.x + placed[0].box.width);
-    const Stack linear = show_depth({{depth, 12.0}}, {}).front();
+    const Stack linear = show_depth({{depth}}, {}).front();
     const Image& once = linear.front().picture;
     ASSERT_EQ(placed[1].picture->texels.size(), once.texels.size());
     int different = 0;
@@ -220,59 +197,6 @@ TEST(DensityPicture, MoreTexels_AnotherColour_AndSurfacesWithoutAreGrey) {
   const float* many = grey - 3;
   EXPECT_GT(few[2], few[0]);
   EXPECT_GT(many[0], many[2]);
-}
-
-/// A white picture, and where the map's texels lie on it.
-struct Wall {
-  Image picture;
-  Image texel;
-  Image density;
-};
-
-Image draw(const Wall& wall) {
-  return draw_figure({"grid", "", {show_texels(wall.picture, wall.texel, wall.density)}});
-}
-
-/// A wall whose texels are `pixels` wide, white.
-Wall make_wall(int side, float pixels) {
-  Wall picture{fill(Image(side, side, 3), 1.0f), Image(side, side, 2), Image(side, side, 1)};
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      picture.texel.at(x, y)[0] = static_cast<float>(x) / pixels;
-      picture.texel.at(x, y)[1] = static_cast<float>(y) / pixels;
-      *picture.density.at(x, y) = 1.0f / (pixels * pixels);
-    }
-  }
-  return picture;
-}
-
-TEST(TexelGrid, DarkensEveryOtherTexel) {
-  const Image drawn = draw(make_wall(64, 8.0f));
-  EXPECT_EQ(count_color(drawn, {0.55f, 0.55f, 0.55f}), 64 * 64 / 2);
-}
-
-TEST(TexelGrid, SmallTexels_AreGatheredInFieldsThatShow) {
-  EXPECT_EQ(choose_field_texels(make_wall(8, 8.0f).density), 1);
-  EXPECT_EQ(choose_field_texels(make_wall(8, 1.0f).density), 8);
-  EXPECT_EQ(choose_field_texels(Image(4, 4, 1)), 1) << "no receiver";
-  const Image drawn = draw(make_wall(64, 1.0f));
-  EXPECT_EQ(count_color(drawn, {0.55f, 0.55f, 0.55f}), 64 * 64 / 2);
-  // Fields 8 pixels wide: along each of 64 rows 4 of them are dark, and have two sides.
-  int sides = 0;
-  for (std::size_t i = 3; i < drawn.texels.size(); i += 3) {
-    const auto is_dark = [&](std::size_t at) {
-      return std::abs(drawn.texels[at] - 0.55f) < 1e-5f && drawn.texels[at] == drawn.texels[at + 1];
-    };
-    sides += is_dark(i) != is_dark(i - 3) ? 1 : 0;
-  }
-  EXPECT_EQ(sides, 64 * 4 * 2);
-}
-
-TEST(TexelGrid, FieldsFarSmallerThanTheMedian_Fade) {
-  Wall picture = make_wall(64, 8.0f);
-  for (int y = 0; y < 16; ++y)
-    for (int x = 0; x < 64; ++x) *picture.density.at(x, y) = 1.0f;
-  EXPECT_EQ(count_color(draw(picture), {0.55f, 0.55f, 0.55f}), 64 * 48 / 2);
 }
 
 // Lit right of x = 20 and right of x = 60; blocked between 40 and 60.

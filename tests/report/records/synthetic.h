@@ -1,6 +1,6 @@
 #pragma once
 
-#include "report/images/grid.h"
+#include "report/images/figure.h"
 #include "report/records/cell_key.h"
 #include "report/records/format.h"
 #include "report/records/records.h"
@@ -59,26 +59,10 @@ inline images::Image shade(const images::Image& visibility) {
   return picture;
 }
 
-inline images::GridTile make_tile(const std::string& label, int width, int height, float softness) {
-  images::Image visibility = make_visibility(width, height, softness);
-  images::Image picture = shade(visibility);
-  return {label, "radius 4, rg32f · 12.3 ms (CPU)", std::move(picture), std::move(visibility), {}, {}};
-}
-
-/// A grid of `tiles` filters whose edges grow softer.
-inline images::Grid make_grid(int tiles, int width, int height) {
-  images::Grid grid;
-  grid.title = "cubes";
-  grid.subtitle = "view main, map 1024 x 1024 d32f, 960 x 540 · llvmpipe (LLVM 15.0.6, 256 bits)";
-  const char* names[] = {"none", "pcf2x2", "tent3x3", "poisson", "vsm", "esm"};
-  for (int i = 0; i < tiles; ++i) {
-    const std::string name = i < 6 ? names[i] : "mine_" + std::to_string(i);
-    grid.tiles.push_back(make_tile(name, width, height, 0.01f + 4.0f * static_cast<float>(i)));
-  }
-  std::vector<const images::Image*> visibility;
-  for (const images::GridTile& tile : grid.tiles) visibility.push_back(&tile.visibility);
-  grid.crop = images::find_disputed_edge(visibility, 0, images::choose_crop_size({width, height}));
-  return grid;
+/// A figure, drawn as display values.
+inline images::Image draw_figure(const images::Figure& figure) {
+  const images::Layout layout = images::layout_figure(figure);
+  return images::draw_rows(layout, 0, layout.canvas.height);
 }
 
 /// A finished cell with times and costs, and no truth.
@@ -137,16 +121,6 @@ inline CellRecord make_attributed_cell(const std::string& filter, double rmse, c
   for (std::size_t i = 0; i < metrics::kErrorParts; ++i)
     cell.attribution.*list_error_parts()[i].record = {std::abs(shares[i]) * rmse, shares[i]};
   return cell;
-}
-
-/// A grid whose tiles but the first have errors.
-inline images::Grid make_error_grid(int tiles, int width, int height) {
-  images::Grid grid = make_grid(tiles, width, height);
-  for (int i = 1; i < tiles; ++i) {
-    images::Image& error = grid.tiles[static_cast<std::size_t>(i)].error = make_visibility(width, height, 9.0f);
-    for (float& value : error.texels) value = 0.3f * (value - 0.5f);
-  }
-  return grid;
 }
 
 inline RunRecord make_run() {
