@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -61,7 +62,7 @@ BaselineCell from_json(const json& read) {
 }
 
 std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
-  constexpr const char* kAdvice = "restore the file, or accept a run again";
+  constexpr const char* kAdvice = "restore the file, or remove it and accept a run again";
   const json root = records::read_json_file(file, 1024 * kMebibyte, kAdvice);
   try {
     if (root.at("baseline_version") != kBaselineVersion)
@@ -150,30 +151,21 @@ std::filesystem::path Baseline::stem(const std::string& scene, const std::string
   return folder_ / make_file_stem(scene) / make_file_stem(filter);
 }
 
-Baseline::Index Baseline::read_index() const {
-  Index index;
+std::vector<BaselineCell> Baseline::list_cells() const {
+  std::vector<BaselineCell> cells;
   for (const std::filesystem::path& folder : list_folder(folder_)) {
     if (!std::filesystem::is_directory(folder)) continue;
-    for (const std::filesystem::path& file : list_folder(folder)) {
-      if (file.extension() != ".json" || is_temporary(file)) continue;
-      try {
-        for (BaselineCell& cell : read_cell_list(file)) index.cells.push_back(std::move(cell));
-      } catch (const Error& error) {
-        index.unreadable[(folder.filename() / file.stem()).string()] = error.what();
-      }
-    }
+    for (const std::filesystem::path& file : list_folder(folder))
+      if (file.extension() == ".json" && !is_temporary(file))
+        std::ranges::move(read_cell_list(file), std::back_inserter(cells));
   }
-  return index;
-}
-
-std::vector<BaselineCell> Baseline::read_numbers(const std::string& scene, const std::string& filter) const {
-  const std::filesystem::path file = with_extension(stem(scene, filter), ".json");
-  return std::filesystem::exists(file) ? read_cell_list(file) : std::vector<BaselineCell>();
+  return cells;
 }
 
 CellFile Baseline::read_cells(const std::string& scene, const std::string& filter) const {
-  CellFile file{read_numbers(scene, filter), {}};
-  if (file.cells.empty()) return file;
+  const std::filesystem::path numbers = with_extension(stem(scene, filter), ".json");
+  if (!std::filesystem::exists(numbers)) return {};
+  CellFile file{read_cell_list(numbers), {}};
   const std::filesystem::path images = with_extension(stem(scene, filter), ".exr");
   for (images::Part& part : images::read_exr(images).parts) keep_part(file.images, std::move(part));
   return file;

@@ -112,17 +112,8 @@ class Baseline {
   /// Throws Error(kInput) where the path is no folder.
   bool exists() const;
 
-  /// Lists the cells of all filters, and files that cannot be read, with the reason.
-  /// Throws Error(kInput) where a folder cannot be listed.
-  struct Index {
-    std::vector<BaselineCell> cells;
-    std::map<std::string, std::string> unreadable;  ///< "SCENE/FILTER" to reason
-  };
-  Index read_index() const;
-
-  /// Reads the cells of a filter without their images; nothing where there are none.
-  /// Throws Error(kInput) where they cannot be read.
-  std::vector<BaselineCell> read_numbers(const std::string& scene, const std::string& filter) const;
+  /// Lists the cells of all filters. Throws Error(kInput) where a folder cannot be listed, or a file cannot be read.
+  std::vector<BaselineCell> list_cells() const;
 
   /// Reads the cells of a filter, and their images; nothing where there are none.
   /// Throws Error(kInput) where they cannot be read.

@@ -135,12 +135,6 @@ void write_regress_picture(const std::filesystem::path& path, const Comparison& 
   images::write_figure(path, figure);
 }
 
-/// The truths of one scene, as the baseline has them.
-struct ExpectedTruths {
-  std::map<std::string, TruthImages> by_key;
-  std::string unreadable;  ///< why they cannot be read
-};
-
 /// One comparison of a run with its baseline.
 class Regression {
  public:
@@ -153,16 +147,16 @@ class Regression {
                   "there is no baseline here (no baseline.toml); make one: " + make_accept_command(options_),
                   options_.baseline.string());
     if (known) tolerances_ = read_tolerances(baseline_.tolerance_file());
-    index_ = baseline_.read_index();
-    report_.is_new = options.accept && index_.cells.empty() && index_.unreadable.empty();
+    expected_ = baseline_.list_cells();
+    report_.is_new = options.accept && expected_.empty();
     require_known(
         options.selection.filters, "--filters", [](const auto& cell) { return cell.filter; });
     require_known(
         options.selection.scenes, "--scene", [](const auto& cell) { return cell.scene; });
     const auto is_left_out = [&](const auto& cell) { return !options.selection.holds(cell.scene, cell.filter); };
-    std::erase_if(index_.cells, is_left_out);
+    std::erase_if(expected_, is_left_out);
     std::erase_if(run_.cells, is_left_out);
-    if (run_.cells.empty() && index_.cells.empty() && index_.unreadable.empty())
+    if (run_.cells.empty() && expected_.empty())
       throw Error(ErrorKind::kInput, "neither the run nor the baseline has a cell", options.run.string());
   }
 
@@ -170,7 +164,6 @@ class Regression {
     compare_run();
     find_missing();
     find_missing_truths();
-    name_unreadable_files();
     std::ranges::stable_sort(report_.comparisons, is_worse);
     report_.options = options_;
     report_.accept_command = make_accept_command(options_);
@@ -183,11 +176,10 @@ class Regression {
   Baseline baseline_;
   records::Results run_;
   Tolerances tolerances_;
-  Baseline::Index index_;
-  std::set<std::string> seen_;                    ///< keys of the run's cells
-  std::set<std::string> named_unreadable_;        ///< files of the baseline whose trouble a cell reports
-  std::set<std::string> seen_truths_;             ///< scene and key
-  std::map<std::string, ExpectedTruths> truths_;  ///< by scene
+  std::vector<BaselineCell> expected_;
+  std::set<std::string> seen_;                                              ///< keys of the run's cells
+  std::set<std::string> seen_truths_;                                       ///< scene and key
+  std::map<std::string, std::map<std::string, TruthImages>> truths_;        ///< by scene and key
   std::map<std::pair<std::string, std::string>, CellFile> accepted_files_;  ///< by scene and filter
   std::set<std::string> accepted_truths_;                                   ///< scenes
   std::optional<FolderLock> lock_;                                          ///< held on a baseline that may change
@@ -223,7 +215,7 @@ class Regression {
   void require_known(const std::vector<std::string>& chosen, const char* option, const Name& name_of_cell) const {
     std::set<std::string> names;
     for (const records::CellRecord& cell : run_.cells) names.insert(name_of_cell(cell));
-    for (const BaselineCell& cell : index_.cells) names.insert(name_of_cell(cell));
+    for (const BaselineCell& cell : expected_) names.insert(name_of_cell(cell));
     const std::vector<std::string> known(names.begin(), names.end());
     for (const std::string& name : chosen) {
       if (names.contains(name)) continue;
@@ -239,8 +231,8 @@ class Regression {
   }
 
   const BaselineCell* find(const std::string& key) const {
-    const auto found = std::ranges::find(index_.cells, key, &BaselineCell::key);
-    return found == index_.cells.end() ? nullptr : &*found;
+    const auto found = std::ranges::find(expected_, key, &BaselineCell::key);
+    return found == expected_.end() ? nullptr : &*found;
   }
 
   const CellFile& read_file(const BaselineCell& cell) {
@@ -258,39 +250,23 @@ class Regression {
     Comparison comparison = name_comparison(cell.record);
     CellImages images;
     if (expected) {
-      try {
-        const auto& all = read_file(*expected).images;
-        if (const auto found = all.find(expected->key); found != all.end()) images = found->second;
-        comparison = regress::compare_cell(cell, *expected, images, tolerances_);
-      } catch (const Error& error) {
-        file_name_ = {};
-        comparison.add(Outcome::kUnreadable, error.what());
-      }
+      const auto& all = read_file(*expected).images;
+      if (const auto found = all.find(expected->key); found != all.end()) images = found->second;
+      comparison = regress::compare_cell(cell, *expected, images, tolerances_);
+    } else if (!cell.unreadable.empty()) {
+      comparison.add(Outcome::kUnreadable, cell.unreadable);
     } else {
-      add_unknown(comparison, cell);
+      comparison.add(Outcome::kExtra, "the baseline has no such cell");
     }
     conclude(std::move(comparison), cell, images.visibility, cell.images.visibility);
   }
 
-  void add_unknown(Comparison& comparison, const ActualCell& cell) {
-    const std::string file =
-        (std::filesystem::path(make_file_stem(cell.record.scene)) / make_file_stem(cell.record.filter)).string();
-    const auto unreadable = index_.unreadable.find(file);
-    const bool is_known = unreadable != index_.unreadable.end();
-    if (is_known) named_unreadable_.insert(file);
-    const std::string reason = is_known ? unreadable->second : cell.unreadable;
-    comparison.add(reason.empty() ? Outcome::kExtra : Outcome::kUnreadable,
-                   reason.empty() ? "the baseline has no such cell" : reason);
-  }
-
   void compare_truth(const ActualTruth& truth) {
-    const ExpectedTruths& known = read_truths(truth.record.scene);
-    const auto found = known.by_key.find(truth_key(truth.record));
+    const auto& known = read_truths(truth.record.scene);
+    const auto found = known.find(truth_key(truth.record));
     Comparison comparison = name_truth(truth.record);
     TruthImages expected;
-    if (!known.unreadable.empty()) {
-      comparison.add(Outcome::kUnreadable, known.unreadable);
-    } else if (found == known.by_key.end()) {
+    if (found == known.end()) {
       comparison.add(Outcome::kExtra, "the baseline has no truth of this view");
     } else {
       expected = found->second;
@@ -321,15 +297,15 @@ class Regression {
   }
 
   void find_missing() {
-    for (const BaselineCell& cell : index_.cells)
+    for (const BaselineCell& cell : expected_)
       if (!seen_.contains(cell.key)) add_missing(name_comparison(cell), "the run has no such cell");
   }
 
   void find_missing_truths() {
     std::set<std::string> scenes;
-    for (const BaselineCell& cell : index_.cells) scenes.insert(cell.scene);
+    for (const BaselineCell& cell : expected_) scenes.insert(cell.scene);
     for (const std::string& scene : scenes) {
-      const std::map<std::string, TruthImages> known = read_truths(scene).by_key;  // which may lose some
+      const std::map<std::string, TruthImages> known = read_truths(scene);  // which may lose some
       for (const auto& [key, truth] : known) {
         if (seen_truths_.contains(scene + "/" + key)) continue;
         add_missing({{.key = key, .scene = scene, .filter = kTruthName, .label = kTruthName}, key},
@@ -339,14 +315,9 @@ class Regression {
   }
 
   /// Reads the truths of a scene once.
-  ExpectedTruths& read_truths(const std::string& scene) {
+  std::map<std::string, TruthImages>& read_truths(const std::string& scene) {
     const auto [place, is_new] = truths_.try_emplace(scene);
-    if (!is_new) return place->second;
-    try {
-      place->second.by_key = baseline_.read_truths(scene);
-    } catch (const Error& error) {
-      place->second.unreadable = error.what();
-    }
+    if (is_new) place->second = baseline_.read_truths(scene);
     return place->second;
   }
 
@@ -390,52 +361,23 @@ class Regression {
     report_.accepted.push_back(std::move(line));
   }
 
-  /// The cells of a scene and filter as they will be. A file that cannot be read keeps only its numbers, if those can
-  /// be read, and the cells that are taken over now.
+  /// The cells of a scene and filter as they will be.
   CellFile& accepted_file(const std::string& scene, const std::string& filter) {
     const auto [place, is_new] = accepted_files_.try_emplace({scene, filter});
-    if (!is_new) return place->second;
-    try {
-      return place->second = baseline_.read_cells(scene, filter);
-    } catch (const Error&) {
-      place->second = {};
-    }
-    try {
-      place->second.cells = baseline_.read_numbers(scene, filter);
-    } catch (const Error& error) {
-      report_.accepted.push_back(fmt::format("lost: every other cell of {} {}: {}", scene, filter, error.what()));
-    }
+    if (is_new) place->second = baseline_.read_cells(scene, filter);
     return place->second;
   }
 
   std::map<std::string, TruthImages>& accepted_truths(const std::string& scene) {
-    ExpectedTruths& truths = read_truths(scene);
-    if (accepted_truths_.insert(scene).second && !truths.unreadable.empty())
-      report_.accepted.push_back(
-          fmt::format("lost: the truth of every other view of {}: {}", scene, truths.unreadable));
-    return truths.by_key;
+    accepted_truths_.insert(scene);
+    return read_truths(scene);
   }
 
   /// Tolerances come first: a folder that is written only in part is then known to be a baseline.
   void write_accepted() {
     if (!baseline_.exists()) write_text_file(baseline_.tolerance_file(), write_tolerances(tolerances_));
     for (const auto& [name, own] : accepted_files_) baseline_.write_cells(name.first, name.second, own);
-    for (const std::string& scene : accepted_truths_) baseline_.write_truths(scene, truths_.at(scene).by_key);
-  }
-
-  /// Reports the files of the baseline that cannot be read and that no cell of the run belongs to.
-  void name_unreadable_files() {
-    for (const auto& [file, reason] : index_.unreadable) {
-      const std::filesystem::path path(file);
-      if (named_unreadable_.contains(file) ||
-          !options_.selection.holds(path.parent_path().string(), path.filename().string()))
-        continue;
-      const std::string filter = path.filename().string();
-      Comparison comparison{{.scene = path.parent_path().string(), .filter = filter, .label = filter},
-                            "all cells of the file"};
-      comparison.add(Outcome::kUnreadable, reason);
-      report_.comparisons.push_back(std::move(comparison));
-    }
+    for (const std::string& scene : accepted_truths_) baseline_.write_truths(scene, truths_.at(scene));
   }
 };
 
