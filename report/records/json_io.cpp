@@ -180,30 +180,6 @@ class CellTaker {
 
 using nlohmann::ordered_json;
 
-/// What is described once in the schema, under this name, and referred to where it stands.
-struct Definition {
-  std::string_view name = {};  ///< empty: it is described where it stands
-  std::string_view text = {};
-};
-
-template <class T>
-constexpr Definition find_definition() {
-  if (std::is_same_v<T, CellRecord>) return {"cell", "one scene x view x filter x parameters x map settings"};
-  if (std::is_same_v<T, Quartiles>) return {"quartiles"};
-  if (std::is_same_v<T, Interval>) return {"interval"};
-  if (std::is_same_v<T, Ratio>) return {"ratio"};
-  if (std::is_same_v<T, OwnTime>) return {"own_time", "may be below 0 where a difference is too small for this clock"};
-  if (std::is_same_v<T, CascadeRecord>) return {"cascade"};
-  if (std::is_same_v<T, GpuRecord>)
-    return {"gpu", "facts of the compiler, and an estimate made of them; or why there are none"};
-  if (std::is_same_v<T, GpuPassRecord>)
-    return {
-        "gpu_pass",
-        "what the GPU's compiler says of a pass; counts are of the machine code, in which the body of a loop stands "
-        "once"};
-  return {};
-}
-
 ordered_json start(std::string_view text) {
   return text.empty() ? ordered_json::object() : ordered_json{{"description", text}};
 }
@@ -225,8 +201,6 @@ void add_property(ordered_json& object, const std::string& path, const ordered_j
 /// Describes records and their values.
 class SchemaWriter {
  public:
-  ordered_json definitions = ordered_json::object();
-
   template <class T>
   ordered_json describe(const About& about) {
     if constexpr (kIsA<T, std::optional>)
@@ -283,17 +257,14 @@ class SchemaWriter {
 
   template <class T>
   ordered_json describe_record() {
-    constexpr Definition kHere = find_definition<T>();
-    ordered_json schema = start(kHere.text);
+    ordered_json schema = ordered_json::object();
     if constexpr (std::is_same_v<T, Interval>) {
       schema = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
     } else {
       const T record{};
       visit_fields(record, FieldDescriber{*this, schema});
     }
-    if (kHere.name.empty()) return schema;
-    definitions[std::string(kHere.name)] = schema;
-    return {{"$ref", fmt::format("#/$defs/{}", kHere.name)}};
+    return schema;
   }
 
   /// Adds each visited field to the schema of a record.
@@ -460,7 +431,7 @@ Results read_results(const std::filesystem::path& file) {
 
 std::string results_schema() {
   SchemaWriter writer;
-  const ordered_json version = {{"const", kSchemaVersion}}, cell = writer.describe<CellRecord>({});
+  const ordered_json version = {{"const", kSchemaVersion}}, reference = {{"$ref", "#/$defs/cell"}};
   ordered_json schema = {
       {"$schema", "https://json-schema.org/draft/2020-12/schema"},
       {"title", "Shadowbench results"},
@@ -468,15 +439,17 @@ std::string results_schema() {
   schema.update(writer.describe<RunRecord>({}));
   add_property(schema, "schema_version", version);
   add_property(schema, "absent", writer.describe<std::map<std::string, std::string>>({}));
-  add_property(schema, "cells", {{"type", "array"}, {"items", cell}});
-  writer.definitions["cell"].update(ordered_json::parse(R"({
+  add_property(schema, "cells", {{"type", "array"}, {"items", reference}});
+  ordered_json cell = start("one scene x view x filter x parameters x map settings");
+  cell.update(writer.describe<CellRecord>({}));
+  cell.update(ordered_json::parse(R"({
     "if": {"properties": {"status": {"const": "ok"}}},
     "then": {"properties": {"message": {"const": ""}, "suspect_of": {"maxItems": 0}}},
     "else": {"properties": {"message": {"minLength": 1}}}})"));
-  ordered_json& file = writer.definitions["cell_file"] = start("cells/<key>.json");
+  ordered_json file = start("cells/<key>.json");
   add_property(file, "schema_version", version);
-  add_property(file, "cell", cell);
-  schema["$defs"] = writer.definitions;
+  add_property(file, "cell", reference);
+  schema["$defs"] = {{"cell", std::move(cell)}, {"cell_file", std::move(file)}};
   return schema.dump(1) + "\n";
 }
 

@@ -98,7 +98,10 @@ void visit_fields(Is<GpuRecord> auto& gpu, auto&& visit) {
   std::optional<double> moving = cost(true), still = cost(false);  // files hold them for their readers; they follow
   std::optional<std::string> bound_by = estimate ? std::optional(estimate->bound_by) : std::nullopt;
   std::optional<std::string> refused = null_if_empty(gpu.refused);
-  visit("facts", gpu.facts);
+  visit(
+      "facts", gpu.facts,
+      {.text = "what the GPU's compiler says of each pass; counts are of the machine code, in which the body of a loop "
+               "stands once"});
   visit("frame_ms", kGroup,
         {.text = "of a frame of 1920x1080, each pixel a lookup, with one map; moving: with its prefilter and a lower "
                  "bound of drawing it. What every lookup pays is left out"});
@@ -424,7 +427,10 @@ void visit_fields(Is<CellRecord> auto& cell, auto&& visit) {
          .least = 0,
          .may_lack = true});
   visit("excused", cell.excused, {.text = "pixels left out: on a tie or a texel's border"});
-  visit_group("time_ms", cell.time_ms, visit, {.text = "milliseconds of the clock that gl.timer names"});
+  visit_group(
+      "time_ms", cell.time_ms, visit,
+      {.text = "milliseconds of the clock that gl.timer names; static and moving may be below 0 where a difference is "
+               "too small for it"});
   visit_group("ratio_to_none", cell.ratio_to_none, visit,
               {.text = "per-round ratios; static: map and prefilter cached, moving: paid in every frame"});
   visit("cascades", cell.cascades,
