@@ -246,23 +246,12 @@ void write_image_file(const std::filesystem::path& path, const ImageWriting& wri
   pending.commit();
 }
 
-// EXR sorts channels by name; this attribute keeps the order they were given in.
-constexpr const char* kChannelOrder = "shadowbench:channels";
-
-bool has_unique_names(std::vector<std::string> names) {
-  std::sort(names.begin(), names.end());
-  return std::adjacent_find(names.begin(), names.end()) == names.end();
-}
-
 void check_names(const std::filesystem::path& path, const std::vector<Part>& parts) {
   std::vector<std::string> names;
-  for (const Part& part : parts) {
-    assert(part.channel_names.size() == static_cast<std::size_t>(part.image.channels));
-    names.push_back(part.name);
-    if (!has_unique_names(part.channel_names))
-      throw Error(ErrorKind::kOutput, fmt::format("two channels of part '{}' have one name", part.name), path.string());
-  }
-  if (!has_unique_names(names)) throw Error(ErrorKind::kOutput, "two parts have one name", path.string());
+  for (const Part& part : parts) names.push_back(part.name);
+  std::sort(names.begin(), names.end());
+  if (std::adjacent_find(names.begin(), names.end()) != names.end())
+    throw Error(ErrorKind::kOutput, "two parts have one name", path.string());
 }
 
 OIIO::ImageSpec make_spec(const Part& part, const Image& display, const Metadata& metadata) {
@@ -274,7 +263,6 @@ OIIO::ImageSpec make_spec(const Part& part, const Image& display, const Metadata
   spec.channelnames = part.channel_names;
   spec.attribute("compression", "zip");
   spec.attribute("oiio:subimagename", part.name);
-  spec.attribute(kChannelOrder, OIIO::Strutil::join(part.channel_names, ","));
   for (const auto& [name, value] : metadata)
     if (const auto* number = std::get_if<double>(&value))
       spec.attribute(name, OIIO::TypeDesc::DOUBLE, number);
@@ -293,31 +281,12 @@ bool write_parts(OIIO::ImageOutput& output, const std::string& file, const std::
   return output.close();
 }
 
-// Puts the channels back into the order they were written in, where the file says so.
-Part reorder_channels(Part part, const std::string& order) {
-  const std::vector<std::string> names = OIIO::Strutil::splits(order, ",");
-  if (names == part.channel_names ||
-      !std::is_permutation(names.begin(), names.end(), part.channel_names.begin(), part.channel_names.end()))
-    return part;
-  Part result{part.name, names, Image(part.image.width, part.image.height, part.image.channels), part.half};
-  const std::size_t channels = names.size();
-  for (std::size_t to = 0; to < channels; ++to) {
-    const auto found = std::find(part.channel_names.begin(), part.channel_names.end(), names[to]);
-    const auto from = static_cast<std::size_t>(found - part.channel_names.begin());
-    for (std::size_t i = 0; i < part.image.texels.size(); i += channels)
-      result.image.texels[i + to] = part.image.texels[i + from];
-  }
-  return result;
-}
-
 std::string name_part(const OIIO::ImageSpec& spec) { return spec.get_string_attribute("oiio:subimagename"); }
 
 Part read_named_part(OIIO::ImageInput& input, int index, const std::string& file) {
   const OIIO::ImageSpec spec = input.spec(index);
   StoredPicture stored = read_part(input, index, file);
-  return reorder_channels(
-      {name_part(spec), stored.channel_names, std::move(stored.image), spec.format == OIIO::TypeDesc::HALF},
-      spec.get_string_attribute(kChannelOrder));
+  return {name_part(spec), stored.channel_names, std::move(stored.image), spec.format == OIIO::TypeDesc::HALF};
 }
 
 Metadata read_metadata(const OIIO::ImageSpec& spec) {

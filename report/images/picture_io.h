@@ -49,7 +49,7 @@ Image read_picture(const std::filesystem::path& path);
 /// One named image of a multi-part EXR file.
 struct Part {
   std::string name;                        ///< "vsm.visibility"; unique in its file
-  std::vector<std::string> channel_names;  ///< one per channel of `image`, unique
+  std::vector<std::string> channel_names;  ///< one per channel of `image`: R, G, B, or others in alphabetical order
   Image image;
   bool half = false;  ///< stored as 16-bit floats
 };
@@ -73,8 +73,7 @@ struct ExrFile {
 /// Chooses parts of a file by their names.
 using PartChoice = std::function<bool(const std::string& name)>;
 
-/// Reads a multi-part EXR file, or the parts of it that are wanted; channels come in the order that write_exr() was
-/// given. Throws Error(kInput).
+/// Reads a multi-part EXR file, or the parts of it that are wanted. Throws Error(kInput).
 ExrFile read_exr(
     const std::filesystem::path& path, const PartChoice& is_wanted = [](const std::string&) { return true; });
 
