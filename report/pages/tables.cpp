@@ -182,34 +182,6 @@ std::string say_faults(const records::CascadeRecord& cascade) {
   return fmt::format("{}", fmt::join(rates, " / "));
 }
 
-document::Chart make_chart(const analysis::CellGroup& group, std::size_t number) {
-  document::Chart chart{fmt::format("cascades.{}", number),
-                        group.scene + ": RMSE of each cascade",
-                        "where the cascade ends, m from the camera",
-                        "RMSE over its receivers",
-                        {},
-                        {},
-                        {},
-                        {}};
-  std::vector<double> ends, errors;
-  for (const records::CellRecord& cell : group.cells) {
-    document::ChartSeries& line =
-        chart.series.emplace_back(document::make_line(group.names.name(cell), document::style_of(chart.series.size())));
-    for (const records::CascadeRecord& each : *cell.cascades) {
-      if (!each.rmse) continue;
-      ends.push_back(each.end_m);
-      errors.push_back(*each.rmse);
-      document::ChartPoint& point = line.points.emplace_back(document::exact_point(each.end_m, *each.rmse));
-      point.details = {line.title, head_cascade(each), fmt::format("RMSE {}", records::format_number(*each.rmse)),
-                       say_share(each) + " of the receivers"};
-      point.opens = cell.key;
-    }
-  }
-  chart.x = document::choose_axis(ends, ends, document::TickKind::kNumber);
-  chart.y = document::choose_axis(errors, errors, document::TickKind::kNumber);
-  return chart;
-}
-
 }  // namespace
 
 std::optional<document::Section> make_cascade_section(const std::vector<records::CellRecord>& cells) {
@@ -217,7 +189,6 @@ std::optional<document::Section> make_cascade_section(const std::vector<records:
   std::ranges::copy_if(cells, std::back_inserter(own), [](const auto& cell) { return cell.cascades.has_value(); });
   if (own.empty()) return std::nullopt;
   document::Section section{"cascades", "By cascade", {}};
-  std::size_t number = 0;
   for (const analysis::CellGroup& group : analysis::group_cells(own)) {
     const Cascades& cascades = *group.cells.front().cascades;
     std::vector<document::Block> blocks = {
@@ -225,10 +196,10 @@ std::optional<document::Section> make_cascade_section(const std::vector<records:
         make_table(
             "RMSE over the receivers of each cascade, and the seam between them", group,
             [](const records::CascadeRecord& each) { return records::format_number(each.rmse); }, true),
-        make_table("Acne / leak / contact gap in each cascade", group, say_faults, false), make_chart(group, number)};
+        make_table("Acne / leak / contact gap in each cascade", group, say_faults, false)};
     const std::string head =
         fmt::format("{}, map {}, {}", group.scene, group.cells.front().map_size, group.cells.front().fit);
-    if (number++ == 0) {
+    if (section.blocks.empty()) {
       section.blocks.emplace_back(document::Heading{head});
       std::ranges::move(blocks, std::back_inserter(section.blocks));
     } else {
