@@ -20,18 +20,15 @@ inline std::filesystem::path write_input(const std::string& name, std::string_vi
   return file;
 }
 
-inline std::string_view as_text(const std::uint8_t* data, std::size_t size) {
-  return {reinterpret_cast<const char*>(data), size};
-}
-
-/// Runs `action`, which may refuse its input with an Error; anything else that it throws is a finding.
-template <typename Action>
-void allow_refusal(const Action& action) {
-  try {
-    action();
-  } catch (const Error&) {
-    return;
-  }
-}
+/// What a target does with an input, which it may refuse with an Error; anything else that it throws is a finding.
+void try_input(std::string_view text);
 
 }  // namespace shadowbench::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    shadowbench::fuzz::try_input({reinterpret_cast<const char*>(data), size});
+  } catch (const shadowbench::Error&) {
+  }
+  return 0;
+}

@@ -7,14 +7,15 @@
 #include "report/records/json_values.h"
 #include "tests/fuzz/input.h"
 
-namespace shadowbench::fuzz {
 namespace {
 
 void require_same(const nlohmann::json& first, const nlohmann::json& second) {
-  if (records::dump_line(first) != records::dump_line(second)) std::abort();
+  if (shadowbench::records::dump_line(first) != shadowbench::records::dump_line(second)) std::abort();
 }
 
-void read_results(std::string_view text) {
+}  // namespace
+
+void shadowbench::fuzz::try_input(std::string_view text) {
   const records::Results results = records::read_results(write_input("results.json", text));
   const nlohmann::json run = records::to_json(results.run);
   require_same(run, records::to_json(records::run_from_json(run, "written")));
@@ -22,13 +23,4 @@ void read_results(std::string_view text) {
     const nlohmann::json written = records::to_json(cell);
     require_same(written, records::to_json(records::cell_from_json(written, "written")));
   }
-}
-
-}  // namespace
-}  // namespace shadowbench::fuzz
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace shadowbench::fuzz;
-  allow_refusal([&] { read_results(as_text(data, size)); });
-  return 0;
 }

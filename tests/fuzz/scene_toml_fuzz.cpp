@@ -4,22 +4,8 @@
 #include "harness/scene/load.h"
 #include "tests/fuzz/input.h"
 
-namespace shadowbench::fuzz {
-namespace {
-
-constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-
-void read_scene(std::string_view text) {
-  static const std::filesystem::path model = write_input("triangle.obj", kTriangle);
+void shadowbench::fuzz::try_input(std::string_view text) {
+  static const std::filesystem::path model = write_input("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const scene::Scene scene = scene::load(write_input("input.toml", text).string(), {});
   scene::fit_light(scene, scene::FitMode::kTight, 64, 2.0);
-}
-
-}  // namespace
-}  // namespace shadowbench::fuzz
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace shadowbench::fuzz;
-  allow_refusal([&] { read_scene(as_text(data, size)); });
-  return 0;
 }
