@@ -122,7 +122,6 @@ struct Occluders::Impl {
   RTCScene scene = rtcNewScene(device);
   glm::vec3 largest{0.0f};  ///< largest coordinate per axis, by magnitude
   std::int64_t triangles = 0;
-  std::int64_t degenerate = 0;
   bool any_dims = false;  ///< whether a surface only dims rays
   std::vector<std::unique_ptr<HoleTest>> hole_tests;
 
@@ -146,7 +145,6 @@ struct Occluders::Impl {
   void add(const OccluderMesh& mesh) {
     std::vector<std::uint32_t> indices = keep_triangles_with_area(mesh);
     triangles += static_cast<std::int64_t>(indices.size() / 3);
-    degenerate += static_cast<std::int64_t>((mesh.indices.size() - indices.size()) / 3);
     if (indices.empty()) return;
     const std::unique_ptr<RTCGeometryTy, decltype(&rtcReleaseGeometry)> owned(
         rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), &rtcReleaseGeometry);
@@ -229,7 +227,6 @@ glm::vec3 Occluders::offset_origin(const glm::vec3& position, const glm::vec3& n
 }
 
 std::int64_t Occluders::triangle_count() const { return impl_->triangles; }
-std::int64_t Occluders::degenerate_count() const { return impl_->degenerate; }
 float Occluders::farthest() const { return glm::length(impl_->largest); }
 
 Box Occluders::bounds() const {

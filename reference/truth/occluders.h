@@ -136,9 +136,8 @@ class Occluders {
   /// Physically Based Rendering, 3rd ed., section 3.9.
   glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& normal, float extent = 0.0f) const;
 
-  std::int64_t triangle_count() const;    ///< without the degenerate ones
-  std::int64_t degenerate_count() const;  ///< triangles that were dropped
-  Box bounds() const;                     ///< of what is traced
+  std::int64_t triangle_count() const;  ///< without the degenerate ones
+  Box bounds() const;                   ///< of what is traced
 
   /// The distance from the origin within which everything lies, metres.
   float farthest() const;
