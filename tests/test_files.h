@@ -29,7 +29,8 @@ namespace shadowbench {
 
 using ::testing::AllOf, ::testing::AnyOf, ::testing::Contains, ::testing::ContainsRegex, ::testing::Each;
 using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::IsEmpty, ::testing::MatchesRegex;
-using ::testing::Not, ::testing::Pair, ::testing::SizeIs, ::testing::StartsWith, ::testing::UnorderedElementsAre;
+using ::testing::Not, ::testing::Pair, ::testing::Property, ::testing::SizeIs, ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 /// The Error that an action throws; one of kind kLimit, "no error", where it throws none.
 template <typename Action>
@@ -40,6 +41,12 @@ Error error_of(const Action& action) {
     return error;
   }
   return {ErrorKind::kLimit, "no error"};
+}
+
+/// An Error of a kind whose text, "PLACE: MESSAGE", has all these words.
+template <typename... Words>
+auto is_error(ErrorKind kind, const Words&... words) {
+  return AllOf(Property("kind", &Error::kind, kind), Property("what", &Error::what, AllOf(HasSubstr(words)...)));
 }
 
 /// Does an action while no file may grow beyond so many bytes, which stands for a full disk.

@@ -11,9 +11,7 @@ namespace {
 using ::testing::IsSupersetOf;
 
 void expect_usage_error(const std::string& text, const std::string& words) {
-  const Error error = error_of([&] { built_in().parse_requests(text); });
-  EXPECT_EQ(error.kind(), ErrorKind::kUsage) << text;
-  EXPECT_THAT(error.message(), HasSubstr(words));
+  EXPECT_THAT(error_of([&] { built_in().parse_requests(text); }), is_error(ErrorKind::kUsage, words)) << text;
 }
 
 TEST(Catalogue, EveryBuiltInFilter_HasAModelAndASource) {
@@ -242,10 +240,8 @@ TEST_F(PresetFile, ThatIsRight_IsRead) { EXPECT_EQ(ask(kGood).message(), "no err
 
 TEST_F(PresetFile, Mistakes_AreTold_WithTheLine) {
   const auto expect_error = [&](const std::string& text, int line, const std::string& words) {
-    const Error error = ask(text);
-    EXPECT_EQ(error.kind(), ErrorKind::kInput) << text;
-    EXPECT_EQ(error.where(), file().string() + ":" + std::to_string(line)) << text;
-    EXPECT_THAT(error.message(), HasSubstr(words)) << text;
+    EXPECT_THAT(ask(text), is_error(ErrorKind::kInput, file().string() + ":" + std::to_string(line) + ": ", words))
+        << text;
   };
   expect_error(change("vsm:radius", "vsm:radus"), 1, "the preset 'p': filter 'vsm' has no parameter 'radus'");
   expect_error(change("vsm:radius=2", "vsm:radius=65"), 1, "the preset 'p': vsm:radius=65 is out of range");

@@ -47,22 +47,17 @@ std::vector<float> draw(
 }
 
 TEST_F(GlTest, CompileErrorInAFilter_NamesTheUsersLine) {
-  const Error error = error_of([] { make_filter_program("\nfloat visibility() {\n  return nosuch;\n}\n"); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_EQ(error.where(), "/home/me/soft.glsl:20");
-  EXPECT_THAT(error.message(), HasSubstr("nosuch"));
-  EXPECT_THAT(error.message(), HasSubstr("'soft'"));
+  EXPECT_THAT(error_of([] { make_filter_program("\nfloat visibility() {\n  return nosuch;\n}\n"); }),
+              is_error(ErrorKind::kFilter, "/home/me/soft.glsl:20: ", "nosuch", "'soft'"));
 }
 
 TEST_F(GlTest, CompileErrorInOurPartOfTheShader_NamesOurLine) {
-  const Error error = error_of([] { make_filter_program("#define visibility nosuch\n"); });
-  EXPECT_EQ(error.where(), "lookup.frag:4");
+  EXPECT_EQ(error_of([] { make_filter_program("#define visibility nosuch\n"); }).where(), "lookup.frag:4");
 }
 
 TEST_F(GlTest, MissingFunction_IsALinkErrorOfTheFilter) {
-  const Error error = error_of([] { make_filter_program("float unrelated() { return 1.0; }\n"); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_THAT(error.message(), HasSubstr("visibility"));
+  EXPECT_THAT(error_of([] { make_filter_program("float unrelated() { return 1.0; }\n"); }),
+              is_error(ErrorKind::kFilter, "visibility"));
 }
 
 TEST_F(GlTest, CompileErrorInAShaderOfOurs_IsABug) {

@@ -111,9 +111,8 @@ TEST_P(NullDevices, RegistersThatDoNotFitSpill) {
 }
 
 TEST_P(NullDevices, RefuseWhatVulkanHasNot_WithTheLine) {
-  const Error error = error_of([&] { facts("result = gl_DepthRange.near;"); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_THAT(error.what(), HasSubstr("(program):9: Vulkan refuses this GLSL"));
+  EXPECT_THAT(error_of([&] { facts("result = gl_DepthRange.near;"); }),
+              is_error(ErrorKind::kFilter, "(program):9: Vulkan refuses this GLSL"));
 }
 
 std::vector<std::string> list_families() {

@@ -95,10 +95,8 @@ TEST_F(ExperimentFile, Mistakes_NameFileAndLine) {
   };
   for (const auto& [text, message, line] : cases) {
     SCOPED_TRACE(text);
-    const Error error = error_of([&] { expand(text); });
-    EXPECT_EQ(error.kind(), ErrorKind::kInput);
-    EXPECT_THAT(error.what(), HasSubstr(message));
-    EXPECT_THAT(error.where(), HasSubstr("e.toml:" + std::to_string(line)));
+    EXPECT_THAT(error_of([&] { expand(text); }),
+                is_error(ErrorKind::kInput, "e.toml:" + std::to_string(line), message));
   }
 }
 

@@ -67,16 +67,12 @@ TEST(Bias, ReceiverPlane_IsRefusedForFiltersThatDoNotCompareTapByTap) {
   const auto vsm = filters::load_filter(SHADOWBENCH_SOURCE_DIR "/filters/vsm.glsl");
   EXPECT_NO_THROW(require_usable(rule, filters::load_filter(SHADOWBENCH_SOURCE_DIR "/filters/poisson.glsl")));
   EXPECT_NO_THROW(require_usable({}, vsm));
-  const Error error = error_of([&] { require_usable(rule, vsm); });
-  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-  EXPECT_THAT(error.message(), HasSubstr("'vsm'"));
+  EXPECT_THAT(error_of([&] { require_usable(rule, vsm); }), is_error(ErrorKind::kUsage, "'vsm'"));
 }
 
 TEST(Bias, Mistakes_AreNamed) {
   const auto expect = [](const std::string& text, const std::string& words) {
-    const Error error = error_of([&] { parse_bias({text}); });
-    EXPECT_EQ(error.kind(), ErrorKind::kUsage) << text;
-    EXPECT_THAT(error.message(), HasSubstr(words));
+    EXPECT_THAT(error_of([&] { parse_bias({text}); }), is_error(ErrorKind::kUsage, words)) << text;
   };
   expect("slpe:texels=1", "did you mean 'slope'");
   expect("slope:texel=1", "did you mean 'texels'");

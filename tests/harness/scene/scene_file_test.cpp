@@ -536,9 +536,7 @@ TEST(SceneWriterTest, WhatNoFileTakes_IsRefusedByName) {
   Camera camera;
   camera.name = "far";
   camera.vertical_fov_rad = 3.14f;
-  const Error error = error_of([&] { settle(camera); });
-  EXPECT_EQ(error.kind(), ErrorKind::kInput);
-  EXPECT_THAT(error.message(), AllOf(HasSubstr("camera 'far'"), HasSubstr("'vertical_fov_deg'")));
+  EXPECT_THAT(error_of([&] { settle(camera); }), is_error(ErrorKind::kInput, "camera 'far'", "'vertical_fov_deg'"));
 }
 
 }  // namespace

@@ -349,9 +349,7 @@ class TunedParameters : public ::testing::Test {
   }
 
   void expect_refusal(const std::filesystem::path& file, const std::string& words) {
-    const Error error = error_of([&] { apply("vsm", file); });
-    EXPECT_EQ(error.kind(), ErrorKind::kInput) << words;
-    EXPECT_THAT(error.what(), AllOf(HasSubstr(words), HasSubstr("tuned.json")));
+    EXPECT_THAT(error_of([&] { apply("vsm", file); }), is_error(ErrorKind::kInput, words, "tuned.json")) << words;
   }
 
   TestFolder folder_;

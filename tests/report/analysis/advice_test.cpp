@@ -46,9 +46,7 @@ Advice rank(const std::vector<CellRecord>& cells, LightMotion light = LightMotio
 
 void expect_refusal(const std::vector<CellRecord>& cells, const AdviceRequest& request, ErrorKind kind,
                     const std::string& word) {
-  const Error error = error_of([&] { advise(cells, request); });
-  EXPECT_EQ(error.kind(), kind);
-  EXPECT_THAT(error.what(), HasSubstr(word));
+  EXPECT_THAT(error_of([&] { advise(cells, request); }), is_error(kind, word));
 }
 
 TEST(Advice, WorstPlace_DecidesALimit) {

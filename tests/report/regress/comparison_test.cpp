@@ -419,10 +419,10 @@ class ToleranceFile : public ::testing::Test {
 
   /// Expects one message that names the line and holds the words.
   void expect_refusal(const std::string& text, int line, const std::string& words) const {
-    const Error error = error_of([&] { read(text); });
-    EXPECT_EQ(error.kind(), ErrorKind::kInput) << text;
-    EXPECT_EQ(error.where(), (folder_.path() / "tolerances.toml").string() + ":" + std::to_string(line));
-    EXPECT_THAT(error.message(), HasSubstr(words));
+    EXPECT_THAT(error_of([&] { read(text); }),
+                is_error(ErrorKind::kInput,
+                         (folder_.path() / "tolerances.toml").string() + ":" + std::to_string(line) + ": ", words))
+        << text;
   }
 
   TestFolder folder_;

@@ -278,11 +278,8 @@ TEST(GltfFileTest, ReferencesOutOfTheFolder_AreRefusedInEverySpelling) {
        {secret, "file://" + secret, std::string("../secret.bin"), std::string("./.././secret.bin"),
         std::string("x/../../secret.bin"), std::string("%2e%2e/secret.bin"), std::string("%2E%2E%2Fsecret.bin"),
         std::string("..%2fsecret.bin"), "/" + secret, std::string("../../../../../../../../etc/passwd"),
-        std::string("/etc/passwd"), std::string("..\\u0000/secret.bin"), std::string("data.bin\\u0000../secret.bin")}) {
-    const Error error = error_of([&] { import_with(folder, uri); });
-    EXPECT_EQ(error.kind(), ErrorKind::kInput) << uri;
-    EXPECT_THAT(error.where(), HasSubstr("test.gltf")) << uri;
-  }
+        std::string("/etc/passwd"), std::string("..\\u0000/secret.bin"), std::string("data.bin\\u0000../secret.bin")})
+    EXPECT_THAT(error_of([&] { import_with(folder, uri); }), is_error(ErrorKind::kInput, "test.gltf")) << uri;
 }
 
 TEST(GltfFileTest, LinksOutOfTheFolder_AreRefused_OthersFollowed) {
@@ -334,8 +331,8 @@ TEST(GltfFileTest, NotFiniteVertex_IsNamedByTheMesh) {
   folder.write("data.bin", parts.buffer);
   MeshFile model = import_gltf(folder.write("test.gltf", gltf_of(parts)));
   Scene scene = add_mesh_file({}, std::move(model));
-  const Error error = error_of([&] { validate_geometry(scene, "test.gltf"); });
-  EXPECT_THAT(error.message(), AllOf(HasSubstr("'quad'"), HasSubstr("not finite")));
+  EXPECT_THAT(error_of([&] { validate_geometry(scene, "test.gltf"); }),
+              is_error(ErrorKind::kInput, "'quad'", "not finite"));
 }
 
 TEST(GltfFileTest, MissingOrShortBuffer_IsAnError) {
@@ -344,8 +341,8 @@ TEST(GltfFileTest, MissingOrShortBuffer_IsAnError) {
   EXPECT_THAT(complaint_about_gltf(parts), HasSubstr("absent.bin"));
   const TestFolder folder;
   folder.write("data.bin", "short");
-  const Error error = error_of([&] { import_gltf(folder.write("test.gltf", gltf_of({}))); });
-  EXPECT_THAT(error.message(), HasSubstr("data.bin"));
+  EXPECT_THAT(error_of([&] { import_gltf(folder.write("test.gltf", gltf_of({}))); }),
+              is_error(ErrorKind::kInput, "data.bin"));
 }
 
 TEST(GltfFileTest, RequiredExtensionThatIsNotRead_IsNamed) {
@@ -518,11 +515,8 @@ TEST(GltfTextureTest, TextureTransform_MayNameOtherTextureCoordinates) {
 TEST(GltfTextureTest, TextureTransformOfOtherThanNumbers_IsAnError) {
   for (const auto& [transform, complaint] :
        {std::pair(R"({"offset": [1]})", "the offset"), std::pair(R"({"scale": [1, "x"]})", "the scale"),
-        std::pair(R"({"scale": 2})", "the scale"), std::pair(R"({"rotation": [1]})", "the rotation")}) {
-    const Error error = error_of([&, text = transform] { transformed_uvs(text); });
-    EXPECT_EQ(error.kind(), ErrorKind::kInput);
-    EXPECT_THAT(error.message(), HasSubstr(complaint));
-  }
+        std::pair(R"({"scale": 2})", "the scale"), std::pair(R"({"rotation": [1]})", "the rotation")})
+    EXPECT_THAT(error_of([&, text = transform] { transformed_uvs(text); }), is_error(ErrorKind::kInput, complaint));
 }
 
 TEST(GltfTextureTest, UnreadableOrOutsideTexture_IsAnError) {
