@@ -1,9 +1,7 @@
 #include "harness/scene/complete.h"
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "harness/scene/load.h"
-#include "harness/scene/mesh_tools.h"
+#include "tests/harness/scene/made_scenes.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::scene {
@@ -13,30 +11,19 @@ namespace {
 
 constexpr ViewFreedom kAllFree{.camera = true, .sun = true};
 
-Mesh moved(const Mesh& mesh, const glm::dvec3& by) { return transform_mesh(mesh, glm::translate(glm::dmat4(1.0), by)); }
-
-Scene make_bare(std::vector<Mesh> meshes) {
-  Scene scene;
-  scene.materials.emplace_back();
-  scene.meshes = std::move(meshes);
-  return scene;
-}
-
 /// A wall that faces the usual camera, which stands on its side in shadow, and a box behind it.
 Scene make_wall() {
-  return make_bare({moved(make_box({8.0f, 4.0f, 0.2f}, 1), {0.0, 2.0, 0.0}),
-                    moved(make_box({1.0f, 1.0f, 1.0f}, 1), {0.0, 2.0, -1.5})});
+  return make_scene_of({move_mesh(make_box({8.0f, 4.0f, 0.2f}, 1), {0.0, 2.0, 0.0}),
+                        move_mesh(make_box({1.0f, 1.0f, 1.0f}, 1), {0.0, 2.0, -1.5})});
 }
 
 Scene make_box_on_floor() {
-  return make_bare({make_plane({6.0f, 6.0f}, 1), moved(make_box({1.0f, 1.0f, 1.0f}, 1), {0.0, 0.5, 0.0})});
+  return make_scene_of({make_plane({6.0f, 6.0f}, 1), move_mesh(make_box({1.0f, 1.0f, 1.0f}, 1), {0.0, 0.5, 0.0})});
 }
 
-Camera make_camera() {
-  Camera camera;
+Camera make_own_camera() {
+  Camera camera = make_camera({1.0f, 6.0f, -7.0f}, {-1.0f, -6.0f, 7.0f});
   camera.name = "own";
-  camera.position_ws = {1.0f, 6.0f, -7.0f};
-  camera.forward_ws = glm::normalize(-camera.position_ws);
   return camera;
 }
 
@@ -71,8 +58,8 @@ TEST(ViewChoice, ChosenSun_ShinesOnSidesThatAreSeen) {
 Scene make_street(float length_m) {
   std::vector<Mesh> meshes = {make_plane({8.0f, length_m}, 1)};
   for (double z = 2.0 - 0.5 * static_cast<double>(length_m); z < 0.5 * static_cast<double>(length_m); z += 5.0)
-    for (const double x : {-3.0, 3.0}) meshes.push_back(moved(make_box({1.0f, 6.0f, 1.0f}, 1), {x, 3.0, z}));
-  return make_bare(meshes);
+    for (const double x : {-3.0, 3.0}) meshes.push_back(move_mesh(make_box({1.0f, 6.0f, 1.0f}, 1), {x, 3.0, z}));
+  return make_scene_of(meshes);
 }
 
 TEST(Completion, CameraOfAStreet_StandsInItAtEyeHeight_AndLooksAlongIt) {
@@ -97,8 +84,8 @@ TEST(Completion, WithAFloorUnderAPartAlone_TheCameraStaysOutside) {
 TEST(ViewChoice, LongWallWithBoxesBefore_IsSeenFromAnEnd_UnlessItIsHigh) {
   const auto choose = [](float height_m) {
     std::vector<Mesh> meshes = {make_box({20.0f, height_m, 0.2f}, 1)};
-    for (int i = -4; i <= 4; ++i) meshes.push_back(moved(make_box({0.8f, 0.8f, 0.8f}, 1), {2.0 * i, 0.5 * i, 1.0}));
-    return choose_view(make_bare(meshes), kAllFree);
+    for (int i = -4; i <= 4; ++i) meshes.push_back(move_mesh(make_box({0.8f, 0.8f, 0.8f}, 1), {2.0 * i, 0.5 * i, 1.0}));
+    return choose_view(make_scene_of(meshes), kAllFree);
   };
   EXPECT_LT(std::abs(std::sin(glm::radians(choose(8.0f).angles.camera.azimuth_deg))), 0.8);
   const ViewChoice choice = choose(6.0f);
@@ -116,7 +103,7 @@ TEST(Completion, ChosenDirectionsDoNotDependOnTheSizeOfThePicture) {
 
 TEST(Completion, CameraOfItsOwn_StaysAndOnlyTheSunIsChosen) {
   Scene own = make_wall();
-  own.cameras = {make_camera()};
+  own.cameras = {make_own_camera()};
   const Scene scene = complete(own, {.needs_sun = true}, "x");
   ASSERT_EQ(scene.cameras.size(), 1U);
   EXPECT_EQ(scene.cameras[0].name, "own");
@@ -153,7 +140,7 @@ TEST(Completion, PlaceThatWasAskedFor_IsWhereTheSunStands) {
 
 TEST(Completion, NothingIsChosenWhereNothingLacks) {
   Scene own = make_wall();
-  own.cameras = {make_camera()};
+  own.cameras = {make_own_camera()};
   const Scene scene = complete(own, {}, "x");
   EXPECT_EQ(scene.cameras[0].position_ws, own.cameras[0].position_ws);
   EXPECT_EQ(to_light(scene.light, {}), to_light(own.light, {}));
@@ -165,7 +152,7 @@ TEST(Completion, NoEdgeAnywhere_IsTheUsualViewAndAWarning) {
   const std::vector<Mesh> shadowless = {make_triangle(), make_plane({2.0f, 2.0f}, 4), make_box({1.0f, 1.0f, 1.0f}, 2),
                                         make_sphere(1.0f, 24)};
   for (const Mesh& mesh : shadowless) {
-    const Scene bare = make_bare({mesh});
+    const Scene bare = make_scene_of({mesh});
     const Scene scene = complete(bare, {.needs_sun = true}, "x");
     const ViewAngles usual = usual_view(bare.bounds());
     EXPECT_EQ(to_light(scene.light, {}), to_light(place_in_sky({}, usual.sun), {}));
@@ -176,20 +163,21 @@ TEST(Completion, NoEdgeAnywhere_IsTheUsualViewAndAWarning) {
 }
 
 TEST(Completion, MoreThanAMillionTriangles_GetTheUsualView) {
-  const Scene scene = complete(make_bare({make_plane({2.0f, 2.0f}, 730)}), {.needs_sun = true}, "x");
+  const Scene scene = complete(make_scene_of({make_plane({2.0f, 2.0f}, 730)}), {.needs_sun = true}, "x");
   EXPECT_THAT(scene.warnings, IsEmpty());
   EXPECT_THAT(scene.notes, ElementsAre(AllOf(HasSubstr("azimuth 30, elevation 24"), HasSubstr("1048576 triangles"))));
 }
 
 TEST(Completion, FloorUnderATriangle_ShowsItsShadow) {
-  const Scene scene = complete(make_bare({make_triangle()}), {.needs_sun = true, .ground = true}, "x");
+  const Scene scene = complete(make_scene_of({make_triangle()}), {.needs_sun = true, .ground = true}, "x");
   EXPECT_THAT(scene.warnings, IsEmpty());
   EXPECT_THAT(scene.notes, ElementsAre(HasSubstr("edges of shadows")));
 }
 
 TEST(Completion, EachOfSeveralLights_HasAViewOfItsOwn_ALampFromNearBy) {
-  Scene wide = make_bare({make_plane({40.0f, 40.0f}, 1), moved(make_box({1.0f, 1.0f, 1.0f}, 1), {8.0, 0.5, 8.0}),
-                          moved(make_box({2.0f, 6.0f, 2.0f}, 1), {-10.0, 3.0, -10.0})});
+  Scene wide =
+      make_scene_of({make_plane({40.0f, 40.0f}, 1), move_mesh(make_box({1.0f, 1.0f, 1.0f}, 1), {8.0, 0.5, 8.0}),
+                     move_mesh(make_box({2.0f, 6.0f, 2.0f}, 1), {-10.0, 3.0, -10.0})});
   wide.light = place_in_sky({}, {60.0, 35.0});
   wide.light.name = "sun";
   Light& spot = wide.other_lights.emplace_back();
@@ -212,25 +200,6 @@ TEST(Completion, EachOfSeveralLights_HasAViewOfItsOwn_ALampFromNearBy) {
 }
 
 // The edges of shadows in coarse views: whose they are, and how a view is scored.
-
-/// A square sheet high over the middle of a floor. The camera looks straight down; the sun stands so low that the
-/// sheet's shadow lies beside it.
-Scene make_sheet_over_floor() {
-  Scene scene;
-  scene.materials.resize(2);
-  scene.meshes = {
-      make_plane({8.0f, 8.0f}, 1),
-      transform_mesh(make_plane({1.0f, 1.0f}, 1), glm::translate(glm::dmat4(1.0), glm::dvec3(-2.0, 2.0, 0.0)))};
-  scene.meshes[1].material = 1;
-  Camera camera;
-  camera.position_ws = {0.0f, 10.0f, 0.0f};
-  camera.forward_ws = {0.0f, -1.0f, 0.0f};
-  camera.up_ws = {0.0f, 0.0f, -1.0f};
-  camera.orthographic_height_m = 6.0f;
-  scene.cameras = {camera};
-  scene.light = place_in_sky({}, {-90.0, 40.0});
-  return scene;
-}
 
 EdgeCount count(const Scene& scene) { return EdgeMeter(scene).count(scene.cameras[0], scene.light, 1.0); }
 
@@ -265,7 +234,7 @@ TEST(EdgeMeter, PenumbraeFollowFromTheLightsSizeAndTheOccludersDistance) {
 
 TEST(EdgeMeter, PerspectiveAndOrthographicCamerasSeeTheSameEdges) {
   Scene scene = make_sheet_over_floor();
-  scene.meshes[1] = transform_mesh(scene.meshes[1], glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, -1.5, 0.0)));
+  scene.meshes[1] = move_mesh(scene.meshes[1], {0.0, -1.5, 0.0});
   const int flat = count(scene).at_edge;
   scene.cameras[0].position_ws.y = 1000.0f;
   scene.cameras[0].orthographic_height_m = 0.0f;
@@ -277,7 +246,7 @@ TEST(EdgeMeter, PerspectiveAndOrthographicCamerasSeeTheSameEdges) {
 TEST(EdgeMeter, SilhouettesAreNoEdgesOfShadows) {
   Scene scene = make_sheet_over_floor();
   // 0.3 m high, the sheet leaves 0.36 m of its shadow to be seen. Where the lit sheet hides the rest is no edge.
-  scene.meshes[1] = transform_mesh(scene.meshes[1], glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, -1.7, 0.0)));
+  scene.meshes[1] = move_mesh(scene.meshes[1], {0.0, -1.7, 0.0});
   EXPECT_NEAR(count(scene).at_edge, 2 * 16 * (0.36 + 1.0 + 0.36) - 2, 6);
 }
 
@@ -320,8 +289,8 @@ TEST(EdgeMeter, WhatCastsNoShadow_IsStillSeenAndShadowed) {
 
 TEST(EdgeMeter, HolesOfAMaterialLetTheLightThrough) {
   Scene scene = make_sheet_over_floor();
-  scene.materials[1].alpha_mode = AlphaMode::kMask;
-  scene.materials[1].base_color.a = 0.2f;
+  scene.materials.push_back({.name = "cut out", .base_color = {1, 1, 1, 0.2f}, .alpha_mode = AlphaMode::kMask});
+  scene.meshes[1].material = 1;
   EXPECT_EQ(count(scene).at_edge, 0);
 }
 

@@ -13,6 +13,17 @@ inline scene::Scene load_own_scene(const std::string& name) {
   return scene::load(name, {.scenes_folder = std::filesystem::path(SHADOWBENCH_SOURCE_DIR) / "data" / "scenes"});
 }
 
+/// Whether a place in a map, u and v in texels, keeps this distance from its border.
+inline bool is_padded(const glm::dvec3& place, double map_size, double pad) {
+  return std::min(place.x, place.y) >= pad - 1e-3 && std::max(place.x, place.y) <= map_size - pad + 1e-3;
+}
+
+inline void expect_padded(const glm::dvec3& place, double map_size, double pad) {
+  EXPECT_TRUE(is_padded(place, map_size, pad)) << place.x << " " << place.y;
+  EXPECT_GT(place.z, 0.0);
+  EXPECT_LT(place.z, 1.0);
+}
+
 /// Expects the same triangles in the same order, and the same materials on them, float for float.
 inline void expect_same_geometry(const scene::Scene& a, const scene::Scene& b) {
   ASSERT_EQ(a.meshes.size(), b.meshes.size());

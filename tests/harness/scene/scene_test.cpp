@@ -66,10 +66,8 @@ TEST(ValidateTest, WhatCannotBeDrawn_IsNamed) {
   for (const auto& [spoil, message] : all) {
     Scene scene = make_scene();
     spoil(scene);
-    const Error error = error_of([&] { validate(scene, "file.toml"); });
-    EXPECT_EQ(error.kind(), ErrorKind::kInput) << message;
-    EXPECT_EQ(error.where(), "file.toml") << message;
-    EXPECT_THAT(error.message(), HasSubstr(message));
+    EXPECT_THAT(error_of([&] { validate(scene, "file.toml"); }), is_error(ErrorKind::kInput, "file.toml: ", message))
+        << message;
   }
 }
 
@@ -424,35 +422,26 @@ TEST(PrimitivesTest, Plane_FacesUpAndHasItsAreaAndCells) {
   for (std::size_t i = 0; i < plane.indices.size(); i += 3) EXPECT_GT(face_normal(plane, i).y, 0.0);
 }
 
-TEST(PrimitivesTest, Box_IsClosedFacesOutwardAndHasItsSize) {
-  const Mesh box = make_box({1.0f, 2.0f, 0.25f}, 8);
-  expect_sound(box);
-  EXPECT_TRUE(has_no_open_edge(box));
-  EXPECT_NEAR(volume_of(box), 0.5, 1e-6);
+/// Expects a closed mesh whose faces point outward, of this volume but for a share.
+void expect_solid(const Mesh& mesh, double volume, double precision = 1e-6) {
+  expect_sound(mesh);
+  EXPECT_TRUE(has_no_open_edge(mesh));
+  EXPECT_NEAR(volume_of(mesh) / volume, 1.0, precision);
+}
+
+TEST(PrimitivesTest, Solids_AreClosed_FaceOutward_AndHaveTheirSize) {
+  const Mesh box = make_box({1.0f, 2.0f, 0.25f}, 8), sphere = make_sphere(2.0f, 96);
+  expect_solid(box, 0.5);
   EXPECT_NEAR(area_of(box), 2.0 * (2.0 + 0.5 + 0.25), 1e-6);
   EXPECT_EQ(box.indices.size(), 2U * 6U * (4U * 8U + 8U * 1U + 4U * 1U));
-}
-
-TEST(PrimitivesTest, Sphere_IsClosedFacesOutwardAndNearsItsVolume) {
-  const Mesh sphere = make_sphere(2.0f, 96);
-  expect_sound(sphere);
-  EXPECT_TRUE(has_no_open_edge(sphere));
-  EXPECT_NEAR(volume_of(sphere) / (32.0 / 3.0 * std::numbers::pi), 1.0, 5e-3);
+  expect_solid(sphere, 32.0 / 3.0 * std::numbers::pi, 5e-3);
   for (const Vertex& v : sphere.vertices) EXPECT_NEAR(glm::length(v.position_ws), 2.0f, 1e-5f);
-}
-
-TEST(PrimitivesTest, Cylinder_IsClosedFacesOutwardAndNearsItsVolume) {
-  const Mesh cylinder = make_cylinder(0.5f, 3.0f, {.segments = 64, .cells = 6});
-  expect_sound(cylinder);
-  EXPECT_TRUE(has_no_open_edge(cylinder));
-  EXPECT_NEAR(volume_of(cylinder) / (0.75 * std::numbers::pi), 1.0, 5e-3);
+  expect_solid(make_cylinder(0.5f, 3.0f, {.segments = 64, .cells = 6}), 0.75 * std::numbers::pi, 5e-3);
 }
 
 TEST(PrimitivesTest, Bars_AreAsManyAsCountedAndSpacedAsSaid) {
   const Mesh bars = make_bars({.count = 3, .bar_width_m = 0.1f, .spacing_m = 0.5f, .length_m = 2.0f});
-  expect_sound(bars);
-  EXPECT_TRUE(has_no_open_edge(bars));
-  EXPECT_NEAR(volume_of(bars), 3 * 0.1 * 0.1 * 2.0, 1e-6);
+  expect_solid(bars, 3 * 0.1 * 0.1 * 2.0, 2e-5);
   Bounds box;
   for (const Vertex& v : bars.vertices) box.add(v.position_ws);
   EXPECT_FLOAT_EQ(box.max.x, 0.55f);

@@ -3,8 +3,8 @@
 #include "harness/scene/lights/light.h"
 #include "harness/scene/lights/light_fit.h"
 #include "harness/scene/load.h"
-#include "harness/scene/mesh_tools.h"
 #include "tests/harness/scene/gltf_parts.h"
+#include "tests/harness/scene/made_scenes.h"
 #include "tests/harness/scene/same_scene.h"
 
 namespace shadowbench::scene {
@@ -15,11 +15,8 @@ constexpr double kSpotPadding = 5.5;
 
 /// A floor under a box, and a spot that looks at it from somewhere.
 Scene make_spot_scene(const glm::vec3& position) {
-  Scene scene;
-  scene.meshes.push_back(make_plane({10.0f, 8.0f}, 4));
-  scene.meshes.push_back(make_box({1.0f, 2.0f, 0.5f}, 2));
-  scene.light.kind = Spot{position, {0.3f, 0.2f, -0.1f}, 50.0f, 40.0f, 0.1f};
-  return scene;
+  return make_scene_of({make_plane({10.0f, 8.0f}, 4), make_box({1.0f, 2.0f, 0.5f}, 2)},
+                       Spot{position, {0.3f, 0.2f, -0.1f}, 50.0f, 40.0f, 0.1f});
 }
 
 const std::vector<glm::vec3> kLampPositions{
@@ -161,12 +158,7 @@ TEST(PointLight, ItsSixFacesHoldEverythingAround_WithTheirPadding) {
       const int face = face_of(p - light);
       met.insert(face);
       const glm::dvec3 place = faces[static_cast<std::size_t>(face)].place(p, 256);
-      for (int axis = 0; axis < 2; ++axis) {
-        EXPECT_GE(place[axis], 5.0 - 1e-3);
-        EXPECT_LE(place[axis], 251.0 + 1e-3);
-      }
-      EXPECT_GT(place.z, 0.0);
-      EXPECT_LT(place.z, 1.0);
+      test::expect_padded(place, 256, 5.0);
     }
   }
   EXPECT_EQ(met.size(), 6u) << "the scene stands all around its light";
@@ -218,18 +210,8 @@ LightFrustum fit_warp(const Scene& scene, FitMode mode, const glm::dvec2& shift_
 
 /// A long floor that the camera looks along, from 2 m above it; the sun stands at right angles to its view.
 Scene make_runway() {
-  Scene scene;
-  scene.name = "runway";
-  scene.meshes.push_back(make_plane({40.0f, 200.0f}, 4));
-  scene.meshes.back().material = 0;
-  scene.materials.emplace_back();
-  scene.light.kind = Sun{{0.0f, -1.0f, 0.0f}, 0.5f};
-  Camera camera;
-  camera.position_ws = {0.0f, 2.0f, 101.0f};
-  camera.forward_ws = {0.0f, 0.0f, -1.0f};
-  camera.vertical_fov_rad = 0.8f;
-  scene.cameras.push_back(camera);
-  return scene;
+  return make_scene_of({make_plane({40.0f, 200.0f}, 4)}, Sun{{0.0f, -1.0f, 0.0f}, 0.5f},
+                       {make_camera({0.0f, 2.0f, 101.0f}, {0.0f, 0.0f, -1.0f})});
 }
 
 /// A place on the runway, that far ahead of the camera.
@@ -355,10 +337,7 @@ TEST(WarpedMap, StaysFiniteWhereThereIsNothingToWarp) {
       const LightFrustum fit = fit_warp(*scene, mode);
       for (const glm::dvec3& p : list_visible_corners(*scene, scene->cameras.front(), kWarpAspect)) {
         const glm::dvec3 place = fit.place(p, kWarpMap);
-        for (int axis = 0; axis < 2; ++axis) {
-          EXPECT_GE(place[axis], kWarpPad - 1e-3) << name_of(mode);
-          EXPECT_LE(place[axis], kWarpMap - kWarpPad + 1e-3) << name_of(mode);
-        }
+        EXPECT_TRUE(test::is_padded(place, kWarpMap, kWarpPad)) << name_of(mode);
         EXPECT_TRUE(std::isfinite(fit.texel_size_at(p)));
       }
       EXPECT_GT(fit.texel_size_ws, 0.0);
@@ -373,10 +352,8 @@ TEST(WarpedMap, StaysFiniteWhereThereIsNothingToWarp) {
 TEST(WarpedMap, CannotBeSnapped) {
   const Scene scene = test::load_own_scene("avenue");
   for (const FitMode mode : kWarps) {
-    const Error error =
-        error_of([&] { fit_light(scene, {.mode = mode, .snap = true, .camera = &scene.cameras.front()}); });
-    EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-    EXPECT_THAT(error.message(), HasSubstr("--snap on"));
+    EXPECT_THAT(error_of([&] { fit_light(scene, {.mode = mode, .snap = true, .camera = &scene.cameras.front()}); }),
+                is_error(ErrorKind::kUsage, "--snap on"));
   }
 }
 

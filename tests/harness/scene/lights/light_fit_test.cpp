@@ -1,9 +1,7 @@
 #include "harness/scene/lights/light_fit.h"
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "harness/scene/load.h"
-#include "harness/scene/mesh_tools.h"
+#include "tests/harness/scene/made_scenes.h"
 #include "tests/harness/scene/same_scene.h"
 #include "tests/test_files.h"
 
@@ -15,13 +13,11 @@ const std::vector<glm::vec3> kDirections{{0, -1, 0}, {0, 1, 0},      {1, 0, 0}, 
                                          {1, 1, 0},  {1e-8f, -1, 0}, {-3, -4, 0}};
 
 Scene make_scene(glm::vec3 direction, glm::vec3 offset = glm::vec3(0.0f)) {
-  Scene scene;
-  const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), glm::dvec3(offset));
-  const glm::dmat4 raised = glm::translate(moved, glm::dvec3(1.0, 1.5, -2.0));
-  scene.meshes.push_back(transform_mesh(make_plane({10.0f, 8.0f}, 4), moved));
-  scene.meshes.back().casts_shadow = false;
-  scene.meshes.push_back(transform_mesh(make_box({1.0f, 2.0f, 0.5f}, 2), raised));
-  scene.light.kind = Sun{glm::normalize(direction)};
+  const glm::dvec3 by(offset);
+  Scene scene = make_scene_of({move_mesh(make_plane({10.0f, 8.0f}, 4), by),
+                               move_mesh(make_box({1.0f, 2.0f, 0.5f}, 2), by + glm::dvec3(1.0, 1.5, -2.0))},
+                              Sun{glm::normalize(direction)});
+  scene.meshes.front().casts_shadow = false;
   return scene;
 }
 
@@ -165,14 +161,12 @@ TEST_P(LightFitTest, WindowWithoutPlanes_KeepsTheFittedDepth) {
 }
 
 TEST(LightFitTest, PaddingThatLeavesNoTexel_IsAUsageError) {
-  const Error error = error_of([] { fit_light(make_scene({0, -1, 0}), FitMode::kTight, 16, 8.0); });
-  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+  const auto fit = [] { fit_light(make_scene({0, -1, 0}), FitMode::kTight, 16, 8.0); };
+  EXPECT_EQ(error_of(fit).kind(), ErrorKind::kUsage);
 }
 
-Camera make_camera(glm::vec3 position, glm::vec3 forward) {
-  Camera camera;
-  camera.position_ws = position;
-  camera.forward_ws = glm::normalize(forward);
+Camera make_narrow_camera(const glm::vec3& position, const glm::vec3& forward) {
+  Camera camera = make_camera(position, forward);
   camera.vertical_fov_rad = 0.5f;
   return camera;
 }
@@ -196,7 +190,7 @@ bool sees(const Camera& camera, const glm::dvec3& p) {
 }
 
 TEST(LightFitView, HoldsEveryVisiblePointWithItsPadding_AndIsSmallerThanTight) {
-  const Camera camera = make_camera({-3.0f, 2.0f, 4.0f}, {0.2f, -0.9f, -0.5f});
+  const Camera camera = make_narrow_camera({-3.0f, 2.0f, 4.0f}, {0.2f, -0.9f, -0.5f});
   for (const glm::vec3& direction : kDirections) {
     const Scene scene = make_scene(direction);
     for (const bool snap : {false, true}) {
@@ -224,7 +218,7 @@ TEST(LightFitView, HoldsEveryVisiblePointWithItsPadding_AndIsSmallerThanTight) {
 /// The box stands out of view, between the light and what is seen.
 TEST(LightFitView, CasterOutOfView_LiesInsideTheDepthRange) {
   Scene scene = make_scene({0, -1, 0});
-  const Camera camera = make_camera({1.0f, 1.0f, -1.0f}, {0.0f, -0.9f, -0.5f});
+  const Camera camera = make_narrow_camera({1.0f, 1.0f, -1.0f}, {0.0f, -0.9f, -0.5f});
   const LightFrustum fit = fit_view(scene, camera);
   const glm::vec4 top = fit.uv_depth_from_world * glm::vec4(1.0f, 2.5f, -2.0f, 1.0f);
   EXPECT_FALSE(sees(camera, {1.0, 2.5, -2.0}));
@@ -237,7 +231,7 @@ TEST(LightFitView, CasterOutOfView_LiesInsideTheDepthRange) {
 
 TEST(LightFitView, CameraThatSeesNothing_GetsTheTightFit) {
   const Scene scene = make_scene({1, -2, 0.5f});
-  const Camera camera = make_camera({0.0f, 10.0f, 0.0f}, {0.1f, 1.0f, 0.0f});
+  const Camera camera = make_narrow_camera({0.0f, 10.0f, 0.0f}, {0.1f, 1.0f, 0.0f});
   EXPECT_EQ(fit_view(scene, camera).width_ws, fit_light(scene, FitMode::kTight, 256, 3.0).width_ws);
 }
 
@@ -245,7 +239,7 @@ TEST(LightFitSnap, CameraMovedByLessThanATexel_LeavesTheGridWhereItWas) {
   const Scene scene = make_scene({1, -2, 0.5f});
   const glm::dvec3 mark(0.3, 0.0, -0.7);
   const auto camera_at = [](int step) {
-    return make_camera({-2.0f + 0.0031f * static_cast<float>(step), 3.0f, 4.0f}, {0.3f, -0.9f, -0.7f});
+    return make_narrow_camera({-2.0f + 0.0031f * static_cast<float>(step), 3.0f, 4.0f}, {0.3f, -0.9f, -0.7f});
   };
   const LightFrustum first = fit_view(scene, camera_at(0), true), loose = fit_view(scene, camera_at(0), false);
   ASSERT_LT(0.0031, 0.5 * first.texel_size_ws);
@@ -303,11 +297,8 @@ TEST(FitRule, SaysWhatIsWrong) {
       {"cascades:splits=5,split=1", "split and splits are both given"},
       {"cascades:near=9,far=8", "8 m follows 9 m"},
   };
-  for (const auto& [text, message] : wrong) {
-    const Error error = error_of([&, text = text] { parse_fit_rule(text); });
-    EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-    EXPECT_THAT(error.message(), HasSubstr(message));
-  }
+  for (const auto& [text, message] : wrong)
+    EXPECT_THAT(error_of([&, text = text] { parse_fit_rule(text); }), is_error(ErrorKind::kUsage, message));
 }
 
 TEST(SplitDepths, AreUniform_Logarithmic_OrTheirMean) {
@@ -343,12 +334,7 @@ TEST(Cascades, EachHoldsWhatItServes_WithItsPadding) {
         if (depth < slice.fade_in_begin || depth > slice.end_m) continue;
         ++served;
         const glm::dvec3 place = layer.place(p, 1024);
-        for (int axis = 0; axis < 2; ++axis) {
-          EXPECT_GE(place[axis], 4.0 - 1e-3);
-          EXPECT_LE(place[axis], 1020.0 + 1e-3);
-        }
-        EXPECT_GT(place.z, 0.0);
-        EXPECT_LT(place.z, 1.0);
+        test::expect_padded(place, 1024, 4.0);
       }
     }
     EXPECT_GT(served, 1000);
