@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "filters/catalogue.h"
+#include "filters/front_matter.h"
 #include "filters/model.h"
 
 namespace shadowbench::filters {
@@ -31,6 +32,19 @@ inline const Catalogue& built_in() {
 }
 
 inline FilterRequest request_of(const std::string& text) { return built_in().parse_requests(text).front(); }
+
+/// A filter's file that is right: these lines of its front matter begin at line 5.
+inline std::string write_filter(const std::string& lines, const std::string& glsl, const char* kind = "other") {
+  return std::string("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"") + kind + "\"\n" + lines + "+++*/\n" + glsl;
+}
+
+/// What such a file asks for by its defaults.
+inline FilterRequest request_of_file(const std::string& text, const std::string& name = "test.glsl") {
+  FilterRequest request;
+  request.spec = parse_filter(text, name);
+  request.values = default_values(request.spec);
+  return request;
+}
 
 /// Looks receivers up by a filter.
 class Filtered {

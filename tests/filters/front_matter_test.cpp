@@ -13,14 +13,13 @@ const std::string kStored = "vec4 encode(EncodeInput e) { return vec4(0); }\n" +
 
 /// Puts lines into the front matter of a filter that is otherwise right; they start at line 6.
 std::string with(const std::string& lines, const std::string& glsl = kLit) {
-  return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = 2\n" + lines + "+++*/\n" + glsl;
+  return write_filter("radius_texels = 2\n" + lines, glsl);
 }
 
 void expect_error(const std::string& text, int line, const std::string& words) {
-  const Error error = error_of([&] { parse_filter(text, "mine.glsl"); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter) << text;
-  EXPECT_EQ(error.where(), fmt::format("mine.glsl:{}", line)) << error.what();
-  EXPECT_THAT(error.message(), HasSubstr(words));
+  EXPECT_THAT(error_of([&] { parse_filter(text, "mine.glsl"); }),
+              is_error(ErrorKind::kFilter, fmt::format("mine.glsl:{}", line) + ": ", words))
+      << text;
 }
 
 TEST(FrontMatter, GivesEveryField) {
@@ -93,8 +92,7 @@ TEST(FrontMatter, MissingOrMalformed_NamesTheLine) {
 TEST(FrontMatter, UnknownKeysAndValues_SuggestTheNearest) {
   expect_error(with("clams = []\n"), 6, "did you mean 'claims'");
   expect_error(with("[param.a]\ndefault = 1.0\nmni = 0.0\nmax = 2.0\ntext = \"x\"\n"), 8, "did you mean 'min'");
-  expect_error("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"fast\"\n+++*/\nfloat visibility(Receiver r) {}", 4,
-               "'fast'");
+  expect_error(write_filter("", kLit, "fast"), 4, "'fast'");
 }
 
 TEST(FrontMatter, WrongTypes_AreRefused) {
@@ -141,11 +139,8 @@ TEST(FrontMatter, WhatTheMapHolds_IsDeclared) {
 TEST(FrontMatter, NoVisibility_IsRefused) { expect_error(with("", "float lit() { return 1.0; }"), 1, "visibility"); }
 
 TEST(FrontMatter, PrefilterRadius_MustBeWhole) {
-  expect_error(
-      "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = \"linear\"\nradius_texels = "
-      "1.5\n+++*/\n" +
-          kStored,
-      6, "whole number");
+  expect_error(write_filter("store = \"r32f\"\ncombine = \"linear\"\nradius_texels = 1.5\n", kStored), 6,
+               "whole number");
 }
 
 TEST(FrontMatter, LongBlanksAndNames_DoNotExhaustTheStack) {
@@ -175,9 +170,11 @@ TEST(FrontMatter, FunctionsAreFoundAsWholeWords) {
 TEST(FrontMatter, ChoicesAreOfOneType_AndBoundWhatTheyDrive) {
   expect_error(with("[param.a]\ndefault = 1\nchoices = [1, \"x\"]\ntext = \"x\"\n"), 7, "different types");
   const auto with_radius = [](const std::string& choices) {
-    return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\ncombine = "
-           "\"linear\"\nradius_texels = \"radius\"\n[param.radius]\ndefault = 1\nchoices = " +
-           choices + "\ntext = \"x\"\n+++*/\n" + kStored;
+    return write_filter(
+        "store = \"r32f\"\ncombine = \"linear\"\nradius_texels = \"radius\"\n[param.radius]\n"
+        "default = 1\nchoices = " +
+            choices + "\ntext = \"x\"\n",
+        kStored);
   };
   EXPECT_TRUE(parse_filter(with_radius("[1, 2]"), "mine.glsl").has_prefilter);
   expect_error(with_radius("[1, 100000]"), 6, "radius_texels");

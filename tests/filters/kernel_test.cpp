@@ -261,16 +261,16 @@ TEST(PercentageCloser, Border_SaysWhatLiesOutside) {
 
 // Screen passes as a filter's file declares them, and what their models share.
 
-std::string write_filter(const std::string& tables, const std::string& glsl) {
-  return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\n" + tables +
-         "+++*/\nfloat visibility(Receiver r) { return compare_nearest(r, vec2(0.0), r.depth); }\n" + glsl;
+std::string write_screens(const std::string& tables, const std::string& glsl) {
+  return write_filter(tables,
+                      "float visibility(Receiver r) { return compare_nearest(r, vec2(0.0), r.depth); }\n" + glsl);
 }
 
 constexpr const char* kBlur = "vec2 blur(ScreenInput s) { return load_screen(s, ivec2(0)); }\n";
 
 TEST(ScreenSpec, IsRead_InTheOrderOfTheFile) {
   const FilterSpec spec = parse_filter(
-      write_filter(
+      write_screens(
           "[param.far]\ndefault = 2\nmin = 0\nmax = 64\ntext = \"t\"\n[screen.blur]\nreach = \"far\"\nsteps = 8\n"
           "[screen.after]\n",
           std::string(kBlur) + "vec2 after(ScreenInput s) { return vec2(0.0); }\n"),
@@ -284,8 +284,8 @@ TEST(ScreenSpec, IsRead_InTheOrderOfTheFile) {
 
 TEST(ScreenSpec, ChosenByAParameter_IsTheOneDrawn) {
   const FilterSpec spec = parse_filter(
-      write_filter("[param.screen]\ndefault = \"none\"\nchoices = [\"none\", \"blur\"]\ntext = \"t\"\n[screen.blur]\n",
-                   kBlur),
+      write_screens("[param.screen]\ndefault = \"none\"\nchoices = [\"none\", \"blur\"]\ntext = \"t\"\n[screen.blur]\n",
+                    kBlur),
       "f.glsl");
   EXPECT_TRUE(list_screens(spec, {{"screen", std::string("none")}}).empty());
   EXPECT_EQ(list_screens(spec, {{"screen", std::string("blur")}}).size(), 1u);
@@ -310,10 +310,8 @@ TEST(ScreenSpec, ThatIsWrong_IsRefusedWithItsLine) {
                 "'screen' has no choice 'blur'"},
        }) {
     SCOPED_TRACE(each.tables);
-    const Error error = error_of([&] { parse_filter(write_filter(each.tables, each.glsl), "f.glsl"); });
-    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-    EXPECT_THAT(error.message(), HasSubstr(each.message));
-    EXPECT_THAT(error.where(), StartsWith("f.glsl:"));
+    EXPECT_THAT(error_of([&] { parse_filter(write_screens(each.tables, each.glsl), "f.glsl"); }),
+                is_error(ErrorKind::kFilter, "f.glsl:", each.message));
   }
 }
 

@@ -40,7 +40,7 @@ TEST_F(FaultFolder, OfARunThatGoesOn_IsRefusedToAllOthers_AndFreeOnceItIsKilled)
   EXPECT_EQ(count_cells(), 0u) << "another wrote into it";
   kill(first, SIGKILL);
   EXPECT_EQ(wait_for(first).signal, SIGKILL);
-  EXPECT_THAT(list_processes(), IsEmpty()) << "the worker of the user's filter";
+  expect_no_process();
   succeed("run " + std::string(kSmallFolderRun) + "--no-grids --out out");
   expect_no_leftovers("out");
   expect_same("whole", "out");
@@ -166,7 +166,7 @@ class FaultSignal : public FaultTest {
           EXPECT_FALSE(images::read_picture(folder() / "out" / *image).texels.empty()) << *image;
     }
     expect_whole("out");
-    EXPECT_THAT(list_processes(), IsEmpty());
+    expect_no_process();
   }
 
   /// What it must have said, and how it ended.
@@ -233,7 +233,7 @@ TEST_F(FaultSignal, WhileAUsersFilterIsMeasured_NoChildStays) {
         std::chrono::milliseconds(1500));  // by now it says nothing more, and a closed pipe would not end it
     kill(pid, signal);
     expect_goodbye(wait_for(pid), signal);
-    EXPECT_THAT(list_processes(), IsEmpty());
+    expect_no_process();
   }
   succeed("run --size 32x18 --map-size 16 --rounds 1 --scene cubes --filters none --out out");
   expect_no_leftovers("out");

@@ -58,21 +58,23 @@ class FaultTest : public ProgramTest {
     return false;
   }
 
-  /// Processes that work in the test's folder; those that are being ended are given a moment.
-  std::vector<std::string> list_processes() const {
+  /// Processes that work in the test's folder, or were told of a file there, with this word.
+  std::vector<std::string> list_processes(const std::string& word = {}) const {
     std::vector<std::string> found;
-    for (int i = 0; i < 200; ++i) {
-      found.clear();
-      for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-        std::error_code gone;
-        const std::filesystem::path cwd = std::filesystem::read_symlink(entry.path() / "cwd", gone);
-        if (!gone && cwd.string().starts_with(folder().string()))
-          found.push_back(entry.path().filename().string() + " " + read_text(entry.path() / "cmdline"));
-      }
-      if (found.empty()) break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      std::error_code gone;
+      const std::string cwd = std::filesystem::read_symlink(entry.path() / "cwd", gone),
+                        command = read_text(entry.path() / "cmdline");
+      if ((cwd + command).find(folder().string()) != std::string::npos && command.find(word) != std::string::npos)
+        found.push_back(entry.path().filename().string() + " " + command);
     }
     return found;
+  }
+
+  /// Those that are being ended are given a moment, in which nothing ends by itself.
+  void expect_no_process() const {
+    wait_until([&] { return list_processes().empty(); }, 200);
+    EXPECT_THAT(list_processes(), IsEmpty());
   }
 
   std::size_t count_cells(const std::string& out = "out") const {

@@ -1,9 +1,7 @@
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "harness/measure/scene_assets.h"
 #include "harness/measure/view_receivers.h"
-#include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/bench_fixture.h"
@@ -51,23 +49,15 @@ scene::LightKind make_kind(Kind kind, const Stage& stage) {
 }
 
 scene::Scene make_stage(Kind kind, const Stage& stage) {
-  const glm::dmat4 turn = turn_of(stage);
-  scene::Scene scene;
-  scene.name = "stage";
-  scene.materials.emplace_back();
-  const glm::dvec3 to_sheet(stage.edge - 2.0, stage.height, 0.0);
-  scene.meshes.push_back(scene::transform_mesh(scene::make_plane({8.0f, 8.0f}, 8), turn));
-  scene.meshes.push_back(
-      scene::transform_mesh(scene::make_plane({4.0f, 8.0f}, 8), turn * glm::translate(glm::dmat4(1.0), to_sheet)));
-  for (scene::Mesh& mesh : scene.meshes) mesh.material = 0;
-  scene.light.kind = make_kind(kind, stage);
-  scene::Camera camera;  // between the sheet and the floor
-  camera.position_ws = glm::vec3(turn * glm::dvec4(0.0, 0.8, 0.0, 1.0));
-  camera.forward_ws = glm::vec3(turn * glm::dvec4(0.0, -1.0, 0.0, 0.0));
-  camera.up_ws = glm::vec3(turn * glm::dvec4(0.0, 0.0, -1.0, 0.0));
+  const glm::dmat3 turn(turn_of(stage));
+  const scene::Mesh floor = scene::make_plane({8.0f, 8.0f}, 8);
+  const scene::Mesh sheet = scene::move_mesh(scene::make_plane({4.0f, 8.0f}, 8), {stage.edge - 2.0, stage.height, 0.0});
+  scene::Camera camera =  // between the sheet and the floor
+      scene::make_camera(turn * glm::dvec3(0.0, 0.8, 0.0), turn * glm::dvec3(0.0, -1.0, 0.0),
+                         turn * glm::dvec3(0.0, 0.0, -1.0));
   camera.vertical_fov_rad = 1.4f;
-  scene.cameras.push_back(camera);
-  return scene;
+  return scene::make_scene_of({scene::transform_mesh(floor, turn), scene::transform_mesh(sheet, turn)},
+                              make_kind(kind, stage), {camera});
 }
 
 /// Where the shadow of the edge lies on the floor, for a light that is a point.
@@ -175,8 +165,6 @@ TEST_P(Shadow, HasThePenumbraOfItsLight_FromEverySide) {
       squares += difference * difference;
       worst = std::max(worst, std::abs(difference));
     }
-    std::printf("%s%s: %d receivers in the penumbra, rms %.4f, worst %.4f\n", name_of(GetParam()),
-                on_its_side ? " on its side" : "", partial, std::sqrt(squares / partial), worst);
     EXPECT_GT(partial, 150);
     EXPECT_LT(std::sqrt(squares / partial), 0.004);
     EXPECT_LT(worst, 0.02);
@@ -230,7 +218,6 @@ TEST_P(Layers, ShareEveryReceiver) {
     EXPECT_NEAR(served.share, 1.0f, 1e-6f);
     for (std::size_t layer = 0; layer < shares.size(); ++layer) of_layer[layer] += shares[layer][i] > 0.0f ? 1 : 0;
   }
-  std::printf("%s: %d receivers, %d blended\n", GetParam().c_str(), counted, blended);
   EXPECT_GT(counted, 10000);
   EXPECT_EQ(blended > 0, GetParam() == "avenue") << "cascades blend, the faces of a cube do not";
   for (const int count : of_layer) EXPECT_GT(count, 0);
@@ -247,19 +234,13 @@ struct Caster {
 
 /// A floor under a lamp at half a metre: the faces of its map meet there half a metre from the middle.
 scene::Scene make_floor(const std::optional<Caster>& caster) {
-  scene::Scene scene;
-  scene.name = "floor";
-  scene.meshes.push_back(scene::make_plane({4.0f, 4.0f}, 8));
+  std::vector<scene::Mesh> meshes = {scene::make_plane({4.0f, 4.0f}, 8)};
   if (caster)
-    scene.meshes.push_back(scene::transform_mesh(scene::make_box(caster->size, 4),
-                                                 glm::translate(glm::dmat4(1.0), caster->center) *
-                                                     glm::rotate(glm::dmat4(1.0), 0.35, glm::dvec3(0.0, 1.0, 0.0))));
-  for (scene::Mesh& mesh : scene.meshes) mesh.material = 0;
-  scene.materials.emplace_back();
-  scene.light.kind = scene::PointLight{{0.0f, 0.5f, 0.0f}, 0.02f, 0.5f};
-  scene.cameras = {look_down({0.0f, 2.0f, 0.0f})};
-  scene.cameras.front().orthographic_height_m = 1.8f;
-  return scene;
+    meshes.push_back(scene::transform_mesh(scene::make_box(caster->size, 4),
+                                           glm::translate(glm::dmat4(1.0), caster->center) *
+                                               glm::rotate(glm::dmat4(1.0), 0.35, glm::dvec3(0.0, 1.0, 0.0))));
+  return scene::make_scene_of(meshes, scene::PointLight{{0.0f, 0.5f, 0.0f}, 0.02f, 0.5f},
+                              {scene::look_down({0.0f, 2.0f, 0.0f}, 1.8f)});
 }
 
 /// Marks receivers whose neighbour on some side is served by another layer.
@@ -304,9 +285,8 @@ TEST(Paraboloids, ShowNoLineWhereTheyMeetOnALitWall) {
   scene.meshes.front() = scene::transform_mesh(
       scene.meshes.front(), glm::rotate(glm::dmat4(1.0), glm::radians(90.0), glm::dvec3(1.0, 0.0, 0.0)));
   scene.light.kind = scene::PointLight{{0.0f, 0.0f, 0.5f}, 0.02f, 0.5f};
-  scene.cameras.front().position_ws = {0.0f, 0.0f, 2.0f};
-  scene.cameras.front().forward_ws = {0.0f, 0.0f, -1.0f};
-  scene.cameras.front().up_ws = {0.0f, 1.0f, 0.0f};
+  scene.cameras = {scene::make_camera({0.0f, 0.0f, 2.0f}, {0.0f, 0.0f, -1.0f})};
+  scene.cameras.front().orthographic_height_m = 1.8f;
   Bench bench(scene, kLayersMap, kLayersWidth, kLayersHeight);
   const auto borders = mark_borders(list_shares(bench), 1);
   ASSERT_GT(std::ranges::count(borders, std::uint8_t{1}), 300);
@@ -337,7 +317,7 @@ double mean_over(const std::vector<float>& image, double from_x, double to_x, do
 /// A kernel that reads beyond its face's map would find light there.
 TEST(CubeFaces, ShowNoLineWhereTheyMeetInAShadow) {
   const scene::Scene scene = make_floor(Caster{{0.16f, 0.01f, 0.16f}, {0.2, 0.3, 0.0}});
-  const double widest = measure::largest_padding_texels(catalogue().parse_requests("all,teaching"));
+  const double widest = measure::largest_padding_texels(built_in().parse_requests("all,teaching"));
   Bench bench(scene, kLayersMap, kLayersWidth, kLayersHeight, {}, widest);
   for (const std::string& filter : filter_ids()) {
     const std::vector<float> image = draw_rows(bench, filter);

@@ -1,10 +1,8 @@
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "filters/front_matter.h"
 #include "filters/store_format.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/view_receivers.h"
-#include "harness/scene/mesh_tools.h"
+#include "tests/harness/scene/made_scenes.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::measure {
@@ -48,15 +46,6 @@ ViewReceivers look_at_floor(const scene::Camera& camera) {
   return view;
 }
 
-scene::Camera camera_above(float height_m, float orthographic_height_m) {
-  scene::Camera camera;
-  camera.position_ws = {0.0f, height_m, 0.0f};
-  camera.forward_ws = {0.0f, -1.0f, 0.0f};
-  camera.up_ws = {0.0f, 0.0f, -1.0f};
-  camera.orthographic_height_m = orthographic_height_m;
-  return camera;
-}
-
 images::Image half_filled_map(int size) {
   images::Image map(size, size, 1);
   for (std::size_t i = 0; i < map.texels.size(); ++i) map.texels[i] = i % 2 == 0 ? 0.5f : 1.0f;
@@ -65,8 +54,9 @@ images::Image half_filled_map(int size) {
 
 TEST(MapCoverage, OrthographicViewAlongTheLight_IsTexelAreaOverPixelArea) {
   // A pixel is 0.1 m wide, a texel 0.05 m; the view covers 4 m x 3 m of 12.8 m x 12.8 m.
-  const MapCoverage c = measure_coverage(look_at_floor(camera_above(5.0f, 3.0f)), camera_above(5.0f, 3.0f),
-                                         {{light_from_above(12.8, 256)}}, half_filled_map(256));
+  const scene::Camera camera = scene::look_down({0.0f, 5.0f, 0.0f}, 3.0f);
+  const MapCoverage c =
+      measure_coverage(look_at_floor(camera), camera, {{light_from_above(12.8, 256)}}, half_filled_map(256));
   EXPECT_NEAR(*c.record.texels_per_pixel, 4.0, 1e-4);
   EXPECT_NEAR(*c.record.fewest_texels_per_pixel, 4.0, 1e-4);
   EXPECT_NEAR(*c.record.map_used, 12.0 / (12.8 * 12.8), 1e-3);
@@ -75,9 +65,7 @@ TEST(MapCoverage, OrthographicViewAlongTheLight_IsTexelAreaOverPixelArea) {
 
 /// The sum of all footprints is the area that the picture's corners enclose, as the light sees it.
 TEST(MapCoverage, PerspectiveFootprints_AddUpToWhatThePictureShows) {
-  scene::Camera camera;
-  camera.position_ws = {0.0f, 2.0f, 3.0f};
-  camera.forward_ws = glm::normalize(glm::vec3(0.0f, -1.0f, -0.6f));
+  scene::Camera camera = scene::make_camera({0.0f, 2.0f, 3.0f}, {0.0f, -1.0f, -0.6f});
   camera.vertical_fov_rad = 0.7f;
   const ViewReceivers view = look_at_floor(camera);
   const scene::LightFrustum light = light_from_above(20.0, 256, 30.0f);
@@ -99,7 +87,7 @@ TEST(MapCoverage, PerspectiveFootprints_AddUpToWhatThePictureShows) {
 }
 
 TEST(MapCoverage, SurfacesTurnedAwayAndBackground_HaveNoSay) {
-  const scene::Camera camera = camera_above(5.0f, 3.0f);
+  const scene::Camera camera = scene::look_down({0.0f, 5.0f, 0.0f}, 3.0f);
   ViewReceivers view = look_at_floor(camera);
   for (std::size_t i = 0; i < view.image.points.size(); ++i) {
     view.image.points[i].counts = false;
@@ -115,7 +103,7 @@ TEST(MapCoverage, SurfacesTurnedAwayAndBackground_HaveNoSay) {
 
 /// The view is 4 m wide, the map 2 m: half of the columns and two thirds of the rows lie in it.
 TEST(MapCoverage, ReceiversOutsideTheMap_HaveNoSay) {
-  const scene::Camera camera = camera_above(5.0f, 3.0f);
+  const scene::Camera camera = scene::look_down({0.0f, 5.0f, 0.0f}, 3.0f);
   const MapCoverage c =
       measure_coverage(look_at_floor(camera), camera, {{light_from_above(2.0, 64)}}, half_filled_map(64));
   EXPECT_NEAR(*c.record.map_used, 1.0, 1e-9);
@@ -136,7 +124,7 @@ TEST(MapCoverage, OfALamp_IsThatOfThePixelsCorners) {
   frustum.depth_range_ws = 7.0;
   frustum.texel_size_ws = 2.0 * 1.5 * beam.reference_m / 256;
   set_perspective(frustum, 1.5, {});
-  const scene::Camera camera = camera_above(1.0f, 0.0f);
+  const scene::Camera camera = scene::look_down({0.0f, 1.0f, 0.0f}, 0.0f);
   const ViewReceivers floor = look_at_floor(camera);
   const MapCoverage coverage = measure_coverage(floor, camera, {{frustum}}, half_filled_map(256));
   for (const int i : {0, 17, 20 * kWidth + 3, kWidth * kHeight - 1}) {
@@ -152,21 +140,6 @@ TEST(MapCoverage, OfALamp_IsThatOfThePixelsCorners) {
   }
 }
 
-/// A floor of 8 m with a sheet that hangs over it, seen from above under a sun of 2 degrees.
-scene::Scene make_scene() {
-  scene::Scene scene;
-  scene.materials.resize(1);
-  scene.meshes = {scene::make_plane({8.0f, 8.0f}, 1),
-                  scene::transform_mesh(scene::make_plane({1.0f, 1.0f}, 1),
-                                        glm::translate(glm::dmat4(1.0), glm::dvec3(-2.0, 2.0, 0.0)))};
-  scene.cameras = {camera_above(10.0f, 6.0f)};
-  scene::Sun sun;
-  sun.angular_diameter_deg = 2.0f;
-  scene.light.kind = sun;
-  scene.light = scene::place_in_sky(scene.light, {-90.0, 40.0});
-  return scene;
-}
-
 double find(const scene::Scene& scene, int map_size) {
   options::RunOptions options;
   options.width = options.height = 96;
@@ -175,31 +148,27 @@ double find(const scene::Scene& scene, int map_size) {
 }
 
 TEST(LightSigma, IsAQuarterOfThePenumbraInTexels) {
-  const scene::Scene scene = make_scene();
-  const double width_m = 2.0 * std::tan(glm::radians(1.0)) * 2.0 / std::sin(glm::radians(40.0));
+  const scene::Scene scene = scene::make_sheet_over_floor();
+  const double width_m = 2.0 * std::tan(glm::radians(0.5 * 0.53)) * 2.0 / std::sin(glm::radians(40.0));
   const double texel_m = scene::fit_light(scene, scene::FitMode::kTight, 1024, 4.0).texel_size_ws;
   EXPECT_NEAR(find(scene, 1024), 0.25 * width_m / texel_m, 0.006);
   EXPECT_NEAR(find(scene, 2048) / find(scene, 1024), 2.0, 0.02);
 }
 
 TEST(LightSigma, WithoutAShadow_IsAbsent) {
-  scene::Scene scene = make_scene();
+  scene::Scene scene = scene::make_sheet_over_floor();
   scene.meshes.pop_back();
   EXPECT_EQ(find(scene, 1024), -1.0);
 }
 
 /// A filter whose names no code knows: it stores exp(2 k z) and its square, over depths up to `deepest`.
 filters::FilterRequest make_request(double k, const std::string& store, const std::string& combine = "linear") {
-  filters::FilterRequest request;
-  request.spec = filters::parse_filter(
-      "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"bound\"\nstore = [\"rg32f\", \"rg16f\", \"rg16\"]\ncombine = "
-      "[\"linear\", \"log\"]\n"
-      "moments = true\nexponent = \"k\"\nvariance_floor = \"least\"\nradius_texels = 0\n"
-      "[param.k]\ndefault = 1.0\nmin = 0.5\nmax = 30.0\ntext = \"x\"\n[param.least]\ndefault = 1e-5\nmin = 0.0\nmax = "
-      "1e-3\ntext = \"x\"\n+++*/\n"
-      "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n",
-      "odd.glsl");
-  request.values = filters::default_values(request.spec);
+  filters::FilterRequest request = filters::request_of_file(filters::write_filter(
+      "store = [\"rg32f\", \"rg16f\", \"rg16\"]\ncombine = [\"linear\", \"log\"]\nmoments = true\n"
+      "exponent = \"k\"\nvariance_floor = \"least\"\nradius_texels = 0\n"
+      "[param.k]\ndefault = 1.0\nmin = 0.5\nmax = 30.0\ntext = \"x\"\n"
+      "[param.least]\ndefault = 1e-5\nmin = 0.0\nmax = 1e-3\ntext = \"x\"\n",
+      "vec4 encode(EncodeInput e) { return vec4(0); }\nfloat visibility(Receiver r) { return 1.0; }\n", "bound"));
   request.values["k"] = k;
   request.values["store"] = store;
   request.values["combine"] = combine;

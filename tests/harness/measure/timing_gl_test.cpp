@@ -1,11 +1,9 @@
-#include "filters/front_matter.h"
 #include "harness/measure/accumulation.h"
-#include "harness/measure/scene_assets.h"
 #include "harness/measure/scene_measurement.h"
 #include "harness/measure/stability_meter.h"
 #include "harness/measure/timing.h"
 #include "harness/run/run_plan.h"
-#include "reference/truth/cached_tracer.h"
+#include "tests/harness/measure/stand.h"
 #include "tests/harness/render/bench_fixture.h"
 #include "tests/test_files.h"
 
@@ -16,38 +14,9 @@ using namespace measure;
 
 constexpr int kMapSize = 512;
 
-options::RunOptions make_options(int width, int height) {
-  options::RunOptions options;
-  options.resources = options::find_resources();
-  options.width = width;
-  options.height = height;
-  options.rounds = options::RoundLimits::exactly(1);
-  options.reference = request_of("none");
-  return options;
-}
-
-/// One for all tests, made current: a test before this one may have had a context of its own.
-Renderer& shared_renderer() {
-  static Renderer renderer = make_renderer(gl::Backend::kAuto, options::find_resources());
-  renderer.context->make_current();
-  return renderer;
-}
-
-/// A built-in scene with all that is measured with.
-struct Stand {
-  Stand(const std::string& name, options::RunOptions told, double pad_texels)
-      : scene(load_builtin(name)), options(std::move(told)), assets(renderer, options, scene, cache, pad_texels) {}
-
-  scene::Scene scene;
-  options::RunOptions options;
-  Renderer& renderer = shared_renderer();
-  truth::TruthCache cache{{}, [](const std::string&) {}};
-  SceneAssets assets;
-};
-
 /// A small scene to time filters in.
 struct Timed : Stand {
-  Timed() : Stand("cubes", make_options(320, 180), 6.0) {}
+  Timed() : Stand(load_builtin("cubes"), make_run_options(320, 180), 6.0) {}
 
   /// The own time of a filter, as records hold it.
   records::OwnTime time(const filters::FilterRequest& request) {
@@ -71,13 +40,8 @@ struct Timed : Stand {
 
 /// A filter of the user's that returns this expression.
 filters::FilterRequest make_filter(const std::string& expression) {
-  filters::FilterRequest request;
-  request.spec = filters::parse_filter(
-      "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\n+++*/\n"
-      "float visibility(Receiver r) { return " +
-          expression + "; }\n",
-      "test.glsl");
-  return request;
+  return filters::request_of_file(
+      filters::write_filter("", "float visibility(Receiver r) { return " + expression + "; }\n"));
 }
 
 // A 95 % interval misses now and then: of three, one must hold 0.
@@ -86,7 +50,6 @@ TEST(OwnTime, OfAConstantIsNothing) {
   bool holds_nothing = false;
   for (int attempt = 0; attempt < 3 && !holds_nothing; ++attempt) {
     const records::OwnTime time = timed.time(make_filter("0.5"));
-    std::printf("constant: %.4f ms [%.4f, %.4f]\n", time.median, time.ci95.low, time.ci95.high);
     holds_nothing = time.ci95.low <= 0.0 && time.ci95.high >= 0.0;
   }
   EXPECT_TRUE(holds_nothing);
@@ -105,7 +68,7 @@ TEST(OwnTime, EmptyLookupsReadWhatTheirFiltersRead) {
 
 TEST(Timing, TwiceTheTaps_TakeLonger) {
   Bench bench(load_builtin("cubes"), 512, 480, 270);
-  const auto requests = catalogue().parse_requests("none,poisson:taps=16,poisson:taps=32");
+  const auto requests = built_in().parse_requests("none,poisson:taps=16,poisson:taps=32");
   std::vector<std::unique_ptr<render::FilterPasses>> filters;
   std::vector<render::FilterPasses*> pointers;
   for (const auto& request : requests) {
@@ -118,8 +81,6 @@ TEST(Timing, TwiceTheTaps_TakeLonger) {
       time_rounds({.filters = pointers, .map = bench.map(), .gbuffer = bench.gbuffer(), .timer = timer},
                   {.limits = options::RoundLimits::exactly(31)});
   const records::Ratio ratio = find_ratio(times.filters[2].lookup, times.filters[1].lookup);
-  std::printf("32 taps / 16 taps: %.2f [%.2f, %.2f] by clock %d\n", ratio.median, ratio.ci95.low, ratio.ci95.high,
-              static_cast<int>(timer));
   EXPECT_EQ(times.map.size(), 31u);
   EXPECT_TRUE(times.filters[0].prefilter.empty());
   // The lookup is most of the pass; a clock that times the queueing would read about 1.
@@ -133,7 +94,7 @@ constexpr int kAccumulated = 32;
 /// The ball, small, with all that a task has.
 class AccumulationTest : public ::testing::Test, protected Stand {
  protected:
-  AccumulationTest() : Stand("ball", make_options(160, 90), 5.0) { options.frames = kAccumulated; }
+  AccumulationTest() : Stand(load_builtin("ball"), make_run_options(160, 90), 5.0) { options.frames = kAccumulated; }
 
   static filters::FilterRequest request(const std::string& text) { return test::request_of(text); }
 
@@ -187,13 +148,11 @@ TEST_F(AccumulationTest, NoiseOfAMean_FallsWithTheRootOfFrames_AndFasterWithBlue
   for (const std::size_t n : {2, 4, 8, 16, 32}) {
     const double root =
         falling[0] * std::sqrt(1.0 / static_cast<double>(n) + 1.0 / 256.0);  // with the noise of 256 frames
-    std::printf("white noise: %zu frames %.5f, 1/sqrt %.5f\n", n, falling[n - 1], root);
     EXPECT_NEAR(falling[n - 1], root, 0.08 * root) << n;
   }
   for (const char* rotation : {"blue-noise", "interleaved-gradient"}) {
     const records::AccumulationRecord other = measure(meter, std::string("poisson:taps=4,rotation=") + rotation);
     const std::vector<double>& noise = *find(other, "mean").noise;
-    std::printf("%s: 8 frames %.5f, 32 frames %.5f of one's %.5f\n", rotation, noise[7], noise[31], noise[0]);
     EXPECT_LT(noise[7], 0.6 * falling[7]);
     EXPECT_LT(noise[31], 0.5 * falling[31]);
   }
@@ -227,10 +186,10 @@ TEST_F(AccumulationTest, LightOverhead_HasNoGhosts) {
 
 /// The flicker of `none`, as a run notes it.
 double measure_flicker(const std::string& scene_name, const std::string& fit, bool snap) {
-  options::RunOptions options = make_options(160, 90);
+  options::RunOptions options = make_run_options(160, 90);
   options.fit = scene::parse_fit_rule(fit);
   options.snap = snap;
-  Stand stand(scene_name, options, 4.0);
+  Stand stand(load_builtin(scene_name), options, 4.0);
   const scene::Camera& camera = stand.scene.cameras.front();
   const SceneTask task{&stand.scene, &camera, 512, {options.reference}};
   MeasuredCell cell = std::move(measure_scene({stand.renderer, stand.options, task, stand.assets}).cells.front());
@@ -255,12 +214,12 @@ TEST(Flicker, OfAMapThatNoCameraMoves_IsThatUnderATurningLight) {
 /// Draws cells with stability, without timing or truth to speak of.
 std::vector<MeasuredCell> measure(const std::string& scene_name, const std::string& filters, int map_size = 512,
                                   int width = 240, int height = 135) {
-  options::RunOptions options = make_options(width, height);
-  options.filters = catalogue().parse_requests(filters);
+  options::RunOptions options = make_run_options(width, height);
+  options.filters = built_in().parse_requests(filters);
   options.phases = 1;  // numbers are looked at in the first of them alone
   options.truth = false;
   options.stability = true;
-  Stand stand(scene_name, options, largest_padding_texels(options.filters));
+  Stand stand(load_builtin(scene_name), options, largest_padding_texels(options.filters));
   const SceneTask task{&stand.scene, &stand.scene.cameras.front(), map_size, options.filters};
   return measure_scene({stand.renderer, stand.options, task, stand.assets}).cells;
 }
@@ -279,13 +238,6 @@ TEST_P(Defaults, NothingBreaks) {
     EXPECT_EQ(s.nan_texels.value_or(0), 0);
     EXPECT_EQ(s.bound_violations.value_or(0), 0);
     EXPECT_EQ(s.bound_exact_violations.value_or(0), 0);
-    if (s.negative_variance_texels) {
-      std::printf(
-          "%s %s: %lld of %d texels with a variance below 0, the lowest %.3g; shortfall of the bound %.3g, 16 bits "
-          "change %.3g\n",
-          GetParam().c_str(), cell.label.c_str(), static_cast<long long>(*s.negative_variance_texels), 512 * 512,
-          *s.lowest_variance, s.bound_shortfall_max.value_or(0.0), s.half_difference_max.value_or(0.0));
-    }
   }
 }
 

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "filters/catalogue.h"
-#include "filters/model.h"
 #include "harness/gl/context/context.h"
 #include "harness/gl/survey.h"
 #include "harness/options/options.h"
@@ -16,6 +14,8 @@
 #include "harness/render/filter_passes.h"
 #include "harness/render/gbuffer.h"
 #include "harness/scene/load.h"
+#include "tests/filters/filtered.h"
+#include "tests/harness/scene/made_scenes.h"
 
 namespace shadowbench::test {
 
@@ -135,15 +135,6 @@ class Bench {
   render::ImageTarget target_;
 };
 
-/// A camera that looks straight down.
-inline scene::Camera look_down(const glm::vec3& from) {
-  scene::Camera camera;
-  camera.position_ws = from;
-  camera.forward_ws = {0, -1, 0};
-  camera.up_ws = {0, 0, -1};
-  return camera;
-}
-
 inline scene::Scene load_builtin(const std::string& name) {
   scene::Scene scene = scene::load(name.substr(0, name.find(kBy)), {.scenes_folder = options::find_resources().scenes});
   scene.name = name;
@@ -186,16 +177,11 @@ inline std::vector<std::string> scenes_of_all_maps() {
   return names;
 }
 
-inline const filters::Catalogue& catalogue() {
-  static const filters::Catalogue filters(options::find_resources().filters);
-  return filters;
-}
-
-inline filters::FilterRequest request_of(const std::string& text) { return catalogue().parse_requests(text).front(); }
+using filters::built_in, filters::request_of;
 
 inline std::vector<std::string> filter_ids() {
   std::vector<std::string> ids;
-  for (const auto& spec : catalogue().filters()) ids.push_back(spec.id);
+  for (const auto& spec : built_in().filters()) ids.push_back(spec.id);
   return ids;
 }
 

@@ -5,12 +5,10 @@
 
 // What the bias modes put into the depth map: back faces, midpoints, offsets.
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <tuple>
 
 #include "harness/measure/view_receivers.h"
 #include "harness/render/bias.h"
-#include "harness/scene/mesh_tools.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/bench_fixture.h"
 #include "tests/test_files.h"
@@ -88,8 +86,6 @@ TEST_P(DefaultBias, LeavesNoVisibleAcne) {
   Traced traced(GetParam());
   for (const std::string& filter : filter_ids()) {
     const Rates rates = traced.measure(filter, {});
-    std::printf("%s %s: acne %.5f of %d, gap %.5f of %d\n", GetParam().c_str(), filter.c_str(), rates.acne, rates.lit,
-                rates.gap, rates.blocked);
     ASSERT_GT(rates.lit, 2000);
     // A paraboloid bends the planes of its casters: filters as wide as vssm see that.
     EXPECT_LE(rates.acne, fit_of(traced.scene) == scene::FitMode::kParaboloid ? 0.004 : 0.001) << filter;
@@ -112,16 +108,10 @@ TEST(NoBias, GivesAcne) { EXPECT_GT(Traced("steps").measure("none", render::Bias
 
 /// A square floor, 10 m wide, seen from above, under a sun that is `tilt` degrees away from the zenith.
 scene::Scene make_plane(double tilt_deg, double azimuth_deg) {
-  scene::Scene scene;
-  scene.name = "plane";
-  scene.materials.emplace_back();
-  scene.meshes = {scene::make_plane({10.0f, 10.0f}, 8)};
   const double tilt = glm::radians(tilt_deg), azimuth = glm::radians(azimuth_deg);
-  scene.light.kind = scene::Sun{glm::normalize(
-      glm::vec3(-std::sin(tilt) * std::cos(azimuth), -std::cos(tilt), -std::sin(tilt) * std::sin(azimuth)))};
-  scene.cameras = {look_down({0.37f, 10.0f, 0.21f})};
-  scene.cameras.front().orthographic_height_m = 7.0f;
-  return scene;
+  const glm::vec3 along(-std::sin(tilt) * std::cos(azimuth), -std::cos(tilt), -std::sin(tilt) * std::sin(azimuth));
+  return scene::make_scene_of({scene::make_plane({10.0f, 10.0f}, 8)}, scene::Sun{glm::normalize(along)},
+                              {scene::look_down({0.37f, 10.0f, 0.21f}, 7.0f)});
 }
 
 /// Gives the rule of a mode at `factor` times the theoretical amount, also for planes that the light grazes.
@@ -235,14 +225,9 @@ INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlane,
 const scene::Mesh kBox = scene::make_box({2.0f, 1.0f, 2.0f}, 1);
 
 /// A box from 1 to 2 m above a floor, under a sun at the zenith.
-scene::Scene make_scene() {
-  scene::Scene scene;
-  scene.materials.emplace_back();
-  scene.meshes = {scene::make_plane({8.0f, 8.0f}, 1),
-                  scene::transform_mesh(kBox, glm::translate(glm::dmat4(1.0), glm::dvec3(0.0, 1.5, 0.0)))};
-  scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
-  scene.cameras = {look_down({0.0f, 6.0f, 0.1f})};
-  return scene;
+scene::Scene make_scene(double lift = 0.0) {
+  return scene::make_scene_of({scene::make_plane({8.0f, 8.0f}, 1), scene::move_mesh(kBox, {0.0, 1.5 + lift, 0.0})},
+                              scene::kSunAtZenith, {scene::look_down({0.0f, 6.0f, 0.1f})});
 }
 
 /// A floor that faces the light has no slope: the constant part of the default bias alone, which covers half a step of
@@ -253,10 +238,8 @@ TEST(DefaultBias, KeepsAFloorThatFacesTheLightLit_InAnyFormat) {
   int needed = 0;
   for (const GLenum format : {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT32F}) {
     for (const bool reversed : {false, true}) {
-      for (const float lift : {0.0f, 0.17f, 0.41f, 0.83f}) {  // of the box, which moves the planes of depth
-        scene::Scene scene = make_scene();
-        for (scene::Vertex& v : scene.meshes[1].vertices) v.position_ws.y += lift;
-        Bench bench(scene, 128, 32, 32, {format, {reversed}});
+      for (const double lift : {0.0, 0.17, 0.41, 0.83}) {  // of the box, which moves the planes of depth
+        Bench bench(make_scene(lift), 128, 32, 32, {format, {reversed}});
         const auto is_dark = [&](const std::string& filter, const render::BiasRule& rule) {
           const filters::FilterRequest request = request_of(filter);
           const std::vector<float> image = bench.draw(request, rule);

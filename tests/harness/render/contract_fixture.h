@@ -5,7 +5,6 @@
 
 #include "filters/front_matter.h"
 #include "harness/render/geometry.h"
-#include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"
 #include "tests/harness/render/bench_fixture.h"
 
@@ -95,29 +94,21 @@ class AnalyticFloor {
   /// The light's u runs along -x, its v along z.
   static scene::Mesh make_rectangle(const glm::vec2& low, const glm::vec2& high, float height) {
     const glm::vec2 middle = 0.5f * (low + high);
-    scene::Mesh mesh = scene::make_plane(high - low, 4);
-    for (scene::Vertex& v : mesh.vertices) v.position_ws += glm::vec3(-middle.x, height, middle.y);
-    return mesh;
+    return scene::move_mesh(scene::make_plane(high - low, 4), glm::vec3(-middle.x, height, middle.y));
   }
 
   scene::Scene make_scene(const std::vector<Caster>& casters) const {
-    scene::Scene scene;
-    scene.name = "analytic floor";
-    scene.materials.emplace_back();
     const glm::vec2 half(0.5f * static_cast<float>(map_));
-    scene.meshes.push_back(make_rectangle(-half, half, 0.0f));
+    std::vector<scene::Mesh> meshes = {make_rectangle(-half, half, 0.0f)};
     for (const Caster& c : casters)
-      scene.meshes.push_back(make_rectangle(glm::max(c.low, -half), glm::min(c.high, half), c.height));
-    scene::Camera camera;
-    camera.position_ws = {0.0f, kCamera, 0.0f};
-    camera.forward_ws = {0.0f, -1.0f, 0.0f};
-    camera.up_ws = {0.0f, 0.0f, 1.0f};
-    camera.vertical_fov_rad = 2.0f * std::atan(0.5f * static_cast<float>(view_) / kCamera);
-    scene.cameras.push_back(camera);
-    scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
+      meshes.push_back(make_rectangle(glm::max(c.low, -half), glm::min(c.high, half), c.height));
+    scene::Scene scene =
+        scene::make_scene_of(meshes, scene::kSunAtZenith,
+                             {scene::make_camera({0.0f, kCamera, 0.0f}, {0.0f, -1.0f, 0.0f}, {0.0f, 0.0f, 1.0f})});
+    scene.cameras.front().vertical_fov_rad = 2.0f * std::atan(0.5f * static_cast<float>(view_) / kCamera);
     scene.light.map_window =
         scene::MapWindow{{0.0, 0.0, 0.0}, static_cast<double>(map_), scene::MapWindow::Planes{-kNear, kFar}};
-    return scene::validate(scene, scene.name);
+    return scene::validate(scene, "analytic floor");
   }
 };
 

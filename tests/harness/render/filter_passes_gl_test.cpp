@@ -27,14 +27,12 @@ struct Checked {
 };
 
 filters::FilterRequest make_request(const Checked& checked) {
-  filters::FilterRequest request;
-  request.spec = filters::parse_filter(
-      std::string("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = 8\n") + checked.passes +
-          "+++*/\n" + checked.glsl +
-          "float visibility(Receiver r) { return agrees(r, ivec2(r.uv / map_texel_uv)) ? 1.0 : 0.0; }\n",
+  return filters::request_of_file(
+      filters::write_filter(
+          std::string("radius_texels = 8\n") + checked.passes,
+          std::string(checked.glsl) +
+              "float visibility(Receiver r) { return agrees(r, ivec2(r.uv / map_texel_uv)) ? 1.0 : 0.0; }\n"),
       "checked.glsl");
-  for (const filters::ParamSpec& param : request.spec.params) request.values[param.name] = param.default_value;
-  return request;
 }
 
 const Checked kPrefix{"Prefix", "[pass.sums]\nstore = \"r32ui\"\nsteps = \"prefix\"\n",
@@ -186,10 +184,11 @@ TEST(RefusedPasses, AreNamedWithFileAndLine) {
        "vec4 encode(EncodeInput e) { return load_first(ivec2(0)); }\nvec4 first(PassInput p) { return vec4(1.0); }\n",
        "checked.glsl:7", "encode() reads the map 'first', which is not written yet"}};
   for (const Refused& each : all) {
-    const Error error = error_of([&] { bench.draw(make_request({"", each.passes, (each.glsl + agree).c_str(), 0})); });
-    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-    EXPECT_EQ(error.where(), each.where) << error.message();
-    EXPECT_THAT(error.message(), HasSubstr(each.words));
+    const std::string glsl = each.glsl + agree;
+    EXPECT_THAT(error_of([&] {
+                  bench.draw(make_request({"", each.passes, glsl.c_str(), 0}));
+                }),
+                is_error(ErrorKind::kFilter, each.where, each.words));
   }
 }
 
@@ -250,7 +249,7 @@ TEST_P(Retune, DrawsTheSameBitsAsNewPasses_ForEveryFilterAndLight) {
   other.light = scene::turn_light(
       other.light, [](const glm::vec3& way) { return glm::normalize(way + glm::vec3(0.3f, 0.0f, 0.0f)); });
   Bench bench(scene, 128, 96, 54), turned(other, 128, 96, 54);
-  for (const filters::FilterRequest& request : catalogue().parse_requests("all,teaching")) {
+  for (const filters::FilterRequest& request : built_in().parse_requests("all,teaching")) {
     SCOPED_TRACE(request.spec.id);
     render::FilterPasses passes(bench.shaders(), at(request, 0.0), bench.map(), bench.light(at(request, 0.0)));
     bench.draw(passes);

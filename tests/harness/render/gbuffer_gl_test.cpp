@@ -3,7 +3,6 @@
 #include <glm/gtc/constants.hpp>
 
 #include "harness/measure/view_receivers.h"
-#include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/bench_fixture.h"
@@ -37,20 +36,13 @@ class Viewer {
   render::GBuffer gbuffer_;
 };
 
-scene::Scene make_scene_of(std::vector<scene::Mesh> meshes) {
-  scene::Scene scene;
-  scene.materials.emplace_back();
-  scene.meshes = std::move(meshes);
-  return scene;
-}
-
 /// Two squares that meet at a right angle along the x axis: a floor on the side of +z, and a wall that faces it.
 scene::Scene make_valley() {
   scene::Mesh floor = scene::make_plane(glm::vec2(2.0f * kHalfSide), 16), wall = floor;
   for (scene::Vertex& v : floor.vertices) v.position_ws.z += kHalfSide;
   for (scene::Vertex& v : wall.vertices)
     v.position_ws = {v.position_ws.x, kHalfSide - v.position_ws.z, v.position_ws.y};
-  return make_scene_of({floor, wall});
+  return scene::make_scene_of({floor, wall});
 }
 
 /// Shows a scene to cameras in many places, each of which carries the light.
@@ -60,9 +52,8 @@ void look_around(scene::Scene scene, float first_angle, float last_angle, Visit 
   Viewer viewer(240, 135);
   for (int view = 0; view < kViews; ++view) {
     const float share = static_cast<float>(view) / kViews, angle = glm::mix(first_angle, last_angle, share);
-    scene::Camera camera;
-    camera.position_ws = {4.0f * std::sin(angle), 0.5f + share, 4.0f * std::cos(angle)};
-    camera.forward_ws = glm::normalize(-camera.position_ws);
+    const glm::vec3 position(4.0f * std::sin(angle), 0.5f + share, 4.0f * std::cos(angle));
+    const scene::Camera camera = scene::make_camera(position, -position);
     scene.light.kind = scene::Sun{.direction_ws = camera.forward_ws};
     viewer.see(scene, camera, visit);
   }
@@ -109,7 +100,7 @@ TEST(ReceiverPosition, SurfacesThatMeetInAValley_HaveNoPointBeyondEachOther) {
 /// They are seen where edges that meet were moved apart.
 TEST(ReceiverPosition, BackFacesOfABox_AreSeenOutsideOfIt) {
   int seen = 0, inside = 0;
-  const scene::Scene box = make_scene_of({scene::make_box(glm::vec3(2.0f * kHalfSide), 16)});
+  const scene::Scene box = scene::make_scene_of({scene::make_box(glm::vec3(2.0f * kHalfSide), 16)});
   look_around(box, 0.0f, glm::two_pi<float>(), [&](const glm::vec3& position, const glm::vec3& normal, auto) {
     if (glm::dot(position, normal) > 0.0f) return;
     ++seen;
@@ -125,18 +116,13 @@ TEST(ReceiverPosition, WideScenes_ShowWhatIsNearAndWhatIsFar) {
   constexpr float kNear = 0.3f;
   for (const float size : {100.0f, 1e3f, 20e3f, 100e3f}) {
     const float far = 0.45f * size;
-    scene::Mesh box = scene::make_box(glm::vec3(0.1f), 1);
-    for (scene::Vertex& v : box.vertices) v.position_ws += glm::vec3(0.1f, 1.5f, -kNear);
-    std::vector<scene::Mesh> meshes = {scene::make_plane(glm::vec2(size), 16), box};
-    for (const float distance : {1.01f * far, far}) {
-      meshes.push_back(scene::make_box({0.1f * size, 0.1f * size, 1e-4f * size}, 1));
-      for (scene::Vertex& v : meshes.back().vertices) v.position_ws.z -= distance;
-    }
-    scene::Camera camera;
-    camera.position_ws = {0.0f, 1.5f, 0.0f};
-    camera.forward_ws = {0.0f, 0.0f, -1.0f};
-    scene::Scene scene = make_scene_of(meshes);
-    scene.light.kind = scene::Sun{.direction_ws = camera.forward_ws};
+    const scene::Mesh wall = scene::make_box({0.1f * size, 0.1f * size, 1e-4f * size}, 1);
+    const scene::Camera camera = scene::make_camera({0.0f, 1.5f, 0.0f}, {0.0f, 0.0f, -1.0f});
+    const scene::Scene scene = scene::make_scene_of(
+        {scene::make_plane(glm::vec2(size), 16),
+         scene::move_mesh(scene::make_box(glm::vec3(0.1f), 1), {0.1, 1.5, -kNear}),
+         scene::move_mesh(wall, {0.0, 0.0, -1.01f * far}), scene::move_mesh(wall, {0.0, 0.0, -far})},
+        scene::Sun{.direction_ws = camera.forward_ws});
     int near = 0, at_wall = 0, behind_wall = 0;
     Viewer(240, 135).see(scene, camera, [&](const glm::vec3& position, const glm::vec3&, auto) {
       if (position.z > -2.0f * kNear) ++near;

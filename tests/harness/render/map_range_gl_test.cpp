@@ -1,5 +1,3 @@
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "harness/measure/view_receivers.h"
 #include "reference/truth/visibility.h"
 #include "tests/harness/render/contract_fixture.h"
@@ -144,10 +142,9 @@ TEST(MapRangeVariants, RightRule_CompilesNothingMore) {
 /// asked about it, at depths before its near plane.
 TEST(BehindALamp, ADeckIsNotAskedAbout_UnlessTheTestIsOff) {
   scene::Scene scene = load_builtin("lamp");
-  scene.meshes.push_back(scene::make_plane({4.0f, 4.0f}, 1));
-  for (scene::Vertex& v : scene.meshes.back().vertices) v.position_ws.y = 6.0f;
-  scene.cameras = {look_down({-1.5f, 3.5f, 1.0f})};
-  scene.cameras.front().forward_ws = {0.0f, 1.0f, 0.0f};  // sees the side that is turned to the lamp
+  scene.meshes.push_back(scene::move_mesh(scene::make_plane({4.0f, 4.0f}, 1), {0.0, 6.0, 0.0}));
+  // Sees the side that is turned to the lamp.
+  scene.cameras = {scene::make_camera({-1.5f, 3.5f, 1.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, -1.0f})};
   Bench bench(scene, kRangeMapSize);
   const auto request = request_of("none");
   const auto find_deck = [&](const RangeRule& rule) {
@@ -185,7 +182,7 @@ glm::dvec2 step_on_plane(const scene::LightFrustum& frustum, const filters::Rece
 TEST_P(CurvedMap, ReceiversLieWhereTheFrustumSays) {
   Bench bench(load_builtin(GetParam()), kShapeMap);
   double worst_texel = 0.0, worst_depth = 0.0, worst_size = 0.0, worst_plane = 0.0;
-  int compared = 0, steep = 0;
+  int steep = 0;
   for (const filters::Receiver& r : bench.receivers(request_of("none"))) {
     if (r.layer_share == 0.0f) continue;
     const scene::LightFrustum& frustum = bench.layers()[static_cast<std::size_t>(r.layer)];
@@ -194,14 +191,11 @@ TEST_P(CurvedMap, ReceiversLieWhereTheFrustumSays) {
     worst_texel = std::max(worst_texel, glm::distance(glm::dvec2(place), glm::dvec2(r.uv) * double{kShapeMap}));
     worst_depth = std::max(worst_depth, std::abs(place.z - static_cast<double>(r.depth_unbiased)));
     worst_size = std::max(worst_size, std::abs(size / own - 1.0));
-    ++compared;
     if (r.n_dot_l < 0.05f) continue;  // rounding of the normal outweighs the slope
     const glm::dvec2 slope = step_on_plane(frustum, r);
     worst_plane = std::max(worst_plane, glm::distance(slope, glm::dvec2(r.depth_per_texel)) / glm::length(slope));
     ++steep;
   }
-  std::printf("%s: %d receivers, %d with slopes; texels %.2g, depth %.2g, size %.2g, slope %.2g\n", GetParam().c_str(),
-              compared, steep, worst_texel, worst_depth, worst_size, worst_plane);
   EXPECT_GT(steep, 10000);
   EXPECT_LT(worst_texel, 1e-3);
   EXPECT_LT(worst_depth, 1e-6);
@@ -259,21 +253,14 @@ scene::Scene make_turned_slab(const glm::dmat3& turn, const glm::dvec3& light = 
                                       glm::dvec3(0.0, 1.0, 0.0)),
                    wall = glm::rotate(glm::translate(none, glm::dvec3(-2.0, 0.6, 0.0)), glm::radians(-90.0),
                                       glm::dvec3(0.0, 0.0, 1.0));
-  scene::Scene scene;
-  scene.name = "turned slab";
-  scene.materials.emplace_back();
-  scene.meshes = {scene::transform_mesh(scene::make_plane({4.0f, 4.0f}, 8), world),
-                  scene::transform_mesh(scene::make_plane({1.5f, 1.0f}, 4), world * slab),
-                  scene::transform_mesh(scene::make_plane({1.2f, 4.0f}, 4), world * wall)};
+  const glm::dvec3 eye(2.6, 3.6, 3.4), target(-0.2, 0.3, 0.0), up(0.0, 1.0, 0.0);
+  scene::Scene scene = scene::make_scene_of({scene::transform_mesh(scene::make_plane({4.0f, 4.0f}, 8), world),
+                                             scene::transform_mesh(scene::make_plane({1.5f, 1.0f}, 4), world * slab),
+                                             scene::transform_mesh(scene::make_plane({1.2f, 4.0f}, 4), world * wall)},
+                                            scene::Sun{glm::vec3(turn * glm::normalize(light))},
+                                            {scene::make_camera(turn * eye, turn * (target - eye), turn * up)});
   scene.meshes.back().casts_shadow = false;
-  scene.light.kind = scene::Sun{glm::vec3(turn * glm::normalize(light))};
-  const glm::dvec3 eye(2.6, 3.6, 3.4), forward = glm::normalize(glm::dvec3(-0.2, 0.3, 0.0) - eye);
-  scene::Camera camera;
-  camera.position_ws = glm::vec3(turn * eye);
-  camera.forward_ws = glm::vec3(turn * forward);
-  camera.up_ws = glm::vec3(turn * glm::dvec3(0.0, 1.0, 0.0));
-  scene.cameras.push_back(camera);
-  return scene::validate(scene, scene.name);
+  return scene::validate(scene, "turned slab");
 }
 
 /// No length in the chain is absolute, and floats round alike at every size.

@@ -120,7 +120,7 @@ class ModelAgreement : public ::testing::TestWithParam<std::tuple<std::string, s
  protected:
   bool in_half_floats() const {
     return std::ranges::any_of(
-        catalogue().find(std::get<1>(GetParam())).passes,
+        built_in().find(std::get<1>(GetParam())).passes,
         [](const filters::PassSpec& pass) { return pass.store.ends_with("16f"); });
   }
 };
@@ -129,14 +129,10 @@ TEST_P(ModelAgreement, GlImageEqualsModel) {
   const auto& [scene_name, filter] = GetParam();
   // On coarser texels too many kernels round the lantern are a choice that rounding decides.
   Bench& bench = keep_bench(scene_name, scene_name.starts_with("lantern") ? 1024 : 512, 240, 135);
-  const filters::FilterSpec& spec = catalogue().find(filter);
+  const filters::FilterSpec& spec = built_in().find(filter);
   const Agreement a = compare(bench, request_of(filter));
   const bool curved = is_curved(bench.frustum().shape);
   const bool is_even = bench.map().settings().curve.is_linear() && !curved;  // its depth
-  std::printf("%s %s: %zu receivers, %.3f %% excused, float %.2g, double %.2g (%.2f of its bound, median bound %.2g)\n",
-              scene_name.c_str(), filter.c_str(), a.compared,
-              100.0 * static_cast<double>(a.excused) / static_cast<double>(a.compared), a.worst_float, a.worst_double,
-              a.worst_bound_ratio, a.median_bound);
   EXPECT_GT(a.compared, 5000u);
   // Filters that choose their kernel are excused by that choice, too.
   const double by_choice = fit_of(bench.scene()) == scene::FitMode::kParaboloid ? 0.05 : 0.01;
@@ -249,7 +245,7 @@ INSTANTIATE_TEST_SUITE_P(
 /// Every frame turns the taps of every filter that turns them, in the GL as in its model.
 TEST(ModelFrames, GlImageEqualsModel_AndDiffersFromTheFirstFrames) {
   Bench bench(load_builtin("stack"), 256, 160, 90);
-  for (const filters::FilterSpec& spec : catalogue().filters()) {
+  for (const filters::FilterSpec& spec : built_in().filters()) {
     if (spec.kind != filters::FilterKind::kStochastic) continue;
     for (const char* rotation : {"none", "per-pixel", "interleaved-gradient", "blue-noise"}) {
       SCOPED_TRACE(spec.id + ", " + rotation);
@@ -271,7 +267,7 @@ TEST_P(ReceiverPlaneModel, GlImageEqualsModel) {
   Bench& bench = keep_bench(scene_name, 256, 240, 135);
   const Agreement a = compare(bench, request_of(filter), render::parse_bias({"receiver-plane"}));
   EXPECT_GT(a.compared, 5000u);
-  expect_agreement(a, catalogue().find(filter), {});
+  expect_agreement(a, built_in().find(filter), {});
 }
 
 INSTANTIATE_TEST_SUITE_P(Filters, ReceiverPlaneModel,

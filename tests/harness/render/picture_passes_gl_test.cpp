@@ -13,14 +13,8 @@ namespace {
 
 /// A floor of 8 m seen from straight above: the picture's top is -z, its right +x.
 scene::Scene make_lamp_scene(const glm::vec3& position, const glm::vec3& target) {
-  scene::Scene scene;
-  scene.name = "lamp";
-  scene.materials.emplace_back();
-  scene.meshes.push_back(scene::make_plane({8.0f, 8.0f}, 1));
-  scene.light.kind = scene::Spot{position, target, 60.0f, 45.0f, 0.0f};
-  scene.cameras = {look_down({0.0f, 12.0f, 0.0f})};
-  scene.cameras.front().orthographic_height_m = 8.0f;
-  return scene;
+  return scene::make_scene_of({scene::make_plane({8.0f, 8.0f}, 1)}, scene::Spot{position, target, 60.0f, 45.0f, 0.0f},
+                              {scene::look_down({0.0f, 12.0f, 0.0f}, 8.0f)});
 }
 
 /// The light alone that arrives, without the ambient part; rows top to bottom.
@@ -399,10 +393,8 @@ TEST_F(ScreenPassesTest, ThatReadsTheMap_OrOneOfTheFilters_IsRefused) {
                          "vec4 copy(PassInput p) { return vec4(load_depth(p.texel)); }\n");
     const std::string result = "return 0.5 * own;";
     box.spec.body.replace(box.spec.body.find(result), result.size(), "return " + std::string(read) + " * own;");
-    const Error error = error_of([&] { bench.draw(box); });
-    EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-    EXPECT_THAT(error.message(), HasSubstr("'halve' reads the shadow map"));
-    EXPECT_THAT(error.where(), HasSubstr("screen_box.glsl:17"));
+    EXPECT_THAT(error_of([&] { bench.draw(box); }),
+                is_error(ErrorKind::kFilter, "screen_box.glsl:17", "'halve' reads the shadow map"));
   }
 }
 

@@ -7,7 +7,6 @@
 
 #include "filters/front_matter.h"
 #include "harness/render/shadow_map.h"
-#include "harness/scene/mesh_tools.h"
 #include "tests/filters/perspective_depth.h"
 #include "tests/harness/render/bench_fixture.h"
 #include "tests/test_files.h"
@@ -21,19 +20,14 @@ constexpr int kMapSide = 256;  // texels
 
 /// Panes of 2 x 2 m, one over the other by half a metre, above a floor of 4 x 4 m under a sun at the zenith.
 scene::Scene make_panes(std::vector<float> alphas) {
-  scene::Scene scene;
-  scene.name = "panes";
-  scene.materials.push_back({.name = "floor"});
-  scene.meshes.push_back(scene::make_plane({4.0f, 4.0f}, 1));
+  scene::Scene scene = scene::make_scene_of({scene::make_plane({4.0f, 4.0f}, 1)}, scene::kSunAtZenith,
+                                            {scene::look_down({0.0f, 6.0f, 0.1f})});
   for (const float alpha : alphas) {
     scene.materials.push_back({.name = "pane", .base_color = {1, 1, 1, alpha}, .alpha_mode = scene::AlphaMode::kBlend});
-    scene.meshes.push_back(scene::make_plane({2.0f, 2.0f}, 4));
-    const float height = 0.5f * static_cast<float>(scene.meshes.size() - 1) + 0.123f;
-    for (scene::Vertex& vertex : scene.meshes.back().vertices) vertex.position_ws.y = height;
+    const double height = 0.5 * static_cast<double>(scene.meshes.size()) + 0.123;
+    scene.meshes.push_back(scene::move_mesh(scene::make_plane({2.0f, 2.0f}, 4), {0.0, height, 0.0}));
     scene.meshes.back().material = static_cast<int>(scene.materials.size()) - 1;
   }
-  scene.light.kind = scene::Sun{{0.0f, -1.0f, 0.0f}};
-  scene.cameras = {look_down({0.0f, 6.0f, 0.1f})};
   return scene;
 }
 
@@ -173,7 +167,6 @@ TEST(MaskCasters, LoseTheirCoverageInAMapThatIsTooSmall_WhereRaysDoNot) {
                                                      truth::AreaLight::make_sun({0.0, 1.0, 0.0}, 0.0));
     EXPECT_NEAR(static_cast<double>(std::ranges::count(lit, 0.0f)) / 512.0, 0.25, 0.02) << count;
     in_map.push_back(share_of(find_held(scene, BlendCasters::kOpaque)));
-    std::printf("%d bars: %.3f of the map's texels\n", count, in_map.back());
   }
   EXPECT_NEAR(in_map.front(), 0.25, 0.05);
   EXPECT_LT(in_map.back(), 0.01) << "a bar is a quarter of a texel";
@@ -202,16 +195,13 @@ scene::LightFrustum make_perspective(const filters::DepthPlanes& planes) {
 
 /// A wall across the view at a distance.
 scene::Scene make_wall(float distance_m) {
-  scene::Scene scene;
   scene::Mesh wall;
   const float half = 1.5f * distance_m;
   for (const glm::vec2& corner :
        {glm::vec2(-half, -half), glm::vec2(half, -half), glm::vec2(half, half), glm::vec2(-half, half)})
     wall.vertices.push_back({{corner.x, corner.y, -distance_m}, {0.0f, 0.0f, 1.0f}, {}});
   wall.indices = {0, 1, 2, 0, 2, 3};
-  scene.meshes.push_back(wall);
-  scene.materials.emplace_back();
-  return scene;
+  return scene::make_scene_of({wall});
 }
 
 /// The largest |distance read from the map less the wall's| over the map.
@@ -271,25 +261,20 @@ TEST(DepthPrecision, EveryFormat_KeepsWhatTheoryAllows) {
     const filters::DepthPlanes planes{0.01, 0.01 * ratio};
     for (const Case& c : cases()) {
       render::ShadowMap map(kSize, {c.format, {c.reversed}});
-      double worst = 0.0;
       for (const double d : spread_distances(planes)) {
         const double allowed = theoretical_error(d, planes, c);
         if (allowed > 0.1 * d) continue;  // the curve is not straight over one step
-        const double error = measure_error(shaders, map, planes, d);
-        EXPECT_LE(error, allowed) << render::describe_map(map.settings()) << " far/near " << ratio << " at " << d;
-        worst = std::max(worst, error / d);
+        EXPECT_LE(measure_error(shaders, map, planes, d), allowed)
+            << render::describe_map(map.settings()) << " far/near " << ratio << " at " << d;
       }
-      std::printf("far/near %g %s: largest relative error %.2g\n", ratio, render::describe_map(map.settings()).c_str(),
-                  worst);
     }
   }
 }
 
 TEST(DepthPrecision, FormatOfOtherBits_IsRefused) {
   EXPECT_NO_THROW(render::require_depth_bits(GL_DEPTH_COMPONENT16, 16));
-  const Error error = error_of([] { render::require_depth_bits(GL_DEPTH_COMPONENT24, 32); });
-  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-  EXPECT_NE(std::string(error.what()).find("d24 in 32 bits"), std::string::npos) << error.what();
+  EXPECT_THAT(error_of([] { render::require_depth_bits(GL_DEPTH_COMPONENT24, 32); }),
+              is_error(ErrorKind::kUsage, "d24 in 32 bits"));
 }
 
 TEST(DepthMapSize, EightThousand_IsDrawnWhole) {
@@ -303,15 +288,11 @@ TEST(DepthMapSize, EightThousand_IsDrawnWhole) {
 constexpr int kSampledSide = 128, kFiner = 4;
 
 filters::FilterRequest make_sampled(int samples, const std::string& encoded = "e.depth", const char* lines = "") {
-  filters::FilterRequest request;
-  request.spec = filters::parse_filter(
-      fmt::format("/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nstore = \"r32f\"\nsamples = {}\n{}+++*/\n"
-                  "vec4 encode(EncodeInput e) {{ return vec4({}); }}\n"
-                  "float visibility(Receiver r) {{ return fetch_map(r, vec2(0.0)).x; }}\n",
-                  samples, lines, encoded),
+  return filters::request_of_file(
+      filters::write_filter(fmt::format("store = \"r32f\"\nsamples = {}\n{}", samples, lines),
+                            "vec4 encode(EncodeInput e) { return vec4(" + encoded + "); }\n" +
+                                "float visibility(Receiver r) { return fetch_map(r, vec2(0.0)).x; }\n"),
       "sampled.glsl");
-  for (const filters::ParamSpec& param : request.spec.params) request.values[param.name] = param.default_value;
-  return request;
 }
 
 std::vector<float> encode(Bench& bench, const filters::FilterRequest& request) {
@@ -394,10 +375,9 @@ TEST(DepthSamplesOfAMap, MoreThanTheGlGives_AreRefusedWithTheLine) {
   glGetIntegerv(GL_MAX_DEPTH_TEXTURE_SAMPLES, &most);
   if (most >= 16) GTEST_SKIP() << "this GL gives " << most << " samples";
   Bench bench(load_builtin("ball"), kSampledSide, 64, 36);
-  const Error error = error_of([&] { encode(bench, make_sampled(16)); });
-  EXPECT_EQ(error.kind(), ErrorKind::kFilter);
-  EXPECT_EQ(error.where(), "sampled.glsl:6");
-  EXPECT_EQ(error.message(), fmt::format("samples = 16: this GL gives at most {} samples of depth a texel", most));
+  EXPECT_THAT(error_of([&] { encode(bench, make_sampled(16)); }),
+              is_error(ErrorKind::kFilter, "sampled.glsl:6: ",
+                       fmt::format("samples = 16: this GL gives at most {} samples of depth a texel", most)));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "report/pages/run_data.h"
 #include "report/records/format.h"
 #include "report/records/json_io.h"
+#include "tests/harness/measure/stand.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::test {
@@ -22,10 +23,6 @@ class Silent final : public options::Progress {
 class Attributed : public ::testing::Test {
  protected:
   void SetUp() override {
-    options_.resources = options::find_resources();
-    options_.sizes = {{240, 135}};
-    options_.rounds = options::RoundLimits::exactly(1);
-    options_.reference = filters::Catalogue(options_.resources.filters).parse_requests("none").front();
     folder_.write(".shadowbench-folder", "");  // scenes lie beside what the run writes
     options_.out = folder_.path();
     options_.command = {"test"};
@@ -37,7 +34,7 @@ class Attributed : public ::testing::Test {
   /// Runs filters on a built-in scene and gives its cells.
   nlohmann::json run(const std::string& scene, const std::string& filters, int map_size = 1024) {
     options_.scenes = {scene};
-    options_.filters = filters::Catalogue(options_.resources.filters).parse_requests(filters);
+    options_.filters = filters::built_in().parse_requests(filters);
     options_.map_sizes = {map_size};
     Silent progress;
     run::run_experiment(options_, progress);
@@ -105,7 +102,7 @@ class Attributed : public ::testing::Test {
   }
 
   const TestFolder folder_;
-  options::RunOptions options_;
+  options::RunOptions options_ = make_run_options(240, 135);
 };
 
 TEST_F(Attributed, PartsAddUp_InEveryPixel_OfEveryFilter) {
@@ -294,13 +291,8 @@ struct MeasuredRun {
 };
 
 MeasuredRun measure_sized(const std::filesystem::path& folder, const images::Size& size) {
-  options::RunOptions options;
-  options.resources = options::find_resources();
-  options.sizes = {{size.width, size.height}};
-  options.rounds = options::RoundLimits::exactly(1);
-  const filters::Catalogue catalogue(options.resources.filters);
-  options.reference = catalogue.parse_requests("none").front();
-  options.filters = catalogue.parse_requests("none,pcf2x2,tent5x5");
+  options::RunOptions options = make_run_options(size.width, size.height);
+  options.filters = filters::built_in().parse_requests("none,pcf2x2,tent5x5");
   options.scenes = {"ball"};
   options.map_sizes = {256};
   options.out = folder;

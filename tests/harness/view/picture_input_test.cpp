@@ -2,17 +2,13 @@
 
 #include "harness/view/view_state.h"
 #include "harness/view/workbench.h"
+#include "tests/harness/scene/made_scenes.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::view {
 namespace {
 
-scene::Camera make_camera() {
-  scene::Camera camera;
-  camera.position_ws = {3.0f, 2.0f, 5.0f};
-  camera.forward_ws = glm::normalize(glm::vec3(-0.5f, -0.3f, -0.8f));
-  return camera;
-}
+scene::Camera make_camera() { return scene::make_camera({3.0f, 2.0f, 5.0f}, {-0.5f, -0.3f, -0.8f}); }
 
 /// A point as the camera sees it: right, up, ahead.
 glm::vec3 see(const scene::Camera& camera, const glm::vec3& point_ws) {

@@ -16,8 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using State = view::SideMeasurement::State;
 
-constexpr int kMoment = 100;  // hundredths of a second, in which nothing ends by itself
-
 double now_ms() {
   return 1e-6 * static_cast<double>(std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1));
 }
@@ -62,28 +60,15 @@ class SideMeasurementTest : public ViewTest {
     return now;
   }
 
-  /// Processes that were told of a file in the test's folder.
-  std::vector<std::string> list_processes(const std::string& word = {}) const {
-    std::vector<std::string> found;
-    for (const auto& entry : fs::directory_iterator("/proc")) {
-      const std::string command = read_text(entry.path() / "cmdline");
-      if (command.find(folder().string()) != std::string::npos && command.find(word) != std::string::npos)
-        found.push_back(entry.path().filename().string() + " " + command);
-    }
-    return found;
-  }
-
-  /// Killed processes are given a moment.
   void expect_nothing_left() const {
-    wait_until([&] { return list_processes().empty(); }, kMoment);
-    EXPECT_THAT(list_processes(), IsEmpty());
+    expect_no_process();
     for (const auto& entry : fs::directory_iterator(folder()))
       EXPECT_THAT(entry.path().string(), Not(HasSubstr("shadowbench-view"))) << "left by the measurement";
   }
 
   /// The texels of the map under a pixel that the window shows, over those that count.
   static double find_median_texels(const view::ViewState& state, const view::MeasuredSides& sides) {
-    view::Stage stage(renderer(), state.scene);
+    view::Stage stage(shared_renderer(), state.scene);
     stage.draw(state, view::Changes::all());
     std::vector<float> texels = stage.texels_per_pixel(state).texels;
     for (std::size_t i = texels.size(); i-- > 0;)
@@ -213,7 +198,6 @@ TEST_F(SideMeasurementTest, Cancelled_IsKilledWithItsChildren_WithinATenthOfASec
     EXPECT_EQ(measurement_.poll(), State::kIdle);
     expect_nothing_left();
   }
-  std::printf("cancelled within %.1f ms\n", fastest_ms);
   EXPECT_LT(fastest_ms, 100.0);
 }
 
@@ -224,7 +208,6 @@ TEST_F(SideMeasurementTest, CancelledWhileResultsAreRead_WaitsForNoMoreThanOneIm
   ASSERT_TRUE(wait_until([&] { return measurement_.poll(), measurement_.text() == "reading the results"; }));
   const double begin_ms = now_ms();
   measurement_.cancel();
-  std::printf("cancelled within %.1f ms\n", now_ms() - begin_ms);
   EXPECT_LT(now_ms() - begin_ms, 150.0) << "an image of many";
   expect_nothing_left();
 }
@@ -246,9 +229,7 @@ TEST_F(SideMeasurementTest, NeitherStartNorPoll_HoldsUpTheWindow) {
   ASSERT_EQ(now, State::kFinished) << measurement_.text();
   for (std::size_t side = 0; side < view::kSides; ++side)
     EXPECT_TRUE(measurement_.results().find_side(side)->visibility.texels == draw(state, side).texels) << side;
-  std::printf("start %.2f ms, ", times_ms.front());
   std::ranges::sort(times_ms);
-  std::printf("median of polls %.3f ms, longest call %.2f ms\n", times_ms[times_ms.size() / 2], times_ms.back());
   EXPECT_LT(times_ms[times_ms.size() * 99 / 100], 50.0);
 }
 
@@ -265,8 +246,7 @@ TEST_F(SideMeasurementTest, WindowThatIsKilled_LeavesNoProcess_AndItsFilesGoWith
   EXPECT_EQ(list_processes().size(), 2u);
   kill(window, SIGKILL);
   waitpid(window, nullptr, 0);
-  wait_until([&] { return list_processes().empty(); }, kMoment);
-  EXPECT_THAT(list_processes(), IsEmpty());
+  expect_no_process();
   measurement_.start(state);
   measurement_.cancel();
   expect_nothing_left();

@@ -2,31 +2,19 @@
 
 #include <utility>
 
-#include "filters/catalogue.h"
-#include "harness/measure/scene_assets.h"
 #include "harness/view/view_state.h"
 #include "tests/harness/cli/faults.h"
+#include "tests/harness/measure/stand.h"
 
 namespace shadowbench::test {
 
 /// A window's state without a window, in a folder of each test's own.
 class ViewTest : public FaultTest {
  protected:
-  static measure::Renderer& renderer() {
-    static measure::Renderer only = measure::make_renderer(gl::Backend::kAuto, options::find_resources());
-    only.context->make_current();
-    return only;
-  }
-
   options::RunOptions make_options(int width = 240, int height = 135) const {
-    options::RunOptions options;
-    options.resources = options::find_resources();
-    options.width = width;
-    options.height = height;
-    options.sizes = {{width, height}};
+    options::RunOptions options = make_run_options(width, height);
     options.map_sizes = {512};
     options.cache = cache_folder();
-    options.reference = request("none");
     return options;
   }
 
@@ -44,12 +32,11 @@ class ViewTest : public FaultTest {
   /// What a filter makes of a scene, drawn as the window does.
   static images::Image draw(const options::RunOptions& options, const scene::Scene& scene, const scene::Camera& camera,
                             const filters::FilterRequest& request) {
-    truth::TruthCache cache({}, [](const std::string&) {});
-    measure::SceneAssets assets(renderer(), options, scene, cache, measure::padding_texels(options));
-    const measure::LightMap& map = assets.light_map(camera, options.map_sizes.front());
+    Stand stand(scene, options, measure::padding_texels(options));
+    const measure::LightMap& map = stand.assets.light_map(camera, options.map_sizes.front());
     render::ImageTarget target("visibility", GL_R32F, options.width, options.height);
-    const auto passes = measure::make_filter_passes(renderer(), options, scene, map, request);
-    return measure::draw_visibility(*passes, map.map, assets.gbuffer(camera), target);
+    const auto passes = measure::make_filter_passes(stand.renderer, options, scene, map, request);
+    return measure::draw_visibility(*passes, map.map, stand.assets.gbuffer(camera), target);
   }
 
   static images::Image draw(const view::ViewState& state, std::size_t side) {

@@ -190,11 +190,6 @@ using State = view::SideMeasurement::State;
 
 class LessonsTest : public ViewTest {
  protected:
-  static filters::Catalogue& catalogue() {
-    static filters::Catalogue all(options::find_resources().filters);
-    return all;
-  }
-
   static view::Lesson find(const std::string& name) {
     for (view::Lesson& lesson : view::read_lessons(options::find_resources().lessons))
       if (lesson.name == name) return lesson;
@@ -203,7 +198,7 @@ class LessonsTest : public ViewTest {
   }
 
   view::ViewState make_state(const view::Lesson& lesson, bool instead = false, int width = 480) const {
-    view::ViewState state = view::make_lesson_state(lesson, make_options(width, width * 9 / 16), catalogue());
+    view::ViewState state = view::make_lesson_state(lesson, make_options(width, width * 9 / 16), filters::built_in());
     if (instead) change(state, [&](view::ViewSettings& settings) { set_shared(settings, lesson.instead); });
     state.options.attribution = false;
     return state;
@@ -228,7 +223,7 @@ TEST_F(LessonsTest, Each_ReadsTheMapForAReceiverThatIsSeen) {
   for (const view::Lesson& lesson : view::read_lessons(options::find_resources().lessons)) {
     SCOPED_TRACE(lesson.title);
     const view::ViewState state = make_state(lesson);
-    view::Stage stage(renderer(), state.scene);
+    view::Stage stage(shared_renderer(), state.scene);
     stage.draw(state, view::Changes::all());
     const auto seen = stage.find_surface(find_pixel(state, lesson.reading.place_ws));
     ASSERT_TRUE(seen);
@@ -335,7 +330,6 @@ TEST_F(LessonsTest, Each_ShowsItsFault_AndWhatEndsIt) {
     if (is_new) found->second = measure(state);
     const glm::ivec2 read_at = find_pixel(state, find(each.name).reading.place_ws);
     const double value = each.read({state, found->second, each.side, read_at}).value_or(-1.0);
-    std::printf("%s, side %zu, instead %d: %g\n", each.name, each.side, each.instead, value);
     EXPECT_TRUE(each.least <= value && value <= each.most) << "not within " << each.least << " .. " << each.most;
   }
   for (const view::Lesson& lesson : view::read_lessons(options::find_resources().lessons))
@@ -374,7 +368,7 @@ class StageTest : public ViewTest {
   }
 
   static Images draw_anew(const view::ViewState& state) {
-    view::Stage stage(renderer(), state.scene);
+    view::Stage stage(shared_renderer(), state.scene);
     stage.draw(state, view::Changes::all());
     return read(stage, state);
   }
@@ -383,9 +377,9 @@ class StageTest : public ViewTest {
   /// shaders that compiled.
   static int expect_redrawn(view::Stage& stage, const view::ViewState& state, const view::Changes& changes) {
     const Images before = read(stage, state);
-    const int compiled = renderer().shaders.compiled();
+    const int compiled = shared_renderer().shaders.compiled();
     stage.draw(state, changes);
-    const int compiled_now = renderer().shaders.compiled();
+    const int compiled_now = shared_renderer().shaders.compiled();
     const Images now = read(stage, state);
     EXPECT_EQ(now, draw_anew(state));
     for (std::size_t i = 0; i < now.size(); ++i) EXPECT_NE(now[i], before[i]) << "nothing has moved";
@@ -397,7 +391,7 @@ class MovedLight : public StageTest, public ::testing::WithParamInterface<Shown>
 
 TEST_P(MovedLight, CompilesNothing_AndShowsTheSameBitsAsANewStage) {
   view::ViewState state = make_state(GetParam());
-  view::Stage stage(renderer(), state.scene);
+  view::Stage stage(shared_renderer(), state.scene);
   stage.draw(state, view::Changes::all());
   for (int step = 0; step < 3; ++step) {
     SCOPED_TRACE(step);
@@ -406,7 +400,7 @@ TEST_P(MovedLight, CompilesNothing_AndShowsTheSameBitsAsANewStage) {
               }));
     EXPECT_EQ(expect_redrawn(stage, state, {.light = true}), 0);
   }
-  renderer().context->require_no_gl_errors();
+  shared_renderer().context->require_no_gl_errors();
 }
 
 INSTANTIATE_TEST_SUITE_P(Lights, MovedLight,
@@ -419,7 +413,7 @@ INSTANTIATE_TEST_SUITE_P(Lights, MovedLight,
 
 TEST_F(StageTest, LightOfAnotherKind_ShowsTheSameBitsAsANewStage) {
   view::ViewState state = make_state({"", "lamp", {"vsm", "tent3x3"}, {}});
-  view::Stage stage(renderer(), state.scene);
+  view::Stage stage(shared_renderer(), state.scene);
   stage.draw(state, view::Changes::all());
   scene::Light sun = state.scene.light;
   sun.kind = scene::Sun{-scene::to_light(sun, glm::vec3(0.0f))};
@@ -429,7 +423,7 @@ TEST_F(StageTest, LightOfAnotherKind_ShowsTheSameBitsAsANewStage) {
 
 TEST_F(StageTest, MovedCamera_ShowsTheSameBitsAsANewStage) {
   view::ViewState state = make_state({"", "cubes", {"vsm", "tent3x3"}, {}});
-  view::Stage stage(renderer(), state.scene);
+  view::Stage stage(shared_renderer(), state.scene);
   stage.draw(state, view::Changes::all());
   change(state, [](view::ViewSettings& settings) { settings.cameras[0].position_ws.y += 0.1f; });
   expect_redrawn(stage, state, {.camera = true});
