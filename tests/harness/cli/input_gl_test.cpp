@@ -81,6 +81,7 @@ TEST_F(BadInput, WordsThatAreWrong) {
       {small("--frames -1"), 2, {"--frames"}},
       {small("--pad-texels -1"), 2, {"--pad-texels", "-1"}},
       {small("--gl vulkan"), 2, {"vulkan"}},
+      {small("--gpu navi22"), 2, {"--gpu", "'navi22'", "did you mean 'navi2"}},
       {small("--filter-file no/such.glsl"), 5, {"no/such.glsl"}},
       {small("--filter-file " + user_filter("broken_front_matter.glsl")),
        5,
@@ -92,7 +93,6 @@ TEST_F(BadInput, WordsThatAreWrong) {
   for (const std::string option : {"--filters", "--filter", "--seed", "--tuned", "--pad-texels", "--cache", "--view"})
     expect_refusals(
         {{small(option + " ''"), 2, {"--", "a value is missing"}}, {small("") + " " + option + "=", 2, {"--"}}});
-  expect_refusal(small("--gl glfw"), 4, {"glfw"}, "env -u DISPLAY -u WAYLAND_DISPLAY");
 }
 
 TEST_F(BadInput, NumbersOutOfRange) {
@@ -127,11 +127,6 @@ TEST_F(BadInput, FolderWithoutOneScene) {
     expect_refusal(small("--scene " + name), 3, {"models", "2 scenes: a.toml, b.obj"});
 }
 
-/// A filter's file with this GLSL.
-std::string with_front_matter(const std::string& glsl) {
-  return "/*+++\ntitle = \"t\"\nsource = \"s\"\nkind = \"other\"\nradius_texels = 0\n+++*/\n" + glsl;
-}
-
 constexpr const char* kVisibility = "float visibility(Receiver r) { return 1.0; }\n";
 /// A plane under a sun, but for its size and material.
 constexpr const char* kPlane =
@@ -149,11 +144,13 @@ TEST_F(BadInput, FilesThatAreWrong) {
   write("raw.glsl", raw);
   write("unclosed.glsl", unclosed);
   write("vsm.glsl", read_source("filters/vsm.glsl"));
-  write("itself.glsl", with_front_matter("float down(float x) { return x < 0.0 ? x : down(x - 1.0); }\n"
-                                         "float visibility(Receiver r) { return down(r.depth); }\n"));
-  write("mutual.glsl",
-        with_front_matter("float b(float x);\nfloat a(float x) { return b(x); }\nfloat b(float x) { return a(x); }\n"
-                          "float visibility(Receiver r) { return a(r.depth); }\n"));
+  write("itself.glsl", filters::write_filter("radius_texels = 0\n",
+                                             "float down(float x) { return x < 0.0 ? x : down(x - 1.0); }\n"
+                                             "float visibility(Receiver r) { return down(r.depth); }\n"));
+  write("mutual.glsl", filters::write_filter(
+                           "radius_texels = 0\n",
+                           "float b(float x);\nfloat a(float x) { return b(x); }\nfloat b(float x) { return a(x); }\n"
+                           "float visibility(Receiver r) { return a(r.depth); }\n"));
   const std::string mine = "--filter-file ";
   expect_refusals({
       {"run lit.toml --out out", 3, {"lit.toml:2", "--lights is gone"}},
@@ -167,7 +164,7 @@ TEST_F(BadInput, FilesThatAreWrong) {
       {small(mine + "mutual.glsl"), 5, {"mutual.glsl:", "calls itself, directly or through others"}},
   });
   for (const std::string name : {"<script>alert(1)<.glsl", "a'b.glsl", "...glsl", "a b.glsl", "-x.glsl"}) {
-    write(name, with_front_matter(kVisibility));
+    write(name, filters::write_filter("radius_texels = 0\n", kVisibility));
     expect_refusal(small("--filter-file=\"" + name + "\""), 5, {"cannot be a filter's id"});
   }
 }

@@ -8,6 +8,7 @@
 
 #include "harness/cli/commands.h"
 #include "harness/gl/survey.h"
+#include "tests/filters/filtered.h"
 #include "tests/test_files.h"
 
 namespace shadowbench::test {
@@ -114,10 +115,9 @@ class ProgramTest : public ::testing::Test {
   }
 
   /// Expects one clear message with all the words, the exit code, and that a report is as it was, or none.
-  void expect_refusal(const std::string& arguments, int exit_code, const std::vector<std::string>& words,
-                      const std::string& environment = "") const {
+  void expect_refusal(const std::string& arguments, int exit_code, const std::vector<std::string>& words) const {
     const std::string report = read("out/results.json");
-    const Outcome outcome = run(arguments, environment);
+    const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
     const std::size_t begin = outcome.err.rfind("shadowbench: ");
     ASSERT_NE(begin, std::string::npos) << outcome.err;

@@ -218,6 +218,8 @@ TEST_F(Regress, UnreadableRun_Fails_AndIsNotAccepted) {
 
 TEST_F(Regress, CellThatTimedOut_IsUnreadable) {
   draw("a", "--filters none --filter-file '" + user_filter("endless.glsl") + "' --cell-timeout 1");
+  EXPECT_EQ(read_cells("a")[0]["status"], "ok");
+  EXPECT_EQ(read_cells("a")[1]["status"], "timeout") << "the run goes on without it";
   const Outcome outcome = compare("a", "--accept");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("not finished after 1 s"));
@@ -227,6 +229,8 @@ TEST_F(Regress, StochasticFilter_OfAnotherSeed_IsTestedAsNoise) {
   draw("a", "--filters none,poisson --phases 1");
   ASSERT_EQ(compare("a", "--accept").exit_code, 0);
   draw("b", "--filters none,poisson --seed 9 --phases 1");
+  const std::string picture = "/images/cubes.poisson.visibility.png";
+  EXPECT_NE(read("b" + picture), read("a" + picture));
   const Outcome noise = compare("b");
   EXPECT_EQ(noise.exit_code, 0) << noise.out;
   draw("b", "--filters none,poisson:radius=1 --seed 9 --phases 1 --fresh");

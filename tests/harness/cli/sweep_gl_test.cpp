@@ -149,12 +149,8 @@ TEST_F(Sweep, CellsOfAnotherOpenGl_AreMeasuredAnew_AndThoseOfAnotherProcessorSta
 }
 
 TEST_F(Sweep, ClaimsOfAUsersFilter_AreInItsCells) {
-  write("mine.glsl",
-        "/*+++\ntitle = \"M\"\nsource = \"s\"\nkind = \"other\"\nclaims = [\"own-claim\"]\nradius_texels = 0\n+++*/\n"
-        "float visibility(Receiver r) { return compare_nearest(r, vec2(0.0), r.depth); }\n");
-  succeed(
-      "run --scene cubes --map-size 32 --size 32x18 --rounds 1 --no-attribution --filters none,mine --filter-file "
-      "mine.glsl --out out");
+  copy_filter("none", "mine", "claims = [\"own-claim\"]\n");
+  succeed(small("--map-size 32 --size 32x18 --no-attribution --filters none,mine --filter-file mine.glsl"));
   EXPECT_EQ(read_cells()[0]["claims"], json::array());
   EXPECT_EQ(read_cells()[1]["claims"], json::array({"own-claim"}));
   // So small a picture has too few pixels for rates.

@@ -55,12 +55,10 @@ TEST_F(UserKernel, DeclaredByAStochasticFilter_GivesItsNoise_AndFollowsItsRadius
 class WrittenFilters : public ProgramTest {
  protected:
   /// A filter whose function's body stands in its line 8.
-  std::string write_filter(const std::string& id, const std::string& body, const std::string& kind = "other",
+  std::string write_filter(const std::string& id, const std::string& body, const char* kind = "other",
                            double radius = 1.0) const {
-    return write(id + ".glsl",
-                 fmt::format("/*+++\ntitle = \"x\"\nsource = \"a test\"\nkind = \"{}\"\nradius_texels = {}\n+++*/\n"
-                             "float visibility(Receiver r) {{\n{}\n}}\n",
-                             kind, radius, body));
+    return write(id + ".glsl", filters::write_filter(fmt::format("radius_texels = {}\n", radius),
+                                                     "float visibility(Receiver r) {\n" + body + "\n}\n", kind));
   }
 };
 
