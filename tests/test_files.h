@@ -43,6 +43,11 @@ Error error_of(const Action& action) {
   return {ErrorKind::kLimit, "no error"};
 }
 
+/// What GoogleTest shows of an Error.
+inline void PrintTo(const Error& error, std::ostream* out) {
+  *out << error.what() << " (exit code " << static_cast<int>(error.kind()) << ")";
+}
+
 /// An Error of a kind whose text, "PLACE: MESSAGE", has all these words.
 template <typename... Words>
 auto is_error(ErrorKind kind, const Words&... words) {
