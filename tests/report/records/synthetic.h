@@ -32,11 +32,6 @@ inline images::Image fill(images::Image image, float value) {
   return image;
 }
 
-inline images::Image draw_figure(const images::Figure& figure) {
-  const images::Layout layout = layout_figure(figure);
-  return draw_rows(layout, 0, layout.canvas.height);
-}
-
 /// A slanted shadow edge of the given softness, in pixels.
 inline images::Image make_visibility(int width, int height, float softness) {
   images::Image image(width, height, 1);
