@@ -42,9 +42,4 @@ records::GlRecord describe_gl(const measure::Renderer& renderer) {
           query ? records::TimerKind::kTimerQuery : records::TimerKind::kWallClock};
 }
 
-records::Provenance describe_provenance(const measure::Renderer& renderer, std::uint64_t seed,
-                                        const std::vector<std::string>& command) {
-  return {build_commit(), describe_gl(renderer), describe_machine(), seed, command};
-}
-
 }  // namespace shadowbench::run

@@ -16,8 +16,4 @@ records::MachineRecord describe_machine();
 /// The GL and the clock that times come from.
 records::GlRecord describe_gl(const measure::Renderer& renderer);
 
-/// What makes a record: this program on this machine and this GL. Its time is not known yet.
-records::Provenance describe_provenance(const measure::Renderer& renderer, std::uint64_t seed,
-                                        const std::vector<std::string>& command);
-
 }  // namespace shadowbench::run

@@ -365,7 +365,11 @@ class StressRun {
 
   void describe_run() {
     for (const std::string& reason : renderer_.refused) progress_.note("not used: " + reason);
-    static_cast<records::Provenance&>(record_) = run::describe_provenance(renderer_, options_.seed, options_.command);
+    record_.commit = run::build_commit();
+    record_.gl = run::describe_gl(renderer_);
+    record_.machine = run::describe_machine();
+    record_.seed = options_.seed;
+    record_.command = options_.command;
     for (const filters::FilterRequest& request : options_.filters) record_.filters.push_back(request.label());
   }
 

@@ -316,9 +316,15 @@ document::Page make_stress_page(const StressRecord& record) {
       {document::Table{"Where each verdict is first met, found to 1 %", make_limit_table(record)},
        document::Paragraph{"Limits that theory puts beyond the range, and that were not met, are in stress.json alone.",
                            true}}};
-  document::Details settings{"Settings and data",
-                             {document::Facts{list_provenance(record)}, document::Sentences{"Filters:", record.filters},
-                              link_data({"stress.json", "stress.csv"})}};
+  const records::GlRecord& gl = record.gl;
+  document::Facts facts{{{"OpenGL", fmt::format("{} ({}), {}", gl.renderer, gl.backend, gl.version)},
+                         {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},
+                         {"program", record.commit},
+                         {"command", fmt::format("{}", fmt::join(record.command, " "))},
+                         {"took", fmt::format("{:.1f} s", record.seconds)}}};
+  document::Details settings{
+      "Settings and data",
+      {std::move(facts), document::Sentences{"Filters:", record.filters}, link_data({"stress.json", "stress.csv"})}};
   page.sections.push_back({"data", "", {std::move(limits), std::move(settings)}});
   return page;
 }

@@ -1,7 +1,6 @@
 #include "report/pages/write_page.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cassert>
@@ -118,14 +117,6 @@ void remove_page(const std::filesystem::path& dir, std::string_view command) {
   std::error_code ignored;
   for (const std::string_view name : {own.html, own.markdown, own.details})
     if (!name.empty()) std::filesystem::remove(dir / name, ignored);
-}
-
-std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record) {
-  return {{"OpenGL", fmt::format("{} ({}), {}", record.gl.renderer, record.gl.backend, record.gl.version)},
-          {"machine", fmt::format("{}, {} cores", record.machine.cpu, record.machine.cores)},
-          {"program", record.commit},
-          {"command", fmt::format("{}", fmt::join(record.command, " "))},
-          {"took", fmt::format("{:.1f} s", record.seconds)}};
 }
 
 document::Links link_data(const std::vector<std::string>& files) {

@@ -38,9 +38,6 @@ bool has_page(const std::filesystem::path& dir, std::string_view command);
 /// Removes a command's page from a folder, where it is there.
 void remove_page(const std::filesystem::path& dir, std::string_view command);
 
-/// Says what made a record: OpenGL, machine, program, command and time.
-std::vector<std::pair<std::string, std::string>> list_provenance(const records::Provenance& record);
-
 /// Links to data files that lie beside the page.
 document::Links link_data(const std::vector<std::string>& files);
 

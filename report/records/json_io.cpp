@@ -335,16 +335,6 @@ json to_json(const RunRecord& run) {
   return root;
 }
 
-json to_json(const Provenance& provenance, int schema_version) {
-  RunRecord run;
-  run.gl = provenance.gl;
-  run.machine = provenance.machine;
-  const json head = to_json(run);
-  return {{"schema_version", schema_version}, {"commit", provenance.commit}, {"gl", head.at("gl")},
-          {"machine", head.at("machine")},    {"seed", provenance.seed},     {"command", provenance.command},
-          {"seconds", provenance.seconds}};
-}
-
 CellRecord cell_from_json(const json& json, const std::string& where) {
   CellRecord cell;
   const FieldReader reader{json, where, kRunAgain};

@@ -16,9 +16,6 @@ nlohmann::json to_json(const CellRecord& cell);
 /// Writes a run's head as JSON, without its cells.
 nlohmann::json to_json(const RunRecord& run);
 
-/// Writes the fields that stress.json begins with.
-nlohmann::json to_json(const Provenance& provenance, int schema_version);
-
 /// Reads a cell; `where` names its file in messages. Throws Error(kInput) where a field is missing or holds another
 /// type, the key is none, or a picture's path leaves the report's folder.
 CellRecord cell_from_json(const nlohmann::json& json, const std::string& where);

@@ -392,16 +392,6 @@ struct RunRecord {
   std::vector<std::string> warnings;
 };
 
-/// What made a record that is no run: program, machine, OpenGL and command line.
-struct Provenance {
-  std::string commit;
-  GlRecord gl;
-  MachineRecord machine;
-  std::uint64_t seed = 0;
-  std::vector<std::string> command;  ///< one entry per argument
-  double seconds = 0.0;              ///< wall time
-};
-
 /// Why a value is absent.
 struct Absence {
   std::string why;

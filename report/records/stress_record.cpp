@@ -84,11 +84,16 @@ void visit_fields(const StressAxis& axis, auto&& visit) {
 }
 
 std::string make_stress_json(const StressRecord& record) {
-  nlohmann::json written = to_json(record, kStressSchemaVersion);
-  written["filters"] = record.filters;
-  written["disagreements"] = count_disagreements(record);
-  written["axes"] = value_json(record.axes);
-  return dump_file(written);
+  return dump_file({{"schema_version", kStressSchemaVersion},
+                    {"commit", record.commit},
+                    {"gl", value_json(record.gl)},
+                    {"machine", value_json(record.machine)},
+                    {"seed", record.seed},
+                    {"command", record.command},
+                    {"seconds", record.seconds},
+                    {"filters", record.filters},
+                    {"disagreements", count_disagreements(record)},
+                    {"axes", value_json(record.axes)}});
 }
 
 std::string make_stress_csv(const StressRecord& record) {

@@ -106,7 +106,13 @@ struct StressAxis : StressAxisText {
 };
 
 /// Everything that `shadowbench stress` found.
-struct StressRecord : Provenance {
+struct StressRecord {
+  std::string commit;
+  GlRecord gl;
+  MachineRecord machine;
+  std::uint64_t seed = 0;
+  std::vector<std::string> command;  ///< one entry per argument
+  double seconds = 0.0;              ///< wall time
   std::vector<std::string> filters;  ///< labels of what was chosen
   std::vector<StressAxis> axes;
 };
