@@ -10,22 +10,12 @@ const startPicture = (holder) => {
   const caption = element(figure, "figcaption");
   let shown = null;
   const button = addButton(figure, "Look closer", () => shadowbench.openViewer(shown));
-  let isSmooth = true;
-  const toggle = () => {
-    isSmooth = !isSmooth;
-    show(shown.right, shown.place);
-  };
-  const smooth = addButton(figure, "", toggle, "The errors are of one sample a pixel");
   const live = addButton(figure, "Live", () => shadowbench.showLive(shown), "Drawn by this GPU");
   const message = element(figure, "p", { className: "note" });
 
   const show = (index, place) => {
     const cell = cellAt(index, place);
-    const measured = { picture: cell.picture, truth: run.truths[place]?.picture };
-    const { picture, truth } = cell.smooth && isSmooth ? cell.smooth : measured;
-    smooth.hidden = !cell.smooth;
-    smooth.textContent = `${cell.smooth?.samples} samples a pixel`;
-    smooth.setAttribute("aria-pressed", isSmooth);
+    const { picture, truth } = cell.smooth ?? { picture: cell.picture, truth: run.truths[place]?.picture };
     const [wholeWidth] = run.configurations[index].size;
     const [x, y, width, height] = cell.part;
     const hasBoth = Boolean(truth && picture);
@@ -50,7 +40,8 @@ const startPicture = (holder) => {
     slider.setAttribute("aria-label", `How much of the truth is seen beside ${name}`);
     caption.replaceChildren();
     for (const text of hasBoth ? ["truth", name] : [truth ? "truth" : name]) element(caption, "bdi", {}, text);
-    message.textContent = truth || picture ? "" : "This run stored no images.";
+    const samples = cell.smooth ? `${cell.smooth.samples} samples a pixel; errors are of one.` : "";
+    message.textContent = truth || picture ? samples : "This run stored no images.";
     live.hidden = !cell.frames;
   };
   images.forEach((image) =>
