@@ -10,7 +10,6 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "report/images/picture_io.h"
 #include "report/records/format.h"
 
 namespace shadowbench::engines {

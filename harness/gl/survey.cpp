@@ -1,7 +1,6 @@
 #include "harness/gl/survey.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <span>

@@ -5,7 +5,6 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <span>
 #include <vector>
 

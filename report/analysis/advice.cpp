@@ -16,7 +16,6 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "report/analysis/advice_words.h"
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
 #include "report/records/format.h"

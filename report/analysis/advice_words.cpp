@@ -10,7 +10,6 @@
 
 #include "report/analysis/cells.h"
 #include "report/analysis/measures.h"
-#include "report/analysis/trade.h"
 #include "report/records/format.h"
 #include "report/records/records.h"
 

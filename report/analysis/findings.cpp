@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "filters/store_format.h"
 #include "reference/metrics/error_stats.h"

@@ -11,7 +11,6 @@
 #include <span>
 
 #include "base/bytes.h"
-#include "base/error.h"
 #include "base/files.h"
 
 namespace shadowbench::images {

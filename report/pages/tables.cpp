@@ -9,7 +9,6 @@
 
 #include "reference/metrics/metric_table.h"
 #include "report/records/format.h"
-#include "report/records/json_values.h"
 
 namespace shadowbench::pages {
 namespace {

@@ -11,7 +11,6 @@
 #include "report/analysis/cells.h"
 #include "report/analysis/trade.h"
 #include "report/document/chart.h"
-#include "report/pages/tables.h"
 #include "report/records/format.h"
 
 namespace shadowbench::pages {

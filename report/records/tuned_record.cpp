@@ -4,7 +4,6 @@
 
 #include <cassert>
 
-#include "base/error.h"
 #include "base/files.h"
 #include "report/records/json_values.h"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "base/error.h"
 #include "report/records/format.h"
 
 namespace shadowbench::regress {

@@ -11,11 +11,8 @@
 #include <numbers>
 #include <span>
 
-#include "base/bytes.h"
 #include "base/error.h"
-#include "harness/scene/files/mesh_file.h"
 #include "harness/scene/lights/light_fit.h"
-#include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {

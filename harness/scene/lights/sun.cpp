@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "harness/scene/lights/light_fit.h"
-#include "harness/scene/mesh_tools.h"
 #include "harness/scene/scene.h"
 
 namespace shadowbench::scene {

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "filters/model.h"
-#include "harness/render/bias.h"
 #include "harness/stress/axis.h"
 #include "harness/stress/synthetic_scene.h"
 
