@@ -61,8 +61,9 @@ BaselineCell from_json(const json& read) {
   return cell;
 }
 
+constexpr const char* kAdvice = "restore the file, or remove its folder and accept a run again";
+
 std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
-  constexpr const char* kAdvice = "restore the file, or remove it and accept a run again";
   const json root = records::read_json_file(file, 1024 * kMebibyte, kAdvice);
   try {
     if (root.at("baseline_version") != kBaselineVersion)
@@ -72,6 +73,14 @@ std::vector<BaselineCell> read_cell_list(const std::filesystem::path& file) {
     return cells;
   } catch (const std::exception& error) {
     fail_input(fmt::format("this is no baseline of cells: {}; {}", error.what(), kAdvice), file.string());
+  }
+}
+
+std::vector<images::Part> read_parts(const std::filesystem::path& file) {
+  try {
+    return images::read_exr(file).parts;
+  } catch (const Error& error) {
+    throw Error(error.kind(), fmt::format("{}; {}", error.message(), kAdvice), error.where());
   }
 }
 
@@ -167,7 +176,7 @@ CellFile Baseline::read_cells(const std::string& scene, const std::string& filte
   if (!std::filesystem::exists(numbers)) return {};
   CellFile file{read_cell_list(numbers), {}};
   const std::filesystem::path images = with_extension(stem(scene, filter), ".exr");
-  for (images::Part& part : images::read_exr(images).parts) keep_part(file.images, std::move(part));
+  for (images::Part& part : read_parts(images)) keep_part(file.images, std::move(part));
   return file;
 }
 
@@ -193,7 +202,7 @@ std::map<std::string, TruthImages> Baseline::read_truths(const std::string& scen
   std::map<std::string, TruthImages> truths;
   const std::filesystem::path file = with_extension(stem(scene, kTruthStem), ".exr");
   if (!std::filesystem::exists(file)) return truths;
-  for (images::Part& part : images::read_exr(file).parts) {
+  for (images::Part& part : read_parts(file)) {
     const std::size_t dot = part.name.rfind('.');
     TruthImages& truth = truths[part.name.substr(0, dot)];
     (part.name.substr(dot + 1) == "area" ? truth.area : truth.standard_error) = std::move(part.image);

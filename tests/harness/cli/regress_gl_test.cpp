@@ -134,14 +134,16 @@ TEST_F(Regress, UnreadableFileOfTheBaseline_IsNamed_AndLeftAsItIs) {
     const std::string path = std::string("base/") + file;
     cut(path);
     for (const char* options : {"", "--accept", "--filters pcf2x2"})
-      expect_refusal("regress a --baseline base " + std::string(options), 3, {file});
+      expect_refusal("regress a --baseline base " + std::string(options), 3, {file, "restore the file"});
     write(path, whole.at(std::filesystem::path(file).filename().string()));
   }
   EXPECT_EQ(compare("a").exit_code, 0);
   std::filesystem::remove(folder() / "base/cubes/pcf2x2.exr");
   expect_refusal("regress a --baseline base --accept", 3, {"pcf2x2.exr"});
-  std::filesystem::remove(folder() / "base/cubes/pcf2x2.json");
-  EXPECT_EQ(compare("a", "--accept").exit_code, 0);
+  for (const char* removed : {"base/cubes/pcf2x2.json", "base/cubes"}) {
+    std::filesystem::remove_all(folder() / removed);
+    EXPECT_EQ(compare("a", "--accept").exit_code, 0) << removed;
+  }
   EXPECT_EQ(compare("a").exit_code, 0);
 }
 
